@@ -1,0 +1,24 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "app/commands.hpp"
+#include "core/error.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move", "stillpoint"};
+  app.require_subcommand(1);
+  stillpoint::add_commands(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const stillpoint::InputError& error) {
+    std::fprintf(stderr, "stillpoint: %s\n", error.what());
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stillpoint: unexpected: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,148 @@
+#include "core/geometry/camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+#include <toml++/toml.h>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+Camera make(const char* name, double fx, double fy, double cx, double cy, double depth_scale = 5000.0) {
+  Camera camera;
+  camera.name = name;
+  camera.fx = fx, camera.fy = fy, camera.cx = cx, camera.cy = cy;
+  camera.depth_scale = depth_scale;
+  return camera;
+}
+
+Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2, double k3) {
+  camera.k1 = k1, camera.k2 = k2, camera.p1 = p1, camera.p2 = p2, camera.k3 = k3;
+  return camera;
+}
+
+std::vector<double> distortion(const Camera& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
+
+}  // namespace
+
+bool Camera::has_distortion() const { return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0 || k3 != 0; }
+
+cv::Matx33d Camera::matrix() const { return {fx, 0, cx, 0, fy, cy, 0, 0, 1}; }
+
+std::vector<cv::Point2f> Camera::undistort(const std::vector<cv::Point2f>& pixels) const {
+  if (!has_distortion() || pixels.empty()) return pixels;
+  std::vector<cv::Point2f> result;
+  cv::undistortPoints(pixels, result, matrix(), distortion(*this), cv::noArray(), matrix());
+  return result;
+}
+
+Eigen::Vector2d Camera::distort(const Eigen::Vector2d& undistorted) const {
+  if (!has_distortion()) return undistorted;
+  const double x = (undistorted.x() - cx) / fx, y = (undistorted.y() - cy) / fy;
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  return {fx * (x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)) + cx,
+          fy * (y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y) + cy};
+}
+
+Camera Camera::scaled_to(int new_width, int new_height) const {
+  Camera scaled = *this;
+  const double sx = static_cast<double>(new_width) / width, sy = static_cast<double>(new_height) / height;
+  scaled.width = new_width, scaled.height = new_height;
+  scaled.fx *= sx, scaled.fy *= sy;
+  // Pixel centres lie at whole numbers: the image's edge, not pixel 0, stays where it is.
+  scaled.cx = (cx + 0.5) * sx - 0.5, scaled.cy = (cy + 0.5) * sy - 0.5;
+  return scaled;
+}
+
+const std::vector<Camera>& known_cameras() {
+  // freiburg2's depth reads about 4 % short at 5000 per metre; 5208 is what ORB-SLAM2 uses.
+  static const std::vector<Camera> cameras = {
+      with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989), 0.262383, -0.953104, -0.005358,
+                      0.002628, 1.163314),
+      with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0), 0.231222, -0.784899,
+                      -0.003257, -0.000105, 0.917205),
+      make("freiburg3", 535.4, 539.2, 320.1, 247.6),
+      make("icl_nuim", 481.20, 480.00, 319.50, 239.50),
+      with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903, -0.099343, -0.000730,
+                      -0.000144, 0.0),
+      make("generated", 535.4, 539.2, 320.1, 247.6),
+      make("ros_default", 525.0, 525.0, 319.5, 239.5),
+  };
+  return cameras;
+}
+
+Camera camera_by_name(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Camera& camera : known_cameras()) {
+    if (camera.name == name) return camera;
+    names.push_back(camera.name);
+  }
+  throw InputError(fmt::format("there is no camera '{}'; the cameras are: {} (or give a .toml file)", name,
+                               fmt::join(names, ", ")));
+}
+
+std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
+  std::string lower(folder_name);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto speaks_of = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  for (const char* digit : {"1", "2", "3"})
+    if (speaks_of((std::string("freiburg") + digit).c_str()) || lower.starts_with(std::string("fr") + digit))
+      return camera_by_name(std::string("freiburg") + digit);
+  if (speaks_of("bonn")) return camera_by_name("bonn");
+  if (speaks_of("icl") || speaks_of("living_room") || speaks_of("office_room") || speaks_of("traj"))
+    return camera_by_name("icl_nuim");
+  return std::nullopt;
+}
+
+Camera read_camera(const std::string& path) {
+  toml::table table;
+  try {
+    table = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: not a readable camera file: {}", path, error.source().begin.line,
+                                 std::string(error.description())));
+  }
+  Camera camera;
+  camera.name = path;
+  const std::pair<const char*, double*> reals[] = {
+      {"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}, {"k1", &camera.k1},
+      {"k2", &camera.k2}, {"p1", &camera.p1}, {"p2", &camera.p2}, {"k3", &camera.k3}, {"depth_scale", &camera.depth_scale}};
+  const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
+  for (auto&& [key, node] : table) {
+    const std::string where = fmt::format("{}:{}: {}", path, node.source().begin.line, key.str());
+    if (key.str() == "name") {
+      if (!node.is_string()) throw InputError(where + " takes a text");
+      camera.name = node.value_or(std::string());
+      continue;
+    }
+    bool known = false;
+    for (auto& [name, target] : reals)
+      if (key.str() == name) {
+        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+        if (!value || !std::isfinite(*value)) throw InputError(where + " takes a finite number");
+        *target = *value, known = true;
+      }
+    for (auto& [name, target] : integers)
+      if (key.str() == name) {
+        const auto value = node.value_exact<std::int64_t>();
+        if (!value || *value < 32 || *value > 16384) throw InputError(where + " takes a whole number of px from 32 to 16384");
+        *target = static_cast<int>(*value), known = true;
+      }
+    if (!known) throw InputError(where + " is no key of a camera");
+  }
+  for (const char* needed : {"fx", "fy", "cx", "cy"})
+    if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));
+  if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
+    throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
+  return camera;
+}
+
+Camera camera_from_argument(const std::string& argument) {
+  return argument.ends_with(".toml") ? read_camera(argument) : camera_by_name(argument);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.hpp"
+#include "core/geometry/trajectory.hpp"
+#include "core/sequence/frame.hpp"
+
+namespace stillpoint {
+
+/// Where frames come from. Reading is const and safe from several threads at once; the same index always gives
+/// the same bytes.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// For titles: the folder's name, or `generated:KIND`.
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  [[nodiscard]] virtual const Camera& camera() const = 0;
+  [[nodiscard]] virtual int size() const = 0;
+  /// Seconds; strictly increasing with the index.
+  [[nodiscard]] virtual double timestamp(int index) const = 0;
+  /// The frame. Never throws for a damaged file: the frame comes without the part, and says why in `problem`.
+  [[nodiscard]] virtual Frame read(int index) const = 0;
+  /// What is known of the frame; empty members where nothing is.
+  [[nodiscard]] virtual FrameTruth truth(int index) const = 0;
+  /// Ground truth as recorded, at its own rate; empty where there is none.
+  [[nodiscard]] virtual const Trajectory& ground_truth() const = 0;
+  /// False for a folder of colour frames alone.
+  [[nodiscard]] virtual bool has_depth() const = 0;
+  /// True when truth() may give masks.
+  [[nodiscard]] virtual bool has_masks() const = 0;
+  /// What was mended while opening, one sentence each (unsorted lists, dropped duplicates, …).
+  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
+};
+
+struct OpenOptions {
+  std::optional<Camera> camera;  ///< overrides what the folder's name says
+  int frames = 0;                ///< generated sequences: how many; 0 = the kind's own length
+  unsigned seed = 1;             ///< generated sequences
+};
+
+/// Opens `FOLDER` (TUM RGB-D layout) or `generated:KIND`.
+/// @throws InputError in one sentence when it is neither or cannot be used.
+[[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenOptions& options = {});
+
+}  // namespace stillpoint
