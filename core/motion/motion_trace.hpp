@@ -8,24 +8,25 @@ namespace stillpoint {
 
 /// A corner followed from the source frame to the destination frame.
 struct Track {
-  cv::Point2f from, to;    ///< px, in source and destination
-  float residual = 0.0F;   ///< mean absolute grey-level difference of the two windows
-  bool removed = false;    ///< taken out by an earlier round's mask: not used for this round's homography
-  bool inlier = false;     ///< of this round's homography
+  cv::Point2f from, to;   ///< px, in source and destination
+  float residual = 0.0F;  ///< mean absolute grey-level difference of the two windows
+  bool removed = false;   ///< taken out by an earlier round's mask: not used for this round's homography
+  bool inlier = false;    ///< of this round's homography
 };
 
 /// A homography and how it was come by. eq. (3): x_destination ~ H x_source.
 struct HomographyEstimate {
   cv::Matx33d matrix = cv::Matx33d::eye();
-  bool valid = false;         ///< false: too few tracks or a degenerate estimate; `matrix` is then the one to fall back on
+  bool valid =
+      false;  ///< false: too few tracks or a degenerate estimate; `matrix` is then the one to fall back on
   int ransac_inliers = 0;
   double ransac_error_px = 0.0;   ///< RMS reprojection error ε of the inliers after RANSAC, eq. (4)
   double refined_error_px = 0.0;  ///< … and after Levenberg-Marquardt
   int refine_iterations = 0;
 };
 
-/// Everything one direction of one round saw. Images have the frames' size and are in the destination's camera:
-/// frame t for the forward direction, frame t-1 for the backward one.
+/// Everything one direction of one round saw. Images have the frames' size and are in the destination's
+/// camera: frame t for the forward direction, frame t-1 for the backward one.
 struct DirectionTrace {
   std::vector<Track> tracks;
   HomographyEstimate homography;
@@ -39,15 +40,15 @@ struct DirectionTrace {
 
 /// A connected region of the union mask.
 struct MotionRegion {
-  cv::Rect box;           ///< px
-  cv::Point2d centroid;   ///< px
-  int area = 0;           ///< px
+  cv::Rect box;          ///< px
+  cv::Point2d centroid;  ///< px
+  int area = 0;          ///< px
 };
 
 /// One pass of fig. 2: homographies, masks, and what they say moves.
 struct MotionRound {
-  DirectionTrace forward;   ///< reference carried into the target
-  DirectionTrace backward;  ///< target carried into the reference
+  DirectionTrace forward;           ///< reference carried into the target
+  DirectionTrace backward;          ///< target carried into the reference
   cv::Mat backward_mask_in_target;  ///< CV_8UC1: backward.mask carried into the target's camera
   cv::Mat mask;                     ///< CV_8UC1, 255 = moving, target's camera: the union
   cv::Mat labels;                   ///< CV_32SC1: 0 or 1 + index into `regions`

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+
+namespace stillpoint {
+
+/// Pixels by grey level.
+using Histogram = std::array<int, 256>;
+
+/// Eq. (1): |destination − compensated| where `valid`, 0 elsewhere. All CV_8UC1 of one size.
+[[nodiscard]] cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated,
+                                       const cv::Mat& valid);
+
+/// The grey levels of `image` at the non-zero pixels of `valid`. Both CV_8UC1 of one size.
+[[nodiscard]] Histogram histogram(const cv::Mat& image, const cv::Mat& valid);
+
+/// Otsu's threshold: the level th for which the pixels up to th and those above it lie furthest apart
+/// (largest between-class variance; the lowest such level of several). It splits whatever it is given, also
+/// the noise of a frame in which nothing moves. 0 for pixels of one level only.
+[[nodiscard]] int otsu_threshold(const Histogram& levels);
+
+/// Eq. (2): 255 where the difference is above the threshold, else 0.
+[[nodiscard]] cv::Mat binarise(const cv::Mat& difference, double threshold);
+
+}  // namespace stillpoint
