@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "core/motion/homography.hpp"
 
 namespace stillpoint {
 namespace {
@@ -61,8 +64,24 @@ CompensatedFrame compensate(const cv::Mat& source, const cv::Matx33d& homography
 }
 
 cv::Mat carry_mask(const cv::Mat& mask, const cv::Matx33d& homography) {
-  cv::Mat carried;
-  cv::warpPerspective(mask, carried, homography, mask.size(), cv::INTER_NEAREST, cv::BORDER_CONSTANT);
+  cv::Mat carried = cv::Mat::zeros(mask.size(), CV_8UC1);
+  const cv::Rect moving = cv::boundingRect(mask);
+  if (moving.empty()) return carried;
+  // Only the part of the destination that the mask's box can reach is warped. A plausible homography keeps
+  // the box a convex quadrilateral.
+  const double right = moving.x + moving.width, bottom = moving.y + moving.height;
+  std::vector<cv::Point2f> quad;
+  for (const cv::Point2d corner : {cv::Point2d(moving.x - 1, moving.y - 1),
+                                   {right, moving.y - 1.0},
+                                   {right, bottom},
+                                   {moving.x - 1.0, bottom}})
+    quad.emplace_back(carry(homography, corner));
+  const cv::Rect reach = cv::boundingRect(quad) & cv::Rect({0, 0}, mask.size());
+  if (reach.empty()) return carried;
+  const cv::Matx33d reach_from_image(1, 0, -reach.x, 0, 1, -reach.y, 0, 0, 1);
+  cv::Mat part = carried(reach);
+  cv::warpPerspective(mask, part, reach_from_image * homography, reach.size(), cv::INTER_NEAREST,
+                      cv::BORDER_CONSTANT);
   return carried;
 }
 

@@ -1,21 +1,44 @@
 #include "core/motion/regions.hpp"
 
+#include <algorithm>
+#include <climits>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 namespace stillpoint {
 
 LabelledRegions find_regions(const cv::Mat& mask) {
   LabelledRegions found;
-  cv::Mat stats, centroids;
-  const int count = cv::connectedComponentsWithStats(mask, found.labels, stats, centroids, 8, CV_32S);
-  for (int label = 1; label < count; ++label) {  // 0 is what does not move
-    const int* of = stats.ptr<int>(label);
-    const double* centre = centroids.ptr<double>(label);
+  const int count = cv::connectedComponents(mask, found.labels, 8, CV_32S);
+  // OpenCV's own statistics also go through everything that does not move, at seven times the labelling's
+  // cost.
+  struct Sums {
+    int left = INT_MAX, top = INT_MAX, right = -1, bottom = -1, area = 0;
+    std::int64_t x = 0, y = 0;
+  };
+  std::vector<Sums> sums(static_cast<std::size_t>(count));
+  for (int y = 0; y < mask.rows; ++y) {
+    const unsigned char* moving = mask.ptr(y);
+    const int* label = found.labels.ptr<int>(y);
+    for (int x = 0; x < mask.cols; ++x) {
+      if (moving[x] == 0) continue;
+      Sums& sum = sums[static_cast<std::size_t>(label[x])];
+      sum.left = std::min(sum.left, x);
+      sum.right = std::max(sum.right, x);
+      sum.top = std::min(sum.top, y);
+      sum.bottom = y;
+      sum.x += x;
+      sum.y += y;
+      ++sum.area;
+    }
+  }
+  for (auto sum = sums.begin() + 1; sum != sums.end(); ++sum) {  // label 0 is what does not move
+    const double area = sum->area;
     found.regions.push_back(
-        {.box = {of[cv::CC_STAT_LEFT], of[cv::CC_STAT_TOP], of[cv::CC_STAT_WIDTH], of[cv::CC_STAT_HEIGHT]},
-         .centroid = {centre[0], centre[1]},
-         .area = of[cv::CC_STAT_AREA]});
-    found.area += of[cv::CC_STAT_AREA];
+        {.box = {sum->left, sum->top, sum->right - sum->left + 1, sum->bottom - sum->top + 1},
+         .centroid = {static_cast<double>(sum->x) / area, static_cast<double>(sum->y) / area},
+         .area = sum->area});
+    found.area += sum->area;
   }
   return found;
 }
