@@ -128,6 +128,7 @@ std::vector<Parameter> parameters(Config& c) {
   number("map.cull_redundancy", &k.cull_redundancy, 0.1, 1, "", "a keyframe is culled when this share of its points is seen by three others");
   number("map.min_found_ratio", &k.min_found_ratio, 0, 1, "", "a young point found in less than this share of its sightings is culled");
   number("map.max_local_keyframes", &k.max_local_keyframes, 1, 500, "keyframes", "covisible keyframes in the local map");
+  number("map.max_keyframes", &k.max_keyframes, 2, 10000, "keyframes", "beyond them the oldest retires");
 
   BundleConfig& b = c.bundle;
   number("bundle.max_keyframes", &b.max_keyframes, 1, 100, "keyframes", "local keyframes refined");

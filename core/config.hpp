@@ -54,7 +54,6 @@ struct TrackingConfig {
   int refine_iterations = 10;             ///< Levenberg-Marquardt steps a round of eq. (5)
   int refine_rounds = 4;                  ///< rounds, outliers reclassified after each
   double depth_weight = 1.0;              ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
-  int max_lost_frames = 0;                ///< a new map is begun after so many lost frames; 0 = never
 };
 
 /// The local map and its keyframes.
@@ -68,6 +67,7 @@ struct MapConfig {
   double cull_redundancy = 0.9;      ///< a keyframe is culled when this share of its points is seen by three others
   double min_found_ratio = 0.25;     ///< a young point found in less than this share of its sightings is culled
   int max_local_keyframes = 20;      ///< covisible keyframes in the local map
+  int max_keyframes = 100;           ///< beyond them the oldest retires: what keeps memory flat
 };
 
 /// Local bundle adjustment.
@@ -79,7 +79,7 @@ struct BundleConfig {
 };
 
 struct RunConfig {
-  std::string method = "paper";  ///< none, paper
+  std::string method = "paper";  ///< none, paper; or oracle, which is told what moves
   int threads = 2;               ///< worker threads; any number gives the same bytes
   int seed = 1;                  ///< of generated sequences
 };

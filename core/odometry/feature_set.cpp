@@ -1,0 +1,78 @@
+#include "core/odometry/feature_set.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace stillpoint {
+
+int descriptor_distance(const Descriptor& a, const Descriptor& b) {
+  int distance = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) distance += std::popcount(a[i] ^ b[i]);
+  return distance;
+}
+
+void FeatureSet::build_index(int width, int height) {
+  columns_ = width / kCell + 1;
+  rows_ = height / kCell + 1;
+  const auto cell_of = [&](const cv::Point2f& p) {
+    // Undistorted pixels may lie outside the image: the outermost cells take them.
+    const int column = std::clamp(static_cast<int>(std::floor(p.x / kCell)), 0, columns_ - 1);
+    const int row = std::clamp(static_cast<int>(std::floor(p.y / kCell)), 0, rows_ - 1);
+    return static_cast<std::size_t>(row * columns_ + column);
+  };
+  cell_start_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  for (const auto& p : undistorted) ++cell_start_[cell_of(p) + 1];
+  for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
+  cell_features_.resize(undistorted.size());
+  std::vector<int> next(cell_start_.begin(), cell_start_.end() - 1);
+  for (std::size_t i = 0; i < undistorted.size(); ++i)
+    cell_features_[static_cast<std::size_t>(next[cell_of(undistorted[i])]++)] = static_cast<int>(i);
+}
+
+void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave,
+                      std::vector<int>& found) const {
+  if (columns_ == 0) return;
+  const auto column = [&](float x) { return std::clamp(static_cast<int>(std::floor(x / kCell)), 0, columns_ - 1); };
+  const auto row = [&](float y) { return std::clamp(static_cast<int>(std::floor(y / kCell)), 0, rows_ - 1); };
+  const int first_column = column(pixel.x - radius), last_column = column(pixel.x + radius);
+  for (int r = row(pixel.y - radius); r <= row(pixel.y + radius); ++r) {
+    const auto first_cell = static_cast<std::size_t>(r * columns_ + first_column);
+    const auto last_cell = static_cast<std::size_t>(r * columns_ + last_column);
+    for (int k = cell_start_[first_cell]; k < cell_start_[last_cell + 1]; ++k) {
+      const int i = cell_features_[static_cast<std::size_t>(k)];
+      const auto feature = static_cast<std::size_t>(i);
+      const int octave = keypoints[feature].octave;
+      if (octave < min_octave || octave > max_octave) continue;
+      const cv::Point2f d = undistorted[feature] - pixel;
+      if (std::abs(d.x) <= radius && std::abs(d.y) <= radius) found.push_back(i);
+    }
+  }
+}
+
+FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height) {
+  FeatureSet kept;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (!keep[i]) continue;
+    kept.keypoints.push_back(all.keypoints[i]);
+    kept.undistorted.push_back(all.undistorted[i]);
+    kept.descriptors.push_back(all.descriptors[i]);
+    kept.depth.push_back(all.depth[i]);
+  }
+  kept.build_index(width, height);
+  return kept;
+}
+
+std::vector<float> depth_at(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& depth) {
+  std::vector<float> result(keypoints.size(), 0.0F);
+  if (depth.empty()) return result;
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    const int x = cvRound(keypoints[i].pt.x), y = cvRound(keypoints[i].pt.y);
+    if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
+    const float z = depth.at<float>(y, x);
+    if (std::isfinite(z) && z > 0) result[i] = z;
+  }
+  return result;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "core/geometry/camera.hpp"
+
+namespace stillpoint {
+
+/// A 256-bit ORB descriptor.
+using Descriptor = std::array<std::uint64_t, 4>;
+
+/// The number of differing bits, 0 to 256.
+[[nodiscard]] int descriptor_distance(const Descriptor& a, const Descriptor& b);
+
+/// The features of one frame, and an index to find them by place. Immutable once built.
+struct FeatureSet {
+  std::vector<cv::KeyPoint> keypoints;      ///< pixel in the image as it is, octave, angle (deg), response
+  std::vector<cv::Point2f> undistorted;     ///< the same pixels as a pinhole would see them, px
+  std::vector<Descriptor> descriptors;
+  std::vector<float> depth;                 ///< m; 0 where the frame has no measurement
+
+  [[nodiscard]] int size() const { return static_cast<int>(keypoints.size()); }
+
+  /// Sorts the features into the place index; called once, when the vectors above are complete.
+  void build_index(int width, int height);
+
+  /// Appends to `found` the features within `radius` px (a square window, as the field does) of an undistorted
+  /// pixel, of octaves `min_octave` to `max_octave`, in order of the index cells.
+  void find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave, std::vector<int>& found) const;
+
+ private:
+  static constexpr int kCell = 16;  // px; a few features a cell
+  int columns_ = 0, rows_ = 0;
+  std::vector<int> cell_start_;    // CSR: first entry of each cell in cell_features_
+  std::vector<int> cell_features_;
+};
+
+/// The features of `all` for which keep[i] is non-zero, undistorted and indexed anew.
+[[nodiscard]] FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height);
+
+/// Reads each keypoint's depth (m) from a CV_32FC1 image; 0 where the image is empty or has no measurement.
+[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& depth);
+
+}  // namespace stillpoint

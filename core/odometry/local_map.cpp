@@ -1,0 +1,165 @@
+#include "core/odometry/local_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillpoint {
+namespace {
+
+std::vector<std::pair<int, int>> by_weight(const std::map<int, int>& counts, int min_shared) {
+  std::vector<std::pair<int, int>> order;
+  for (const auto& [keyframe, shared] : counts)
+    if (shared >= min_shared) order.emplace_back(keyframe, shared);
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return order;
+}
+
+Eigen::Vector3d centre(const Pose& camera_from_world) {
+  return -(camera_from_world.linear().transpose() * camera_from_world.translation());
+}
+
+}  // namespace
+
+int LocalMap::add_keyframe(Keyframe keyframe) {
+  keyframe.id = next_keyframe_++;
+  for (std::size_t feature = 0; feature < keyframe.points.size(); ++feature)
+    if (keyframe.points[feature] != kNone)
+      points_.at(keyframe.points[feature]).observations.push_back({keyframe.id, static_cast<int>(feature)});
+  const int id = keyframe.id;
+  keyframes_.emplace(id, std::move(keyframe));
+  return id;
+}
+
+int LocalMap::add_point(const Eigen::Vector3d& position, int keyframe, int feature) {
+  MapPoint point;
+  point.id = next_point_++;
+  point.position = position;
+  point.born_keyframe = keyframe;
+  const int id = point.id;
+  points_.emplace(id, std::move(point));
+  add_observation(id, keyframe, feature);
+  return id;
+}
+
+void LocalMap::add_observation(int point, int keyframe, int feature) {
+  points_.at(point).observations.push_back({keyframe, feature});
+  keyframes_.at(keyframe).points[static_cast<std::size_t>(feature)] = point;
+}
+
+void LocalMap::remove_observation(int point, int keyframe) {
+  auto& observations = points_.at(point).observations;
+  const auto it = std::find_if(observations.begin(), observations.end(),
+                               [&](const Observation& o) { return o.keyframe == keyframe; });
+  if (it == observations.end()) return;
+  keyframes_.at(keyframe).points[static_cast<std::size_t>(it->feature)] = kNone;
+  observations.erase(it);
+  if (observations.empty()) points_.erase(point);
+}
+
+void LocalMap::remove_point(int point) {
+  for (const Observation& o : points_.at(point).observations)
+    keyframes_.at(o.keyframe).points[static_cast<std::size_t>(o.feature)] = kNone;
+  points_.erase(point);
+}
+
+void LocalMap::merge_points(int from, int into) {
+  if (from == into) return;
+  const std::vector<Observation> moved = points_.at(from).observations;
+  const int found = points_.at(from).found, visible = points_.at(from).visible;
+  remove_point(from);
+  MapPoint& target = points_.at(into);
+  for (const Observation& o : moved) {
+    const bool seen = std::any_of(target.observations.begin(), target.observations.end(),
+                                  [&](const Observation& other) { return other.keyframe == o.keyframe; });
+    if (!seen) add_observation(into, o.keyframe, o.feature);
+  }
+  target.found += found;
+  target.visible += visible;
+}
+
+void LocalMap::retire_keyframe(int id) {
+  const auto neighbours = covisible(id, 1);
+  const Keyframe& keyframe = keyframes_.at(id);
+  RetiredKeyframe retired{id, keyframe.frame_index, keyframe.timestamp, kNone, keyframe.camera_from_world};
+  if (!neighbours.empty()) {
+    retired.anchor = neighbours.front().first;
+    retired.camera_from_anchor =
+        keyframe.camera_from_world * keyframes_.at(retired.anchor).camera_from_world.inverse();
+  }
+  const std::vector<int> points = keyframe.points;
+  for (const int point : points)
+    if (point != kNone) remove_observation(point, id);
+  keyframes_.erase(id);
+  retired_.push_back(retired);
+}
+
+void LocalMap::update_point(int id, double scale_factor, int levels) {
+  MapPoint& point = points_.at(id);
+  std::vector<const Descriptor*> descriptors;
+  point.viewing_direction.setZero();
+  for (const Observation& o : point.observations) {
+    const Keyframe& keyframe = keyframes_.at(o.keyframe);
+    descriptors.push_back(&keyframe.features->descriptors[static_cast<std::size_t>(o.feature)]);
+    point.viewing_direction += (point.position - centre(keyframe.camera_from_world)).normalized();
+  }
+  point.viewing_direction.normalize();
+
+  // The descriptor with the least median distance to the others speaks for the point.
+  int best_median = std::numeric_limits<int>::max();
+  std::vector<int> distances;
+  for (const Descriptor* candidate : descriptors) {
+    distances.clear();
+    for (const Descriptor* other : descriptors) distances.push_back(descriptor_distance(*candidate, *other));
+    auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle < best_median) best_median = *middle, point.descriptor = *candidate;
+  }
+
+  const Observation& latest = point.observations.back();
+  const Keyframe& keyframe = keyframes_.at(latest.keyframe);
+  const int octave = keyframe.features->keypoints[static_cast<std::size_t>(latest.feature)].octave;
+  const double distance = (point.position - centre(keyframe.camera_from_world)).norm();
+  point.max_distance = distance * std::pow(scale_factor, octave);
+  point.min_distance = point.max_distance / std::pow(scale_factor, levels - 1);
+}
+
+std::vector<int> LocalMap::point_ids() const {
+  std::vector<int> ids;
+  ids.reserve(points_.size());
+  for (const auto& entry : points_) ids.push_back(entry.first);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+std::vector<std::pair<int, int>> LocalMap::covisible(int keyframe, int min_shared) const {
+  std::map<int, int> shared;
+  for (const int point : keyframes_.at(keyframe).points)
+    if (point != kNone)
+      for (const Observation& o : points_.at(point).observations)
+        if (o.keyframe != keyframe) ++shared[o.keyframe];
+  return by_weight(shared, min_shared);
+}
+
+std::vector<std::pair<int, int>> LocalMap::observers(const std::vector<int>& points) const {
+  std::map<int, int> seen;
+  for (const int point : points)
+    if (const auto it = points_.find(point); it != points_.end())
+      for (const Observation& o : it->second.observations) ++seen[o.keyframe];
+  return by_weight(seen, 1);
+}
+
+Pose LocalMap::pose_of(int keyframe) const {
+  Pose camera_from_ancestor = Pose::Identity();
+  while (true) {
+    if (const auto it = keyframes_.find(keyframe); it != keyframes_.end())
+      return camera_from_ancestor * it->second.camera_from_world;
+    const auto it = std::find_if(retired_.begin(), retired_.end(),
+                                 [&](const RetiredKeyframe& r) { return r.id == keyframe; });
+    camera_from_ancestor = camera_from_ancestor * it->camera_from_anchor;
+    if (it->anchor == kNone) return camera_from_ancestor;
+    keyframe = it->anchor;
+  }
+}
+
+}  // namespace stillpoint

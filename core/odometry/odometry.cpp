@@ -1,0 +1,275 @@
+#include "core/odometry/odometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/odometry/mapping.hpp"
+#include "core/stopwatch.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to track against
+
+}  // namespace
+
+Odometry::Odometry(const Camera& camera, const Config& config)
+    : camera_(camera), config_(config), extractor_(config.features), scales_(octave_scales(config.features)) {}
+
+FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
+  FrameResult result;
+  FrameRecord& record = result.record;
+  record.index = frame.index;
+  record.timestamp = frame.timestamp;
+  record.note = frame.problem;
+  const Stopwatch whole;
+
+  apply_due_bundle(record, false);
+  if (!frame.readable()) {
+    mark_lost(record, FrameStatus::unreadable, "the image could not be read");
+  } else {
+    // §1 beside ORB extraction: neither needs the other's result.
+    auto features = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+      const Stopwatch watch;
+      OrbFeatures found = extractor_.extract(frame.gray);
+      return std::pair(std::move(found), watch.milliseconds());
+    });
+    const cv::Mat mask = detect(frame, known_mask, result);
+    const auto [found, feature_ms] = features.get();
+    record.ms.features = feature_ms;
+
+    Current current = remove_moving(frame, found, mask, record);
+    if (last_)
+      track(frame, current, record);
+    else
+      initialise(frame, current, record);
+    record.features = std::move(current.records);
+  }
+  record.map_points = static_cast<int>(map_.point_count());
+  record.map_keyframes = static_cast<int>(map_.keyframes().size());
+  record.ms.total = whole.milliseconds();
+  return result;
+}
+
+void Odometry::finish() {
+  FrameRecord unused;
+  apply_due_bundle(unused, true);
+}
+
+void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
+  if (!pending_ || (!now && record.index < pending_->due)) return;
+  const Stopwatch watch;
+  const BundleSolution& solution = pending_->solution.get();
+  apply_bundle(solution, map_);
+  record.bundle_rms_before_px = solution.initial_rms_px;
+  record.bundle_rms_px = solution.rms_px;
+  record.bundle_iterations = solution.iterations;
+  if (map_.has_keyframe(pending_->keyframe)) {
+    for (const int point : map_.keyframe(pending_->keyframe).points)
+      if (point != kNone) map_.update_point(point, config_.features.scale_factor, config_.features.levels);
+    record.culled_keyframes += cull_keyframes(map_, pending_->keyframe, config_);
+  }
+  pending_.reset();
+  record.ms.bundle += watch.milliseconds();
+}
+
+cv::Mat Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
+  if (config_.run.method == "none") return {};
+  if (config_.run.method == "oracle") {
+    if (!known_mask.empty())
+      result.record.mask_share = static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
+    return known_mask;
+  }
+  const Stopwatch watch;
+  const auto target = std::make_shared<const MotionFrame>(prepare_motion_frame(frame.gray, config_.motion));
+  if (!references_.empty()) {
+    result.motion = detect_motion(*references_.front(), *target, config_.motion, config_.run.threads);
+    if (!result.motion.rounds.empty()) {
+      const MotionRound& round = result.motion.rounds.back();
+      result.record.mask_share = round.mask_share;
+      result.record.motion_rounds = static_cast<int>(result.motion.rounds.size());
+      result.record.homography_rms_px = round.forward.homography.refined_error_px;
+      result.record.static_tracks = static_cast<int>(
+          std::count_if(round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
+    }
+  }
+  references_.push_back(target);
+  while (static_cast<int>(references_.size()) > config_.motion.reference_gap) references_.pop_front();
+  result.record.ms.motion = watch.milliseconds();
+  return result.motion.mask();
+}
+
+Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
+                                          FrameRecord& record) const {
+  Current current;
+  FeatureSet all;
+  all.keypoints = found.keypoints;
+  all.descriptors = found.descriptors;
+  all.depth = depth_at(found.keypoints, frame.depth);
+  std::vector<cv::Point2f> pixels;
+  cv::KeyPoint::convert(found.keypoints, pixels);
+  all.undistorted = camera_.undistort(pixels);
+
+  std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
+  current.records.resize(found.keypoints.size());
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    const cv::KeyPoint& keypoint = found.keypoints[i];
+    if (!mask.empty()) keep[i] = mask.at<uchar>(cvRound(keypoint.pt.y), cvRound(keypoint.pt.x)) == 0;
+    FeatureRecord& feature = current.records[i];
+    feature.pixel = keypoint.pt;
+    feature.depth = all.depth[i];
+    feature.octave = static_cast<std::uint8_t>(keypoint.octave);
+    if (keep[i])
+      current.record_of.push_back(static_cast<int>(i));
+    else
+      feature.fate = FeatureFate::removed;
+  }
+  current.features = std::make_shared<const FeatureSet>(subset(all, keep, camera_.width, camera_.height));
+  current.points.assign(current.record_of.size(), kNone);
+  record.features_found = all.size();
+  record.features_kept = current.features->size();
+  record.features_removed = record.features_found - record.features_kept;
+  return current;
+}
+
+void Odometry::initialise(const Frame& frame, Current& current, FrameRecord& record) {
+  const auto& depth = current.features->depth;
+  const auto with_depth = std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; });
+  if (with_depth < kMinFeaturesToBegin) {
+    mark_lost(record, FrameStatus::lost,
+              fmt::format("only {} features with depth; a map begins with {}", with_depth, kMinFeaturesToBegin));
+    return;
+  }
+  record.status = FrameStatus::initialised;
+  record.estimated = true;
+  add_keyframe(frame, current, record);
+  remember(current, record);
+}
+
+void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
+  const bool was_lost = lost_frames_ > 0;
+  current.camera_from_world = predicted_camera_from_world();
+  // After being lost the prediction is stale: the local map is searched everywhere at once.
+  bool found = !was_lost && estimate_from_last(current, record);
+  if (!found) found = estimate_by_epnp(current, record);
+  if (!found) {
+    mark_lost(record, FrameStatus::lost,
+              fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
+                          record.features_kept, config_.tracking.min_initial_matches));
+    return;
+  }
+  const PoseRefinement refined = track_local_map(current, record);
+  const int needed = was_lost ? 2 * config_.tracking.min_inliers : config_.tracking.min_inliers;
+  if (refined.inliers < needed) {
+    mark_lost(record, FrameStatus::lost,
+              fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed));
+    return;
+  }
+  record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
+  record.estimated = true;
+  const Pose last = last_camera_from_world();
+  velocity_ = was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()));
+  lost_frames_ = 0;
+  if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
+  remember(current, record);
+}
+
+bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const {
+  if (!frame.has_depth()) return false;
+  const FeatureSet& features = *current.features;
+  int near_tracked = 0, near_new = 0;
+  for (std::size_t i = 0; i < current.points.size(); ++i) {
+    if (features.depth[i] <= 0 || features.depth[i] > config_.map.far_depth_m) continue;
+    ++(current.points[i] != kNone ? near_tracked : near_new);
+  }
+  const bool near_wanted = near_tracked < config_.map.keyframe_min_near && near_new > config_.map.keyframe_new_near;
+
+  const auto observers = map_.observers(current.points);
+  if (observers.empty()) return false;
+  // Points of the reference keyframe that have proved themselves: what there was to be tracked.
+  const int proven = map_.keyframes().size() <= 2 ? 1 : 2;
+  int reference_points = 0;
+  for (const int point : map_.keyframe(observers.front().first).points)
+    if (point != kNone && static_cast<int>(map_.point(point).observations.size()) >= proven) ++reference_points;
+  const bool few_left = record.inliers < config_.map.keyframe_min_ratio * reference_points;
+  const bool long_ago = frame.index - last_keyframe_frame_ >= config_.map.keyframe_max_gap;
+  return few_left || near_wanted || (long_ago && near_new > config_.map.keyframe_new_near);
+}
+
+void Odometry::add_keyframe(const Frame& frame, Current& current, FrameRecord& record) {
+  apply_due_bundle(record, true);
+  // The adjustment may have taken points out of the map, and moved it under this frame.
+  for (int& point : current.points)
+    if (point != kNone && !map_.has_point(point)) point = kNone;
+
+  const Stopwatch watch;
+  Keyframe keyframe;
+  keyframe.frame_index = frame.index;
+  keyframe.timestamp = frame.timestamp;
+  keyframe.camera_from_world = current.camera_from_world;
+  keyframe.features = current.features;
+  keyframe.points = current.points;
+  const int id = map_.add_keyframe(std::move(keyframe));
+  for (const int point : current.points)
+    if (point != kNone) map_.update_point(point, config_.features.scale_factor, config_.features.levels);
+  record.culled_points = cull_points(map_, id, config_);
+  record.new_points = create_points(map_, id, camera_, config_);
+  record.fused_points = fuse_neighbours(map_, id, camera_, config_);
+  current.points = map_.keyframe(id).points;
+  record.keyframe = true;
+  last_keyframe_frame_ = frame.index;
+  record.ms.mapping = watch.milliseconds();
+
+  if (map_.keyframes().size() < 2) return;
+  auto solve = [problem = make_bundle_problem(map_, id, config_), camera = camera_, bundle = config_.bundle,
+                weight = config_.tracking.depth_weight]() mutable {
+    return solve_bundle(std::move(problem), camera, bundle, weight);
+  };
+  // When the result enters the map is fixed by the frame's number, so that threads change nothing but the time.
+  pending_ = PendingBundle{
+      std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, std::move(solve)).share(), id,
+      frame.index + config_.bundle.apply_after_frames};
+  if (config_.bundle.apply_after_frames == 0) {
+    apply_due_bundle(record, true);
+    current.camera_from_world = map_.pose_of(id);
+    for (int& point : current.points)
+      if (point != kNone && !map_.has_point(point)) point = kNone;
+  }
+}
+
+void Odometry::remember(const Current& current, FrameRecord& record) {
+  Last last;
+  last.features = current.features;
+  last.points = current.points;
+  const auto observers = map_.observers(current.points);
+  last.reference_keyframe = observers.empty() ? map_.keyframes().rbegin()->first : observers.front().first;
+  last.camera_from_reference =
+      current.camera_from_world * map_.keyframe(last.reference_keyframe).camera_from_world.inverse();
+  record.reference_keyframe = last.reference_keyframe;
+  record.camera_from_reference = last.camera_from_reference;
+  record.world_from_camera = current.camera_from_world.inverse();
+  last_ = std::move(last);
+}
+
+void Odometry::mark_lost(FrameRecord& record, FrameStatus status, const std::string& why) {
+  record.status = status;
+  record.note += (record.note.empty() ? "" : "; ") + why;
+  if (!last_) return;
+  constexpr double kVelocityDecay = 0.8;  // a frame: nobody keeps moving the same way for long
+  const Pose predicted = predicted_camera_from_world();
+  record.world_from_camera = predicted.inverse();
+  record.reference_keyframe = last_->reference_keyframe;
+  last_->camera_from_reference = predicted * map_.pose_of(last_->reference_keyframe).inverse();
+  record.camera_from_reference = last_->camera_from_reference;
+  velocity_ *= kVelocityDecay;
+  ++lost_frames_;
+}
+
+Pose Odometry::last_camera_from_world() const {
+  return last_->camera_from_reference * map_.pose_of(last_->reference_keyframe);
+}
+
+Pose Odometry::predicted_camera_from_world() const { return se3_exp(velocity_) * last_camera_from_world(); }
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/detect_motion.hpp"
+#include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/local_map.hpp"
+#include "core/odometry/matching.hpp"
+#include "core/odometry/orb_extractor.hpp"
+#include "core/odometry/pose_solver.hpp"
+#include "core/sequence/frame.hpp"
+
+namespace stillpoint {
+
+/// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
+struct FrameResult {
+  FrameRecord record;
+  MotionTrace motion;
+};
+
+/// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds moving
+/// taken out first. Frames go in, in order; poses come out. World coordinates are the first tracked frame's camera.
+///
+/// A value: a copy goes on from where the original stood, and gives the same bytes from the same frames.
+class Odometry {
+ public:
+  Odometry(const Camera& camera, const Config& config);
+
+  /// Takes the next frame. Nothing about the frame makes it throw: what cannot be tracked is marked lost.
+  /// @param known_mask what truly moves, CV_8UC1, for method `oracle` alone; empty otherwise
+  [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
+
+  /// Lets a pending bundle adjustment enter the map: after the last frame.
+  void finish();
+
+  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] const Config& config() const { return config_; }
+
+ private:
+  /// The frame being tracked.
+  struct Current {
+    std::shared_ptr<const FeatureSet> features;  // static ones
+    std::vector<int> points;                     // map point a feature, inliers of the pose only
+    Pose camera_from_world = Pose::Identity();
+    std::vector<FeatureRecord> records;          // of all features, removed ones too
+    std::vector<int> record_of;                  // feature -> index into records
+  };
+  /// The frame before, as the next one needs it.
+  struct Last {
+    std::shared_ptr<const FeatureSet> features;
+    std::vector<int> points;
+    int reference_keyframe = kNone;
+    Pose camera_from_reference = Pose::Identity();
+  };
+  struct PendingBundle {
+    std::shared_future<BundleSolution> solution;
+    int keyframe = kNone;
+    int due = 0;  // frame index at which it enters the map
+  };
+
+  void apply_due_bundle(FrameRecord& record, bool now);
+  [[nodiscard]] cv::Mat detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
+  [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
+                                      FrameRecord& record) const;
+  void initialise(const Frame& frame, Current& current, FrameRecord& record);
+  void track(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record);
+  [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record);
+  [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const;
+  [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record);
+  [[nodiscard]] std::vector<int> local_points(const Current& current) const;
+  [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const;
+  void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
+  void remember(const Current& current, FrameRecord& record);
+  void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
+  [[nodiscard]] Pose predicted_camera_from_world() const;
+  [[nodiscard]] Pose last_camera_from_world() const;
+
+  Camera camera_;
+  Config config_;
+  OrbExtractor extractor_;
+  std::vector<double> scales_;
+  LocalMap map_;
+  std::optional<Last> last_;                  // empty until the map has begun
+  Vector6d velocity_ = Vector6d::Zero();      // of the camera from frame to frame: log(current_from_last)
+  int lost_frames_ = 0;                       // in a row
+  int last_keyframe_frame_ = 0;               // frame index of the newest keyframe
+  std::deque<std::shared_ptr<const MotionFrame>> references_;  // newest last, as far back as motion detection looks
+  std::optional<PendingBundle> pending_;
+};
+
+}  // namespace stillpoint

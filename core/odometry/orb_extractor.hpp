@@ -1,0 +1,39 @@
+#pragma once
+
+#include <opencv2/features2d.hpp>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/odometry/feature_set.hpp"
+
+namespace stillpoint {
+
+/// Keypoints over all pyramid levels and their descriptors, one row each.
+struct OrbFeatures {
+  std::vector<cv::KeyPoint> keypoints;  ///< in pixels of the full image
+  std::vector<Descriptor> descriptors;
+};
+
+/// ORB (Rublee et al. 2011) with corners spread over the image: FAST on every pyramid level, a lower threshold in
+/// cells that would stay empty, and so many corners a level as its area asks for, the best of each neighbourhood
+/// first. Orientation by intensity centroid; descriptors are OpenCV's.
+class OrbExtractor {
+ public:
+  explicit OrbExtractor(const FeatureConfig& config);
+
+  /// Features of a grey image, CV_8UC1. Images too small for a level simply have none there.
+  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray) const;
+
+ private:
+  [[nodiscard]] std::vector<cv::KeyPoint> corners(const cv::Mat& level_image, int wanted) const;
+
+  FeatureConfig config_;
+  std::vector<int> wanted_;       // corners a level
+  cv::Ptr<cv::ORB> descriptor_;   // computes descriptors of one level at a time
+};
+
+/// Picks `wanted` of the candidates so that they spread over a `width` x `height` image: round by round, the
+/// best not yet taken of each cell. Order of the result is by cell, then response.
+[[nodiscard]] std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wanted, int width, int height);
+
+}  // namespace stillpoint
