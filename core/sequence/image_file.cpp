@@ -1,0 +1,138 @@
+#include "core/sequence/image_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace stillpoint {
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+constexpr std::uint32_t kLargestSide = 16384;  // px
+
+std::uint32_t big_endian(const unsigned char* p) {
+  return static_cast<std::uint32_t>(p[0]) << 24 | static_cast<std::uint32_t>(p[1]) << 16 |
+         static_cast<std::uint32_t>(p[2]) << 8 | p[3];
+}
+
+/// CRC-32 as PNG's specification (ISO 15948, annex D) defines it.
+std::uint32_t crc32(const unsigned char* data, std::size_t size) {
+  static const auto table = [] {
+    std::array<std::uint32_t, 256> t{};
+    for (std::uint32_t n = 0; n < 256; ++n) {
+      std::uint32_t c = n;
+      for (int k = 0; k < 8; ++k) c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1) : c >> 1;
+      t[n] = c;
+    }
+    return t;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (std::size_t i = 0; i < size; ++i) crc = table[(crc ^ data[i]) & 0xFFU] ^ (crc >> 8);
+  return crc ^ 0xFFFFFFFFU;
+}
+
+/// Why a PNG is not whole, or nothing; `kept` receives it without the chunks that say nothing about pixels,
+/// which are what libpng prints warnings about.
+std::string check_png(const Bytes& bytes, Bytes& kept) {
+  kept.assign(bytes.begin(), bytes.begin() + kPngSignature.size());
+  for (std::size_t at = kPngSignature.size();;) {
+    if (bytes.size() - at < 12) return "is truncated";
+    const unsigned char* chunk = bytes.data() + at;
+    const std::size_t length = big_endian(chunk);
+    if (length > bytes.size() - at - 12) return "is truncated";
+    const std::string_view type(reinterpret_cast<const char*>(chunk + 4), 4);
+    if (crc32(chunk + 4, length + 4) != big_endian(chunk + 8 + length))
+      return "is damaged (a checksum is wrong)";
+    if (at == kPngSignature.size()) {
+      if (type != "IHDR" || length != 13) return "is damaged (it has no PNG header)";
+      const std::uint32_t width = big_endian(chunk + 8), height = big_endian(chunk + 12);
+      if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide)
+        return fmt::format("claims a size of {}x{} px, expected 1 to {} px a side", width, height,
+                           kLargestSide);
+    }
+    const bool critical = (chunk[4] & 0x20U) == 0;
+    if (critical || type == "tRNS") kept.insert(kept.end(), chunk, chunk + length + 12);
+    if (type == "IEND") return {};
+    at += length + 12;
+  }
+}
+
+/// JPEG streams end in FF D9, perhaps with padding behind it.
+bool jpeg_has_its_end(const Bytes& bytes) {
+  const std::size_t tail = bytes.size() > 64 ? bytes.size() - 64 : 0;
+  for (std::size_t i = bytes.size() - 1; i > tail; --i)
+    if (bytes[i] == 0xD9 && bytes[i - 1] == 0xFF) return true;
+  return false;
+}
+
+std::string read_bytes(const std::string& path, Bytes& bytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return "is missing";
+  if (!std::filesystem::is_regular_file(status)) return "is no file";
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
+  bytes.assign(std::istreambuf_iterator<char>(file), {});
+  if (bytes.empty()) return "is empty (0 bytes)";
+  return {};
+}
+
+}  // namespace
+
+ImageRead read_image(const std::string& path) {
+  ImageRead result;
+  try {
+    Bytes bytes, kept;
+    std::string fault = read_bytes(path, bytes);
+    if (fault.empty() && bytes.size() >= kPngSignature.size() &&
+        std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
+      fault = check_png(bytes, kept);
+      bytes.swap(kept);
+    } else if (fault.empty() && bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8 &&
+               !jpeg_has_its_end(bytes)) {
+      fault = "is truncated";
+    }
+    if (fault.empty()) {
+      // The orientation tag is ignored by IMREAD_UNCHANGED, as it must be: calibrations speak of stored
+      // pixels.
+      result.image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+      if (result.image.empty()) fault = "is no image that can be decoded";
+    }
+    if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);
+  } catch (const std::exception& error) {
+    result.image.release();
+    result.problem = fmt::format("{} cannot be decoded", path);
+  }
+  return result;
+}
+
+cv::Mat to_8bit(const cv::Mat& image) {
+  cv::Mat result = image;
+  if (image.depth() == CV_16U)
+    image.convertTo(result, CV_8U, 1.0 / 257.0);
+  else if (image.depth() != CV_8U)
+    cv::normalize(image, result, 0, 255, cv::NORM_MINMAX, CV_8U);
+  if (result.channels() == 4) cv::cvtColor(result, result, cv::COLOR_BGRA2BGR);
+  if (result.channels() == 2) cv::extractChannel(result, result, 0);
+  return result;
+}
+
+cv::Mat to_gray(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  cv::Mat gray;
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  return gray;
+}
+
+}  // namespace stillpoint

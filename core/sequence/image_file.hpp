@@ -1,0 +1,25 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+namespace stillpoint {
+
+/// An image as stored, or why there is none.
+struct ImageRead {
+  cv::Mat image;  ///< the file's own depth and channels (colour as BGR); empty when it could not be read
+  std::string problem;  ///< one sentence, empty when all is well
+};
+
+/// Reads a PNG, JPEG or other image that OpenCV decodes. A PNG is checked chunk by chunk and a JPEG for its
+/// end before a decoder sees it, so that a truncated or damaged file gives a problem rather than half an
+/// image, and decoders have nothing to print. Never throws.
+[[nodiscard]] ImageRead read_image(const std::string& path);
+
+/// Any image read as 8-bit grey or 8-bit BGR: 16-bit values scaled down, an alpha channel dropped.
+[[nodiscard]] cv::Mat to_8bit(const cv::Mat& image);
+
+/// An 8-bit image of 1 or 3 channels as grey.
+[[nodiscard]] cv::Mat to_gray(const cv::Mat& image);
+
+}  // namespace stillpoint

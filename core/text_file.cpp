@@ -1,0 +1,82 @@
+#include "core/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+constexpr std::string_view kSeparators = " \t,";
+
+std::string_view without_comment(std::string_view text) {
+  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
+    if (at == 0 || kBlanks.find(text[at - 1]) != std::string_view::npos) return text.substr(0, at);
+  return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace
+
+std::vector<TextLine> read_text_lines(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(fmt::format("{}: a folder, where a text file was expected", path));
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw InputError(
+        fmt::format("{}: cannot be read: {}", path, errno != 0 ? std::strerror(errno) : "unknown cause"));
+  std::vector<TextLine> lines;
+  std::string raw;
+  for (int number = 1; std::getline(file, raw); ++number) {
+    std::string_view text = raw;
+    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    text = trimmed(without_comment(text));
+    if (!text.empty()) lines.push_back({number, std::string(text)});
+  }
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
+  return lines;
+}
+
+std::vector<std::string_view> split_columns(std::string_view text) {
+  std::vector<std::string_view> columns;
+  for (auto first = text.find_first_not_of(kSeparators); first != std::string_view::npos;) {
+    const auto end = std::min(text.find_first_of(kSeparators, first), text.size());
+    columns.push_back(text.substr(first, end - first));
+    first = text.find_first_not_of(kSeparators, end);
+  }
+  return columns;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  std::string result = "'";
+  for (const char c : text.substr(0, kMost)) {
+    const auto code = static_cast<unsigned char>(c);
+    result += code < 32 || code == 127 ? '?' : c;
+  }
+  return result + (text.size() > kMost ? "…'" : "'");
+}
+
+}  // namespace stillpoint

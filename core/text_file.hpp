@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stillpoint {
+
+/// A line that says something, and where it stands.
+struct TextLine {
+  int number = 0;    ///< from 1, as editors count
+  std::string text;  ///< without comment, line end and surrounding blanks; never empty
+};
+
+/// The lines of a small text file. `#` at the start of a line or after a blank begins a comment; blank lines
+/// are left out; LF and CRLF line ends and a byte order mark are understood.
+/// @throws InputError when the file cannot be read.
+[[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path);
+
+/// The columns of a line, parted by blanks, tabs or commas.
+[[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
+
+/// The whole text as a number written in the C manner, whatever the locale is; nothing when it is not one.
+/// May be NaN or infinite.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+/// A foreign text fit for an error message: in quotes, clipped, and without control characters.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+}  // namespace stillpoint
