@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/geometry/trajectory.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/odometry.hpp"
+#include "core/sequence/source.hpp"
+
+namespace stillpoint {
+
+/// A map point as a run leaves it.
+struct SavedPoint {
+  int id = kNone;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, world
+  int observations = 0;                                ///< keyframes that see it
+};
+
+/// A keyframe as a run leaves it.
+struct SavedKeyframe {
+  int id = kNone, frame_index = 0;
+  StampedPose pose;
+};
+
+/// A whole sequence by one method.
+struct RunResult {
+  Config config;
+  std::vector<FrameRecord> records;      ///< one a frame processed, in order
+  Trajectory live;                       ///< poses as estimated when each frame was tracked; estimated ones only
+  Trajectory trajectory;                 ///< the same frames, hung on their reference keyframes as these stand at the end
+  std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
+  std::vector<SavedPoint> points;
+  int frames_in_sequence = 0;
+  bool interrupted = false;              ///< stopped before the last frame
+
+  /// Frames with an estimated pose.
+  [[nodiscard]] int tracked() const { return static_cast<int>(live.size()); }
+};
+
+struct RunOptions {
+  int first = 0;                                  ///< frame to begin with
+  int count = 0;                                  ///< frames to process; 0 = to the end
+  const std::atomic<bool>* stop = nullptr;        ///< when it turns true the run ends after the frame at hand
+  std::function<void(const FrameResult&, const Frame&, const FrameTruth&)> on_frame;  ///< called after each frame, from the calling thread
+};
+
+/// Runs the configured method over a sequence; frames are read ahead on other threads.
+[[nodiscard]] RunResult run_sequence(const FrameSource& source, const Config& config, const RunOptions& options = {});
+
+}  // namespace stillpoint
