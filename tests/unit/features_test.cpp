@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <random>
+#include <set>
+
+#include "core/odometry/feature_set.hpp"
+#include "core/odometry/matching.hpp"
+#include "core/odometry/orb_extractor.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// Blurred random blocks: corners everywhere.
+cv::Mat textured(int width, int height, unsigned seed = 1) {
+  cv::Mat small(height / 8 + 1, width / 8 + 1, CV_8UC1), image;
+  cv::RNG random(seed);
+  random.fill(small, cv::RNG::UNIFORM, 0, 255);
+  cv::resize(small, image, {width, height}, 0, 0, cv::INTER_NEAREST);
+  return image;
+}
+
+TEST(Descriptor, DistanceCountsBits) {
+  Descriptor a{}, b{};
+  EXPECT_EQ(descriptor_distance(a, b), 0);
+  b[0] = 0b1011, b[3] = ~std::uint64_t{0};
+  EXPECT_EQ(descriptor_distance(a, b), 3 + 64);
+}
+
+TEST(OrbExtractor, FeaturesAreSpreadOverTheImage) {
+  const cv::Mat image = textured(640, 480);
+  const OrbFeatures features = OrbExtractor({}).extract(image);
+  EXPECT_NEAR(static_cast<double>(features.keypoints.size()), 1000, 50);
+  ASSERT_EQ(features.keypoints.size(), features.descriptors.size());
+  std::set<int> cells, octaves;
+  for (const auto& k : features.keypoints) {
+    cells.insert(static_cast<int>(k.pt.y / 80) * 8 + static_cast<int>(k.pt.x / 80));
+    octaves.insert(k.octave);
+  }
+  EXPECT_EQ(cells.size(), 48u);  // every 80x80 cell of 8x6 has its share
+  EXPECT_EQ(octaves.size(), 8u);
+}
+
+TEST(OrbExtractor, FaintCornersCountWhereNothingElseIs) {
+  cv::Mat image(480, 640, CV_8UC1, cv::Scalar(100));
+  cv::rectangle(image, {400, 200, 60, 60}, cv::Scalar(112), cv::FILLED);  // 12 grey levels: below fast_threshold
+  FeatureConfig config;
+  EXPECT_GT(OrbExtractor(config).extract(image).keypoints.size(), 0u);
+  config.fast_threshold_low = config.fast_threshold;
+  EXPECT_EQ(OrbExtractor(config).extract(image).keypoints.size(), 0u);
+}
+
+TEST(OrbExtractor, FlatAndTinyImagesHaveNoFeatures) {
+  EXPECT_TRUE(OrbExtractor({}).extract(cv::Mat::zeros(480, 640, CV_8UC1)).keypoints.empty());
+  EXPECT_TRUE(OrbExtractor({}).extract(textured(33, 20)).keypoints.empty());
+}
+
+TEST(OrbExtractor, CoarseLevelsLieWhereTheyAre) {
+  // An image and the same doubled: the coarse features of one lie at the doubled places of the other's, halves and all.
+  const cv::Mat image = textured(320, 240);
+  cv::Mat doubled;
+  cv::resize(image, doubled, {640, 480}, 0, 0, cv::INTER_NEAREST);
+  cv::Mat dot = cv::Mat::zeros(480, 640, CV_8UC1);
+  cv::rectangle(dot, {200, 100, 120, 160}, cv::Scalar(255), cv::FILLED);
+  FeatureConfig config;
+  const OrbFeatures features = OrbExtractor(config).extract(dot);
+  ASSERT_FALSE(features.keypoints.empty());
+  const std::vector<cv::Point2f> corners = {{200, 100}, {319, 100}, {200, 259}, {319, 259}};
+  std::vector<float> mean_offset;
+  for (const auto& k : features.keypoints) {
+    float nearest = 1e9F;
+    for (const auto& c : corners) nearest = std::min(nearest, static_cast<float>(cv::norm(k.pt - c)));
+    EXPECT_LT(nearest, 4.0F * static_cast<float>(std::pow(config.scale_factor, k.octave))) << "octave " << k.octave;
+  }
+}
+
+TEST(OrbExtractor, AnglesFollowTheImage) {
+  cv::Mat patch = textured(640, 480), turned;
+  cv::rotate(patch, turned, cv::ROTATE_90_CLOCKWISE);
+  FeatureConfig config;
+  config.levels = 1;
+  const OrbFeatures before = OrbExtractor(config).extract(patch), after = OrbExtractor(config).extract(turned);
+  // (x, y) turns to (479 - y, x); angles grow by 90 degrees.
+  int same = 0, close = 0;
+  for (const auto& a : before.keypoints)
+    for (const auto& b : after.keypoints)
+      if (std::abs(b.pt.x - (479 - a.pt.y)) < 0.5 && std::abs(b.pt.y - a.pt.x) < 0.5) {
+        ++same;
+        const double turn = std::fmod(b.angle - a.angle + 360.0, 360.0);
+        close += std::abs(turn - 90.0) < 2.0;
+      }
+  EXPECT_GT(same, 100);
+  EXPECT_GT(close, same * 95 / 100);
+}
+
+TEST(Spread, TakesTheBestOfEachNeighbourhoodFirst) {
+  std::vector<cv::KeyPoint> candidates;
+  for (int i = 0; i < 10; ++i) candidates.emplace_back(cv::Point2f(10.0F + static_cast<float>(i), 10), 1, -1, 50.0F + static_cast<float>(i));
+  candidates.emplace_back(cv::Point2f(90, 90), 1, -1, 1.0F);  // weak, but alone
+  const auto chosen = spread(candidates, 2, 100, 100);
+  ASSERT_EQ(chosen.size(), 2u);
+  EXPECT_EQ(chosen[0].response, 59.0F);
+  EXPECT_EQ(chosen[1].response, 1.0F);
+  EXPECT_TRUE(spread(candidates, 0, 100, 100).empty());
+  EXPECT_EQ(spread(candidates, 50, 100, 100).size(), 11u);
+}
+
+FeatureSet features_at(const std::vector<cv::Point2f>& pixels, const std::vector<int>& octaves = {}) {
+  FeatureSet set;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    set.keypoints.emplace_back(pixels[i], 31.0F, 0.0F, 1.0F, octaves.empty() ? 0 : octaves[i]);
+    set.undistorted.push_back(pixels[i]);
+    Descriptor d{};
+    d[0] = std::uint64_t{1} << i;
+    set.descriptors.push_back(d);
+    set.depth.push_back(1.0F);
+  }
+  set.build_index(640, 480);
+  return set;
+}
+
+TEST(FeatureSet, FindsWhatASearchOfAllFinds) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> x(-10, 650), y(-10, 490);
+  std::vector<cv::Point2f> pixels;
+  std::vector<int> octaves;
+  for (int i = 0; i < 60; ++i) pixels.emplace_back(x(random), y(random)), octaves.push_back(i % 8);
+  const FeatureSet set = features_at(pixels, octaves);
+  std::vector<int> found;
+  for (int trial = 0; trial < 200; ++trial) {
+    const cv::Point2f centre(x(random), y(random));
+    const float radius = 5.0F + static_cast<float>(trial % 60);
+    found.clear();
+    set.find(centre, radius, 1, 5, found);
+    std::sort(found.begin(), found.end());
+    std::vector<int> expected;
+    for (int i = 0; i < set.size(); ++i) {
+      const auto f = static_cast<std::size_t>(i);
+      if (octaves[f] >= 1 && octaves[f] <= 5 && std::abs(pixels[f].x - centre.x) <= radius && std::abs(pixels[f].y - centre.y) <= radius)
+        expected.push_back(i);
+    }
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {
+  cv::Mat depth = cv::Mat::zeros(10, 10, CV_32FC1);
+  depth.at<float>(3, 4) = 1.5F;
+  depth.at<float>(5, 5) = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<cv::KeyPoint> keypoints = {{4.2F, 2.9F, 1}, {5, 5, 1}, {9.9F, 3, 1}, {0, 0, 1}};
+  EXPECT_EQ(depth_at(keypoints, depth), (std::vector<float>{1.5F, 0, 0, 0}));
+  EXPECT_EQ(depth_at(keypoints, {}), (std::vector<float>{0, 0, 0, 0}));
+}
+
+TEST(Matching, TheNearestDescriptorInTheWindowWins) {
+  const FeatureSet set = features_at({{100, 100}, {104, 100}, {300, 300}});
+  Descriptor wanted{};
+  wanted[0] = 0b010 | (std::uint64_t{1} << 40);  // one bit from feature 1 more than exact
+  const auto candidate = [&](float x, float radius) { return Candidate{7, {x, 100}, radius, 0, 0, &wanted, -1.0F}; };
+  auto matches = match_in_windows(set, {candidate(102, 5)}, 50, 0.9);
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].feature, 1);
+  EXPECT_EQ(matches[0].point, 7);
+  EXPECT_EQ(matches[0].distance, 1);
+  EXPECT_TRUE(match_in_windows(set, {candidate(102, 5)}, 0, 0.9).empty()) << "beyond the largest distance";
+  EXPECT_TRUE(match_in_windows(set, {candidate(102, 5)}, 50, 0.3).empty()) << "1 of 3 bits: too alike";
+  EXPECT_TRUE(match_in_windows(set, {candidate(200, 5)}, 50, 0.9).empty()) << "nothing in the window";
+}
+
+TEST(Matching, AFeatureGoesToTheNearestCandidate) {
+  const FeatureSet set = features_at({{100, 100}});
+  Descriptor exact{}, off{};
+  exact[0] = 1, off[0] = 0b111;
+  const std::vector<Candidate> candidates = {{1, {100, 100}, 5, 0, 0, &off, -1.0F}, {2, {100, 100}, 5, 0, 0, &exact, -1.0F}};
+  const auto matches = match_in_windows(set, candidates, 50, 1.0);
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].point, 2);
+  EXPECT_EQ(match_everywhere(set, candidates, 50, 1.0).front().point, 2);
+}
+
+TEST(Matching, FeaturesThatTurnedOtherwiseAreDropped) {
+  std::vector<Match> matches;
+  for (int i = 0; i < 40; ++i) matches.push_back({i, i, 0, 30.0F});
+  matches.push_back({40, 40, 0, 200.0F});
+  const auto kept = consistently_turned(matches);
+  EXPECT_EQ(kept.size(), 40u);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/local_map.hpp"
+#include "core/odometry/mapping.hpp"
+
+namespace stillpoint {
+namespace {
+
+const Camera kCamera = camera_by_name("freiburg3");
+
+/// A wall of points two metres off, and keyframes that slide along it; every keyframe sees every point exactly.
+class Wall : public ::testing::Test {
+ protected:
+  static constexpr int kPoints = 60;
+
+  void SetUp() override {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> x(-0.8, 0.8), y(-0.6, 0.6), z(1.8, 2.4);
+    for (int i = 0; i < kPoints; ++i) truth_.emplace_back(x(random), y(random), z(random));
+  }
+
+  static Pose camera_at(double x) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = -x;
+    return pose;
+  }
+
+  std::shared_ptr<const FeatureSet> see(const Pose& camera_from_world) const {
+    auto features = std::make_shared<FeatureSet>();
+    for (int i = 0; i < kPoints; ++i) {
+      const Eigen::Vector3d p = camera_from_world * truth_[static_cast<std::size_t>(i)];
+      const Eigen::Vector2d u = kCamera.project(p);
+      features->keypoints.emplace_back(static_cast<float>(u.x()), static_cast<float>(u.y()), 31.0F, 0.0F);
+      features->keypoints.back().octave = 0;
+      features->undistorted.emplace_back(static_cast<float>(u.x()), static_cast<float>(u.y()));
+      Descriptor d{};
+      d[static_cast<std::size_t>(i) / 32] = std::uint64_t{0xFFFF} << (i % 32);
+      features->descriptors.push_back(d);
+      features->depth.push_back(static_cast<float>(p.z()));
+    }
+    features->build_index(kCamera.width, kCamera.height);
+    return features;
+  }
+
+  /// Adds a keyframe; it sees the points of `ids`, feature i being point i.
+  int add(double x, const std::vector<int>& ids) {
+    Keyframe keyframe;
+    keyframe.camera_from_world = camera_at(x);
+    keyframe.features = see(keyframe.camera_from_world);
+    keyframe.points = ids;
+    return map_.add_keyframe(keyframe);
+  }
+
+  std::vector<int> begin() {
+    const int first = add(0.0, std::vector<int>(kPoints, kNone));
+    EXPECT_EQ(create_points(map_, first, kCamera, config_), kPoints);
+    return map_.keyframe(first).points;
+  }
+
+  LocalMap map_;
+  Config config_;
+  std::vector<Eigen::Vector3d> truth_;
+};
+
+TEST_F(Wall, PointsAreMadeWhereDepthSaysTheyAre) {
+  const auto ids = begin();
+  for (int i = 0; i < kPoints; ++i)
+    EXPECT_LT((map_.point(ids[static_cast<std::size_t>(i)]).position - truth_[static_cast<std::size_t>(i)]).norm(), 1e-5);
+}
+
+TEST_F(Wall, CovisibilityCountsSharedPoints) {
+  auto ids = begin();
+  std::fill(ids.begin() + 20, ids.end(), kNone);
+  add(0.1, ids);
+  EXPECT_EQ(map_.covisible(0), (std::vector<std::pair<int, int>>{{1, 20}}));
+  EXPECT_TRUE(map_.covisible(0, 21).empty());
+}
+
+TEST_F(Wall, ObservationsComeAndGoOnBothSides) {
+  const auto ids = begin();
+  add(0.1, ids);
+  map_.remove_observation(ids[3], 1);
+  EXPECT_EQ(map_.keyframe(1).points[3], kNone);
+  EXPECT_EQ(map_.point(ids[3]).observations.size(), 1u);
+  map_.remove_observation(ids[3], 0);
+  EXPECT_FALSE(map_.has_point(ids[3])) << "a point nobody sees is gone";
+  map_.remove_point(ids[4]);
+  EXPECT_EQ(map_.keyframe(0).points[4], kNone);
+  EXPECT_EQ(map_.keyframe(1).points[4], kNone);
+}
+
+TEST_F(Wall, FusionJoinsTwinsOfNeighbours) {
+  auto ids = begin();
+  // The second keyframe missed ten matches and made points of its own there.
+  std::fill(ids.begin(), ids.begin() + 10, kNone);
+  const int second = add(0.1, ids);
+  EXPECT_EQ(create_points(map_, second, kCamera, config_), 10);
+  EXPECT_EQ(map_.point_count(), kPoints + 10u);
+  EXPECT_GE(fuse_neighbours(map_, second, kCamera, config_), 10);
+  EXPECT_EQ(map_.point_count(), static_cast<std::size_t>(kPoints));
+  for (const int id : map_.keyframe(second).points) EXPECT_EQ(map_.point(id).observations.size(), 2u);
+}
+
+TEST_F(Wall, PointsSeldomFoundAreCulled) {
+  const auto ids = begin();
+  map_.point(ids[0]).visible = 10;
+  map_.point(ids[0]).found = 2;  // 20 %, below the 25 % asked for
+  map_.point(ids[1]).visible = 10;
+  map_.point(ids[1]).found = 3;
+  EXPECT_EQ(cull_points(map_, 0, config_), 1);
+  EXPECT_FALSE(map_.has_point(ids[0]));
+  EXPECT_TRUE(map_.has_point(ids[1]));
+}
+
+TEST_F(Wall, RedundantKeyframesRetireAndTheirPosesStayKnown) {
+  const auto ids = begin();
+  for (const double x : {0.05, 0.1, 0.15, 0.2}) add(x, ids);
+  EXPECT_GT(cull_keyframes(map_, 4, config_), 0);
+  ASSERT_FALSE(map_.retired().empty());
+  EXPECT_TRUE(map_.has_keyframe(0)) << "the first holds the map in place";
+  EXPECT_TRUE(map_.has_keyframe(4)) << "the newest is not judged yet";
+  for (const auto& retired : map_.retired())
+    EXPECT_NEAR(map_.pose_of(retired.id).translation().x(), -0.05 * retired.id, 1e-12);
+  for (const int id : ids)
+    for (const Observation& o : map_.point(id).observations) EXPECT_TRUE(map_.has_keyframe(o.keyframe));
+}
+
+TEST_F(Wall, TheMapNeverOutgrowsItsBound) {
+  config_.map.max_keyframes = 5;
+  config_.map.cull_redundancy = 1.0;
+  const auto ids = begin();
+  for (int k = 1; k < 20; ++k) {
+    const int id = add(0.02 * k, ids);
+    cull_keyframes(map_, id, config_);
+    EXPECT_LE(map_.keyframes().size(), 5u);
+  }
+  EXPECT_NEAR(map_.pose_of(0).translation().x(), 0.0, 1e-12);
+  EXPECT_NEAR(map_.pose_of(10).translation().x(), -0.2, 1e-12);
+}
+
+TEST_F(Wall, BundleAdjustmentUndoesADisturbance) {
+  const auto ids = begin();
+  for (const double x : {0.1, 0.2, 0.3}) add(x, ids);
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 0.01);
+  for (int k = 1; k <= 3; ++k) {
+    Vector6d xi;
+    for (int i = 0; i < 6; ++i) xi[i] = noise(random);
+    map_.keyframe(k).camera_from_world = se3_exp(xi) * map_.keyframe(k).camera_from_world;
+  }
+  for (const int id : ids) map_.point(id).position += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  config_.bundle.iterations = 50;
+  const BundleProblem problem = make_bundle_problem(map_, 3, config_);
+  EXPECT_EQ(problem.views.size(), 4u);
+  EXPECT_EQ(problem.edges.size(), 4u * kPoints);
+  EXPECT_EQ(std::count_if(problem.views.begin(), problem.views.end(), [](const auto& v) { return v.fixed; }), 1);
+
+  const BundleSolution solution = solve_bundle(problem, kCamera, config_.bundle, 1.0);
+  ASSERT_TRUE(solution.usable);
+  EXPECT_GT(solution.initial_rms_px, 1.0);
+  EXPECT_LT(solution.rms_px, 0.05);
+  apply_bundle(solution, map_);
+  for (int k = 1; k <= 3; ++k)
+    EXPECT_LT((map_.keyframe(k).camera_from_world.inverse() * camera_at(0.1 * k)).translation().norm(), 2e-3) << k;
+}
+
+TEST_F(Wall, BundleAdjustmentDropsWrongObservations) {
+  const auto ids = begin();
+  for (const double x : {0.1, 0.2, 0.3}) add(x, ids);
+  BundleProblem problem = make_bundle_problem(map_, 3, config_);
+  problem.edges[7].pixel.x() += 40.0;
+  const auto keyframe = problem.views[static_cast<std::size_t>(problem.edges[7].view)].keyframe;
+  const auto point = problem.points[static_cast<std::size_t>(problem.edges[7].point)].point;
+  const BundleSolution solution = solve_bundle(problem, kCamera, config_.bundle, 1.0);
+  ASSERT_TRUE(solution.usable);
+  EXPECT_EQ(std::count(solution.outlier.begin(), solution.outlier.end(), 1), 1);
+  EXPECT_TRUE(solution.outlier[7]);
+  apply_bundle(solution, map_);
+  for (const Observation& o : map_.point(point).observations) EXPECT_NE(o.keyframe, keyframe);
+}
+
+TEST_F(Wall, AnEmptyBundleIsNotUsable) {
+  EXPECT_FALSE(solve_bundle({}, kCamera, config_.bundle, 1.0).usable);
+}
+
+TEST_F(Wall, ACopyIsACheckpoint) {
+  const auto ids = begin();
+  const LocalMap checkpoint = map_;
+  add(0.1, ids);
+  map_.remove_point(ids[0]);
+  EXPECT_EQ(checkpoint.keyframes().size(), 1u);
+  EXPECT_TRUE(checkpoint.has_point(ids[0]));
+  EXPECT_EQ(checkpoint.keyframe(0).points[0], ids[0]);
+}
+
+}  // namespace
+}  // namespace stillpoint

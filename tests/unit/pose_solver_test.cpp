@@ -1,0 +1,121 @@
+#include "core/odometry/pose_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace stillpoint {
+namespace {
+
+const Camera kCamera = camera_by_name("freiburg3");
+
+Pose some_pose() {
+  Vector6d xi;
+  xi << 0.1, -0.05, 0.2, 0.03, -0.08, 0.02;
+  return se3_exp(xi);
+}
+
+/// Observations of points 1 to 4 m ahead of the camera at `camera_from_world`, with pixel noise.
+std::vector<PoseObservation> observe(const Pose& camera_from_world, int count, double noise_px, bool depth,
+                                     unsigned seed = 7) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> x(20, 620), y(20, 460), z(1, 4);
+  std::normal_distribution<double> noise(0, noise_px);
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d pixel(x(random), y(random));
+    const Eigen::Vector3d in_camera = kCamera.back_project(pixel, z(random));
+    PoseObservation o;
+    o.point_in_world = camera_from_world.inverse() * in_camera;
+    o.pixel = pixel + Eigen::Vector2d(noise(random), noise(random));
+    o.depth = depth ? in_camera.z() : 0.0;
+    observations.push_back(o);
+  }
+  return observations;
+}
+
+double distance(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
+
+TEST(RefinePose, FindsThePoseOfExactObservations) {
+  for (const bool depth : {false, true}) {
+    const auto observations = observe(some_pose(), 60, 0.0, depth);
+    const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
+    EXPECT_LT(distance(refined.camera_from_world, some_pose()), 1e-6);
+    EXPECT_LT(rotation_angle(refined.camera_from_world.linear().transpose() * some_pose().linear()), 1e-6);
+    EXPECT_EQ(refined.inliers, 60);
+    EXPECT_GT(refined.rms_before_px, 10.0);
+    EXPECT_LT(refined.rms_px, 1e-4);
+  }
+}
+
+TEST(RefinePose, TellsOutliersApart) {
+  auto observations = observe(some_pose(), 100, 0.5, true);
+  for (std::size_t i = 0; i < 30; ++i) observations[i].pixel.x() += 25.0;
+  const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
+  EXPECT_LT(distance(refined.camera_from_world, some_pose()), 0.01);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_FALSE(refined.inlier[i]) << i;
+  EXPECT_GE(refined.inliers, 65);
+}
+
+TEST(RefinePose, ResidualsArePixelDistances) {
+  auto observations = observe(Pose::Identity(), 40, 0.0, false);
+  observations[5].pixel += Eigen::Vector2d(3.0, 4.0);  // 5 px off
+  const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
+  EXPECT_FALSE(refined.inlier[5]);
+  EXPECT_NEAR(refined.residual_px[5], 5.0, 0.05);
+}
+
+TEST(RefinePose, InformationIsTheInverseOfTheSpread) {
+  // Poses estimated from many draws of noise scatter as the inverse of the information says (1 px noise, sigma 1).
+  const int draws = 200;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+  Eigen::Vector3d predicted = Eigen::Vector3d::Zero();
+  TrackingConfig config;
+  config.depth_weight = 0.0;
+  for (int d = 0; d < draws; ++d) {
+    auto observations = observe(Pose::Identity(), 80, 0.0, false);
+    std::mt19937 random(static_cast<unsigned>(d));
+    std::normal_distribution<double> noise(0, 0.5);
+    for (auto& o : observations) {
+      o.pixel += Eigen::Vector2d(noise(random), noise(random));
+      o.sigma_px = 0.5;
+    }
+    const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), config);
+    const Eigen::Vector3d t = se3_log(refined.camera_from_world).head<3>();
+    sum += t;
+    squares += t.cwiseAbs2();
+    const Matrix6d covariance = refined.information.inverse();
+    predicted += covariance.diagonal().head<3>();
+  }
+  const Eigen::Vector3d variance = squares / draws - (sum / draws).cwiseAbs2();
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(variance[axis] / (predicted[axis] / draws), 1.0, 0.35) << axis;
+}
+
+TEST(RefinePose, TooFewObservationsLeaveThePoseAlone) {
+  const PoseRefinement refined = refine_pose(kCamera, observe(Pose::Identity(), 2, 0, true), some_pose(), {});
+  EXPECT_EQ(refined.inliers, 0);
+  EXPECT_LT(distance(refined.camera_from_world, some_pose()), 1e-12);
+}
+
+TEST(InitialPose, EpnpInRansacSurvivesHalfOutliers) {
+  auto observations = observe(some_pose(), 120, 0.5, false);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(0, 640), y(0, 480);
+  for (std::size_t i = 0; i < 60; ++i) observations[i].pixel = {x(random), y(random)};
+  const auto initial = initial_pose(kCamera, observations, {});
+  ASSERT_TRUE(initial);
+  EXPECT_LT(distance(initial->camera_from_world, some_pose()), 0.05);
+  EXPECT_GE(initial->inliers.size(), 50u);
+}
+
+TEST(InitialPose, NoiseAloneGivesNone) {
+  auto observations = observe(some_pose(), 60, 0.0, false);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(0, 640), y(0, 480);
+  for (auto& o : observations) o.pixel = {x(random), y(random)};
+  EXPECT_FALSE(initial_pose(kCamera, observations, {}));
+  EXPECT_FALSE(initial_pose(kCamera, observe(some_pose(), 5, 0, false), {}));
+}
+
+}  // namespace
+}  // namespace stillpoint
