@@ -1,0 +1,260 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "app/motion_figures.hpp"
+#include "app/motion_pictures.hpp"
+#include "core/config.hpp"
+#include "core/error.hpp"
+#include "core/motion/detect_motion.hpp"
+#include "core/sequence/image_file.hpp"
+#include "core/sequence/source.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MotionOptions {
+  std::string first;   ///< the previous image, or a sequence
+  std::string second;  ///< the next image; empty for a sequence
+  std::string out;
+  std::string config = "";
+  std::vector<std::string> assignments;  ///< `motion.key=value`
+  std::string frames;                    ///< A:B:STEP
+  bool all_rounds = false;
+  bool force = false;
+};
+
+/// Frames of a sequence, first to end (exclusive) by step.
+struct FrameRange {
+  int begin = 0, end = 0, step = 1;
+};
+
+FrameRange parse_range(const std::string& text, int size) {
+  FrameRange range{0, size, 1};
+  if (text.empty()) return range;
+  const auto wrong = [&text] {
+    return InputError(
+        fmt::format("--frames {}: expected A:B:STEP, whole numbers with 0 <= A < B and STEP >= 1; each "
+                    "may be left out",
+                    text));
+  };
+  std::vector<std::string> parts(1);
+  for (const char letter : text) {
+    if (letter == ':') {
+      parts.emplace_back();
+    } else if (std::isdigit(static_cast<unsigned char>(letter)) != 0 && parts.back().size() < 9) {
+      parts.back() += letter;
+    } else {
+      throw wrong();
+    }
+  }
+  if (parts.size() > 3) throw wrong();
+  if (!parts[0].empty()) range.begin = std::stoi(parts[0]);
+  if (parts.size() == 1) range.end = range.begin + 1;
+  if (parts.size() > 1 && !parts[1].empty()) range.end = std::min(size, std::stoi(parts[1]));
+  if (parts.size() > 2 && !parts[2].empty()) range.step = std::stoi(parts[2]);
+  if (range.step < 1 || range.begin >= range.end)
+    throw InputError(fmt::format("--frames {}: names none of the {} frames there are", text, size));
+  return range;
+}
+
+Config config_of(const MotionOptions& options) {
+  Config config = options.config.empty() ? Config{} : load_config(options.config);
+  for (const std::string& assignment : options.assignments) set_parameter(config, assignment);
+  return config;
+}
+
+/// The out folder with its two lists; pictures go beside them.
+class MotionOutput {
+ public:
+  MotionOutput(const fs::path& folder, bool force, bool all_rounds)
+      : folder_(folder), all_rounds_(all_rounds), pairs_(nlohmann::json::array()) {
+    std::error_code failed;
+    if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
+      throw InputError(
+          fmt::format("{}: is a file, where a folder for the results is wanted", folder.string()));
+    for (const char* name : {"motion.csv", "motion.json"})
+      if (!force && fs::exists(folder / name, failed))
+        throw InputError(
+            fmt::format("{}: holds earlier results ({}); --force overwrites them", folder.string(), name));
+    make_folder(folder);
+    csv_.open(folder / "motion.csv");
+    csv_ << motion_csv_heading() << '\n' << std::flush;
+    if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder / "motion.csv").string()));
+  }
+
+  /// @param subfolder of the pair's pictures; empty = the out folder itself
+  void add(const std::string& subfolder, const std::string& reference_name, const std::string& target_name,
+           const MotionTrace& trace, const cv::Mat& reference, const cv::Mat& target) {
+    const fs::path folder = folder_ / subfolder;
+    make_folder(folder);
+    if (all_rounds_) {
+      for (std::size_t i = 0; i < trace.rounds.size(); ++i) {
+        const fs::path round_folder = folder / fmt::format("round_{}", i + 1);
+        make_folder(round_folder);
+        write_round_pictures(round_folder, trace.rounds[i], reference, target);
+      }
+    } else if (!trace.rounds.empty()) {
+      write_round_pictures(folder, trace.rounds.back(), reference, target);
+    }
+    add_figures(reference_name, target_name, trace);
+  }
+
+  /// A pair's figures alone.
+  void add_figures(const std::string& reference_name, const std::string& target_name,
+                   const MotionTrace& trace) {
+    csv_ << motion_csv_row(reference_name, target_name, trace) << '\n' << std::flush;
+    if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder_ / "motion.csv").string()));
+    pairs_.push_back(motion_json(reference_name, target_name, trace));
+  }
+
+  void finish(const Config& config) {
+    std::ofstream json(folder_ / "motion.json");
+    json << nlohmann::json{{"reference_gap", config.motion.reference_gap}, {"pairs", pairs_}}.dump(1) << '\n';
+    std::ofstream toml(folder_ / "config.toml");
+    toml << to_toml(config);
+    if (!json.flush() || !toml.flush())
+      throw InputError(fmt::format("{}: cannot be written", folder_.string()));
+  }
+
+ private:
+  static void make_folder(const fs::path& folder) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed || !fs::is_directory(folder))
+      throw InputError(fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
+  }
+
+  fs::path folder_;
+  bool all_rounds_;
+  std::ofstream csv_;
+  nlohmann::json pairs_;
+};
+
+void print_pair(const std::string& reference, const std::string& target, const MotionTrace& trace) {
+  std::string line = fmt::format("{} -> {}: ", reference, target);
+  if (!trace.mask().empty())
+    line += fmt::format("{:.1f} % moves, {} regions, {} rounds", 100.0 * trace.rounds.back().mask_share,
+                        trace.rounds.back().regions.size(), trace.rounds.size());
+  if (!trace.note.empty()) line += (trace.mask().empty() ? "" : "; ") + trace.note;
+  std::printf("%s\n", line.c_str());
+}
+
+cv::Mat to_colour(const cv::Mat& image) {
+  if (image.channels() == 3) return image;
+  cv::Mat colour;
+  cv::cvtColor(image, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+cv::Mat read_whole_image(const std::string& path) {
+  const ImageRead read = read_image(path);
+  if (read.image.empty()) throw InputError(read.problem);
+  return to_8bit(read.image);
+}
+
+void run_pair(const MotionOptions& options, const Config& config) {
+  if (!options.frames.empty())
+    throw InputError("--frames chooses among a sequence's frames, and two images were given");
+  const cv::Mat reference = read_whole_image(options.first), target = read_whole_image(options.second);
+  if (reference.size() != target.size())
+    throw InputError(fmt::format("{} is {}x{} and {} is {}x{}: the two images must be of one size",
+                                 options.first, reference.cols, reference.rows, options.second, target.cols,
+                                 target.rows));
+  const MotionTrace trace =
+      detect_motion(to_gray(reference), to_gray(target), config.motion, config.run.threads);
+  MotionOutput output(options.out, options.force, options.all_rounds);
+  output.add("", options.first, options.second, trace, to_colour(reference), to_colour(target));
+  output.finish(config);
+  print_pair(options.first, options.second, trace);
+}
+
+cv::Mat picture_of(const Frame& frame) { return to_colour(frame.colour.empty() ? frame.gray : frame.colour); }
+
+/// What is wrong with a pair of frames before motion detection sees them; empty when all is well.
+std::string problem_of(const Frame& reference, const Frame& target) {
+  for (const Frame* frame : {&reference, &target})
+    if (!frame->readable()) return "no mask: " + frame->problem;
+  if (reference.gray.size() != target.gray.size())
+    return fmt::format("no mask: frame {} is {}x{} and frame {} is {}x{}", reference.index,
+                       reference.gray.cols, reference.gray.rows, target.index, target.gray.cols,
+                       target.gray.rows);
+  return {};
+}
+
+void run_sequence(const MotionOptions& options, const Config& config) {
+  const std::unique_ptr<FrameSource> source = open_sequence(options.first);
+  const int gap = config.motion.reference_gap;
+  FrameRange range = parse_range(options.frames, source->size());
+  while (range.begin < gap && range.begin < range.end) range.begin += range.step;
+  if (range.begin >= range.end)
+    throw InputError(fmt::format("{}: of its {} frames none of those chosen has a reference {} frames back",
+                                 options.first, source->size(), gap));
+  MotionOutput output(options.out, options.force, options.all_rounds);
+  int pairs = 0, without_mask = 0;
+  for (int index = range.begin; index < range.end; index += range.step) {
+    const Frame reference = source->read(index - gap), target = source->read(index);
+    const std::string reference_name = std::to_string(index - gap), target_name = std::to_string(index);
+    MotionTrace trace;
+    trace.note = problem_of(reference, target);
+    if (trace.note.empty()) {
+      trace = detect_motion(reference.gray, target.gray, config.motion, config.run.threads);
+      output.add(fmt::format("{:06d}", index), reference_name, target_name, trace, picture_of(reference),
+                 picture_of(target));
+    } else {
+      output.add_figures(reference_name, target_name, trace);
+    }
+    print_pair(reference_name, target_name, trace);
+    ++pairs;
+    if (trace.mask().empty()) ++without_mask;
+  }
+  output.finish(config);
+  std::printf("%d pairs, %d of them without a mask; figures in %s\n", pairs, without_mask,
+              (fs::path(options.out) / "motion.csv").c_str());
+}
+
+}  // namespace
+
+void add_motion_command(CLI::App& app) {
+  auto options = std::make_shared<MotionOptions>();
+  CLI::App* command = app.add_subcommand(
+      "motion",
+      "What moves between two images, or along a folder of colour frames: masks, differences and figures");
+  command
+      ->add_option("first", options->first, "The previous image; or a sequence, when no next image is given")
+      ->required();
+  command->add_option("next", options->second, "The next image, of the same size");
+  command->add_option("--out", options->out, "Folder for the results, made if missing")->required();
+  command->add_option("--config", options->config, "A preset's name or a TOML file");
+  command->add_option("--set", options->assignments,
+                      "One parameter, as motion.key=value; may be given again");
+  command->add_option(
+      "--frames", options->frames,
+      "Target frames A:B:STEP of a sequence, B not among them; references lie motion.reference_gap "
+      "frames back");
+  command->add_flag("--all-rounds", options->all_rounds, "Pictures of every round, not of the last alone");
+  command->add_flag("--force", options->force, "Overwrite earlier results");
+  command->callback([options] {
+    const Config config = config_of(*options);
+    if (options->second.empty()) {
+      run_sequence(*options, config);
+    } else {
+      run_pair(*options, config);
+    }
+  });
+}
+
+}  // namespace stillpoint
