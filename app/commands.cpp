@@ -3,7 +3,7 @@
 namespace stillpoint {
 
 void add_commands(CLI::App& app) {
-  (void)app;
+  add_motion_command(app);
 }
 
 }  // namespace stillpoint
