@@ -3,7 +3,7 @@
 namespace stillpoint {
 
 void add_commands(CLI::App& app) {
-  (void)app;
+  add_evaluate(app);
 }
 
 }  // namespace stillpoint

@@ -10,4 +10,6 @@ namespace stillpoint {
 /// All of them, in the order the help lists them.
 void add_commands(CLI::App& app);
 
+void add_evaluate(CLI::App& app);
+
 }  // namespace stillpoint
