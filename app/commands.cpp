@@ -3,6 +3,9 @@
 namespace stillpoint {
 
 void add_commands(CLI::App& app) {
+  add_run_command(app);
+  add_evaluate_command(app);
+  add_benchmark_command(app);
   add_motion_command(app);
 }
 

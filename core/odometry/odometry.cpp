@@ -35,11 +35,11 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
       OrbFeatures found = extractor_.extract(frame.gray);
       return std::pair(std::move(found), watch.milliseconds());
     });
-    const cv::Mat mask = detect(frame, known_mask, result);
+    detect(frame, known_mask, result);
     const auto [found, feature_ms] = features.get();
     record.ms.features = feature_ms;
 
-    Current current = remove_moving(frame, found, mask, record);
+    Current current = remove_moving(frame, found, result.mask, record);
     if (last_)
       track(frame, current, record);
     else
@@ -74,12 +74,13 @@ void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
   record.ms.bundle += watch.milliseconds();
 }
 
-cv::Mat Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
-  if (config_.run.method == "none") return {};
+void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
+  if (config_.run.method == "none") return;
   if (config_.run.method == "oracle") {
-    if (!known_mask.empty())
-      result.record.mask_share = static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
-    return known_mask;
+    if (known_mask.size() != frame.gray.size()) return;
+    result.mask = known_mask;
+    result.record.mask_share = static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
+    return;
   }
   const Stopwatch watch;
   const auto target = std::make_shared<const MotionFrame>(prepare_motion_frame(frame.gray, config_.motion));
@@ -97,7 +98,7 @@ cv::Mat Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameRes
   references_.push_back(target);
   while (static_cast<int>(references_.size()) > config_.motion.reference_gap) references_.pop_front();
   result.record.ms.motion = watch.milliseconds();
-  return result.motion.mask();
+  result.mask = result.motion.mask();
 }
 
 Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,

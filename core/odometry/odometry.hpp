@@ -22,7 +22,8 @@ namespace stillpoint {
 /// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
 struct FrameResult {
   FrameRecord record;
-  MotionTrace motion;
+  MotionTrace motion;  ///< what the method's motion stage saw; without rounds where it has none
+  cv::Mat mask;        ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
 /// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds moving
@@ -66,7 +67,7 @@ class Odometry {
   };
 
   void apply_due_bundle(FrameRecord& record, bool now);
-  [[nodiscard]] cv::Mat detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
+  void detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
   [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
                                       FrameRecord& record) const;
   void initialise(const Frame& frame, Current& current, FrameRecord& record);

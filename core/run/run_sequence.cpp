@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <future>
+#include <opencv2/features2d.hpp>
 
 #include "core/sequence/prefetch.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -36,6 +38,23 @@ void collect_trajectories(const LocalMap& map, RunResult& result) {
   }
 }
 
+/// EVALUATION.md's unit of speed: one detectAndCompute of 1000 features on this frame, by OpenCV and one thread.
+double orb_unit_ms(const cv::Mat& gray) {
+  static const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000, 1.2F, 8);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors;
+  const Stopwatch watch;
+  orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors);
+  return watch.milliseconds();
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 RunResult run_sequence(const FrameSource& source, const Config& config, const RunOptions& options) {
@@ -47,18 +66,24 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
 
   Odometry odometry(source.camera(), config);
   Prefetcher prefetcher(source, options.first, end, std::max(1, config.run.threads));
+  std::vector<double> units;
   for (int index = options.first; index < end; ++index) {
     if (options.stop && *options.stop) {
       result.interrupted = true;
       break;
     }
+    // The truth is read beside tracking; only `oracle`, which is told, waits for it.
+    auto truth = std::async(oracle ? std::launch::deferred : std::launch::async,
+                            [&source, index] { return source.has_masks() ? source.truth(index).moving : cv::Mat(); });
     const Frame frame = prefetcher.next();
-    FrameTruth truth;
-    if (oracle || (options.on_frame && source.has_masks())) truth = source.truth(index);
-    FrameResult frame_result = odometry.process(frame, oracle ? truth.moving : cv::Mat());
-    if (options.on_frame) options.on_frame(frame_result, frame, truth);
-    result.records.push_back(std::move(frame_result.record));
+    const cv::Mat known = oracle ? truth.get() : cv::Mat();
+    FrameResult processed = odometry.process(frame, known);
+    result.scores.push_back(score_frame(processed, oracle ? known : truth.get()));
+    if (options.measure_orb_unit && frame.readable()) units.push_back(orb_unit_ms(frame.gray));
+    if (options.on_frame) options.on_frame(processed);
+    result.records.push_back(std::move(processed.record));
   }
+  result.orb_unit_ms = median(std::move(units));
   odometry.finish();
   collect_trajectories(odometry.map(), result);
   result.keyframes = saved_keyframes(odometry.map());

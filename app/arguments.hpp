@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/sequence/source.hpp"
+
+namespace stillpoint {
+
+/// The options that every command which runs a method shares: where its constants come from.
+struct ConfigArguments {
+  std::string preset;                    ///< a preset's name or a TOML file; empty = defaults
+  std::vector<std::string> assignments;  ///< `section.name=value`
+  std::string method;                    ///< empty = the config's
+  int threads = 0;                       ///< 0 = the config's
+
+  void add_to(CLI::App& command, bool with_method);
+  /// @throws InputError for unknown presets, keys and values out of range.
+  [[nodiscard]] Config config() const;
+};
+
+/// The options that say which frames.
+struct SequenceArguments {
+  std::string camera;  ///< NAME|FILE.toml; empty = the folder tells
+  int frames = 0;      ///< 0 = all
+  int seed = -1;       ///< of generated sequences; negative = the config's
+
+  void add_to(CLI::App& command);
+  /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
+  [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config) const;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/arguments.hpp"
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "core/error.hpp"
+#include "core/evaluation/tables.hpp"
+#include "core/out_folder.hpp"
+#include "core/run/run_report.hpp"
+#include "core/sequence/generated/generated_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct BenchmarkArguments {
+  std::vector<std::string> sequences, methods = {"none", "paper"};
+  std::string out;
+  bool force = false;
+  ConfigArguments config;
+  SequenceArguments frames;
+};
+
+/// `generated:all` stands for every kind.
+std::vector<std::string> expanded(const std::vector<std::string>& sequences) {
+  std::vector<std::string> all;
+  for (const std::string& sequence : sequences) {
+    if (sequence == "generated:all")
+      for (const std::string& kind : generated_kinds()) all.push_back("generated:" + kind);
+    else
+      all.push_back(sequence);
+  }
+  return all;
+}
+
+std::string cell(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
+}
+
+/// What Table 1 leaves out: the other errors, coverage, masks and speed.
+Table details_table(const std::vector<RunReport>& reports) {
+  Table table;
+  table.header = {"sequence", "method", "coverage %", "ATE m", "RPE 1 s m", "RPE 1 s deg", "pairs", "RPE 1 frame m",
+                  "mask precision", "recall", "IoU", "forward recall", "removed rightly", "removed wrongly", "median ms",
+                  "p99 ms", "ORB units"};
+  for (const RunReport& r : reports) {
+    std::optional<double> ate, rpe, rpe_deg, rpe_frame;
+    int pairs = 0;
+    if (r.evaluation && r.evaluation->ate.translation_m.count > 0) ate = r.evaluation->ate.translation_m.rmse;
+    if (r.evaluation && (pairs = r.evaluation->rpe_time.translation_m.count) > 0) {
+      rpe = r.evaluation->rpe_time.translation_m.rmse;
+      rpe_deg = r.evaluation->rpe_time.rotation_deg.rmse;
+    }
+    if (r.evaluation && r.evaluation->rpe_frame.translation_m.count > 0) rpe_frame = r.evaluation->rpe_frame.translation_m.rmse;
+    const bool masks = r.scores.known && r.method != "none";
+    table.rows.push_back({r.sequence, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4), cell(rpe, 4),
+                          cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
+                          masks ? cell(r.scores.mask.precision(), 3) : "-", masks ? cell(r.scores.mask.recall(), 3) : "-",
+                          masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.forward_mask.recall(), 3) : "-",
+                          masks ? std::to_string(r.scores.removal.removed_rightly) : "-",
+                          masks ? std::to_string(r.scores.removal.removed_wrongly) : "-",
+                          fmt::format("{:.1f}", r.speed.median_ms), fmt::format("{:.1f}", r.speed.p99_ms),
+                          fmt::format("{:.2f}", r.speed.units)});
+  }
+  return table;
+}
+
+BenchmarkCell cell_of(const RunReport& report) {
+  BenchmarkCell result;
+  result.method = report.method;
+  result.coverage = report.coverage;
+  if (report.evaluation && report.evaluation->rpe_time.translation_m.count > 0) {
+    result.rpe_m = report.evaluation->rpe_time.translation_m.rmse;
+    result.pairs = report.evaluation->rpe_time.translation_m.count;
+  }
+  return result;
+}
+
+void write_tables(const std::filesystem::path& folder, const Table& table_1, const Table& details) {
+  write_text_file(folder / "table1.md", to_markdown(table_1));
+  write_text_file(folder / "table1.csv", to_csv(table_1));
+  write_text_file(folder / "details.md", to_markdown(details));
+  write_text_file(folder / "details.csv", to_csv(details));
+}
+
+void benchmark(const BenchmarkArguments& arguments) {
+  Config config = arguments.config.config();
+  for (const std::string& method : arguments.methods) set_parameter(config, "run.method=" + method);
+  if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
+
+  std::vector<BenchmarkRow> rows;
+  std::vector<RunReport> reports;
+  for (const std::string& sequence : expanded(arguments.sequences)) {
+    const auto source = arguments.frames.open(sequence, config);
+    if (!source->has_depth()) throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
+    BenchmarkRow row{source->name(), {}};
+    for (const std::string& method : arguments.methods) {
+      set_parameter(config, "run.method=" + method);
+      RunOptions options;
+      options.count = arguments.frames.frames;
+      options.stop = &stop_requested();
+      options.measure_orb_unit = true;
+      const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
+      Progress progress(fmt::format("{} ({})", source->name(), method), total);
+      options.on_frame = [&progress](const FrameResult& frame) { progress.advance(std::string(to_string(frame.record.status))); };
+      const RunResult result = run_sequence(*source, config, options);
+      if (result.interrupted) break;
+      reports.push_back(report_on(result, *source));
+      row.cells.push_back(cell_of(reports.back()));
+    }
+    rows.push_back(std::move(row));
+    // After each sequence, so that an interrupted benchmark keeps what it has.
+    if (!arguments.out.empty()) write_tables(arguments.out, table_one(rows, arguments.methods), details_table(reports));
+    if (stop_requested()) break;
+  }
+  fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
+             to_markdown(table_one(rows, arguments.methods)), to_markdown(details_table(reports)));
+  if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
+}
+
+}  // namespace
+
+void add_benchmark_command(CLI::App& app) {
+  const auto arguments = std::make_shared<BenchmarkArguments>();
+  CLI::App* command =
+      app.add_subcommand("benchmark", "Run sequences by several methods and print the paper's Table 1 with our columns");
+  command->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")->required();
+  command->add_option("--methods", arguments->methods, "Methods to compare, separated by commas")->delimiter(',')->capture_default_str();
+  command->add_option("--out", arguments->out, "Folder for the tables, as Markdown and CSV");
+  command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
+  arguments->config.add_to(*command, false);
+  arguments->frames.add_to(*command);
+  command->callback([arguments] { benchmark(*arguments); });
+}
+
+}  // namespace stillpoint

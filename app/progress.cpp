@@ -1,0 +1,63 @@
+#include "app/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+
+namespace stillpoint {
+namespace {
+
+std::atomic<bool> stop_flag{false};
+
+extern "C" void request_stop(int signal) {
+  stop_flag = true;
+  std::signal(signal, SIG_DFL);
+}
+
+std::string clock_text(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+const std::atomic<bool>& stop_requested() {
+  static const bool installed = [] {
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    return true;
+  }();
+  (void)installed;
+  return stop_flag;
+}
+
+Progress::Progress(std::string title, int total)
+    : title_(std::move(title)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::advance(const std::string& remark) {
+  constexpr double kBarInterval = 100.0, kLineInterval = 5000.0;  // ms
+  constexpr int kBarWidth = 30;
+  ++done_;
+  const double elapsed = watch_.milliseconds();
+  if (done_ < total_ && elapsed - last_shown_ms_ < (terminal_ ? kBarInterval : kLineInterval)) return;
+  last_shown_ms_ = elapsed;
+  const double rate = done_ / (elapsed / 1000.0);
+  const std::string figures =
+      fmt::format("{}/{}  {:.1f} frames/s  {} left  {}", done_, total_, rate, clock_text((total_ - done_) / rate), remark);
+  if (terminal_) {
+    const auto filled = static_cast<std::size_t>(kBarWidth * done_ / total_);
+    fmt::print(stderr, "\r\033[K{} [{}{}] {}", title_, std::string(filled, '#'), std::string(kBarWidth - filled, '.'), figures);
+    std::fflush(stderr);
+  } else {
+    fmt::print(stderr, "{}: {}\n", title_, figures);
+  }
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "core/stopwatch.hpp"
+
+namespace stillpoint {
+
+/// Turns true at the first Ctrl-C (or SIGTERM); a second one ends the program at once.
+[[nodiscard]] const std::atomic<bool>& stop_requested();
+
+/// How far a long job is, on standard error: a bar with rate and remaining time on a terminal, a plain line now and then otherwise.
+class Progress {
+ public:
+  Progress(std::string title, int total);
+  /// Clears the bar.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// One more is done; `remark` says what state things are in, in a word or two.
+  void advance(const std::string& remark);
+
+ private:
+  std::string title_;
+  int total_, done_ = 0;
+  bool terminal_;
+  Stopwatch watch_;
+  double last_shown_ms_ = 0.0;
+};
+
+}  // namespace stillpoint

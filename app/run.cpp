@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/arguments.hpp"
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "core/error.hpp"
+#include "core/run/run_folder.hpp"
+#include "core/run/run_report.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct RunArguments {
+  std::string sequence, out;
+  bool force = false, measure_unit = false;
+  ConfigArguments config;
+  SequenceArguments frames;
+};
+
+void run(const RunArguments& arguments) {
+  const Config config = arguments.config.config();
+  const auto source = arguments.frames.open(arguments.sequence, config);
+  if (!source->has_depth())
+    throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint motion` works without",
+                                 arguments.sequence));
+  if (config.run.method == "oracle" && !source->has_masks())
+    throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", arguments.sequence));
+  if (!arguments.out.empty()) prepare_run_folder(arguments.out, arguments.force);
+
+  RunOptions options;
+  options.count = arguments.frames.frames;
+  options.stop = &stop_requested();
+  options.measure_orb_unit = arguments.measure_unit;
+  const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
+  RunResult result;
+  {
+    Progress progress(fmt::format("{} ({})", source->name(), config.run.method), total);
+    options.on_frame = [&progress](const FrameResult& frame) {
+      progress.advance(std::string(to_string(frame.record.status)));
+    };
+    result = run_sequence(*source, config, options);
+  }
+  const RunReport report = report_on(result, *source);
+  if (!arguments.out.empty()) write_run(arguments.out, result, report, *source);
+  if (result.interrupted)
+    fmt::print("stopped after {} of {} frames; what was done is kept\n", report.frames, total);
+  fmt::print("{}", to_text(report));
+  if (!arguments.out.empty()) fmt::print("  written to    {}\n", arguments.out);
+  if (report.tracked == 0)
+    throw InputError(fmt::format("{}: no frame could be tracked ({})", arguments.sequence,
+                                 result.records.empty() ? "there was none" : result.records.front().note));
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Run odometry over a sequence: trajectory, figures and per-frame data");
+  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command->add_option("--out", arguments->out, "Folder for trajectory, frames.csv, summary.json, config and map");
+  command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
+  command->add_flag("--measure-unit", arguments->measure_unit,
+                    "Also time OpenCV's ORB on every frame, the unit in which speed is compared");
+  arguments->config.add_to(*command, true);
+  arguments->frames.add_to(*command);
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,30 @@
+#include "core/run/frame_scores.hpp"
+
+namespace stillpoint {
+
+FrameScores& FrameScores::operator+=(const FrameScores& other) {
+  known = known || other.known;
+  mask += other.mask;
+  forward_mask += other.forward_mask;
+  removal += other.removal;
+  return *this;
+}
+
+FrameScores score_frame(const FrameResult& result, const cv::Mat& moving) {
+  FrameScores scores;
+  const FrameRecord& record = result.record;
+  if (moving.empty() || record.status == FrameStatus::unreadable) return scores;
+  if (!result.mask.empty() && result.mask.size() != moving.size()) return scores;
+  scores.known = true;
+  scores.mask = score_mask(result.mask, moving);
+  scores.forward_mask =
+      score_mask(result.motion.rounds.empty() ? cv::Mat() : result.motion.rounds.back().forward.mask, moving);
+  std::vector<FeatureVerdict> verdicts;
+  verdicts.reserve(record.features.size());
+  for (const FeatureRecord& feature : record.features)
+    verdicts.push_back({feature.pixel, feature.fate == FeatureFate::removed});
+  scores.removal = score_removal(verdicts, moving);
+  return scores;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/evaluation/mask_scores.hpp"
+#include "core/odometry/odometry.hpp"
+
+namespace stillpoint {
+
+/// A frame's masks and removals against what truly moves.
+struct FrameScores {
+  bool known = false;      ///< the truth was there, and the frame had a reference to compare with
+  MaskScore mask;          ///< the method's mask
+  MaskScore forward_mask;  ///< the forward direction's alone, where the method has one
+  RemovalScore removal;    ///< features taken out
+
+  FrameScores& operator+=(const FrameScores& other);
+};
+
+/// Scores a frame just processed.
+/// @param moving CV_8UC1, 255 = moving; empty = not known
+[[nodiscard]] FrameScores score_frame(const FrameResult& result, const cv::Mat& moving);
+
+}  // namespace stillpoint

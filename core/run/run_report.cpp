@@ -1,0 +1,190 @@
+#include "core/run/run_report.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "core/evaluation/evaluation_json.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// FNV-1a over the bytes of numbers.
+class Fingerprint {
+ public:
+  void add(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte, value >>= 8U) hash_ = (hash_ ^ (value & 0xFFU)) * 0x100000001b3U;
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(int value) { add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
+  [[nodiscard]] std::string hex() const { return fmt::format("{:016x}", hash_); }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
+SpeedFigures speed_of(const RunResult& run) {
+  SpeedFigures speed;
+  std::vector<double> totals;
+  for (const FrameRecord& r : run.records) {
+    if (r.status == FrameStatus::unreadable) continue;
+    totals.push_back(r.ms.total);
+    speed.mean.motion += r.ms.motion;
+    speed.mean.features += r.ms.features;
+    speed.mean.matching += r.ms.matching;
+    speed.mean.pose += r.ms.pose;
+    speed.mean.mapping += r.ms.mapping;
+    speed.mean.bundle += r.ms.bundle;
+    speed.mean.total += r.ms.total;
+  }
+  if (totals.empty()) return speed;
+  for (double* sum : {&speed.mean.motion, &speed.mean.features, &speed.mean.matching, &speed.mean.pose,
+                      &speed.mean.mapping, &speed.mean.bundle, &speed.mean.total})
+    *sum /= static_cast<double>(totals.size());
+  speed.median_ms = quantile(totals, 0.5);
+  speed.p99_ms = quantile(totals, 0.99);
+  speed.orb_unit_ms = run.orb_unit_ms;
+  if (run.orb_unit_ms > 0) speed.units = speed.median_ms / run.orb_unit_ms;
+  return speed;
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+nlohmann::ordered_json speed_json(const SpeedFigures& speed) {
+  nlohmann::ordered_json json;
+  json["median_ms"] = speed.median_ms;
+  json["p99_ms"] = speed.p99_ms;
+  json["orb_unit_ms"] = speed.orb_unit_ms > 0 ? nlohmann::ordered_json(speed.orb_unit_ms) : nullptr;
+  json["units"] = speed.units > 0 ? nlohmann::ordered_json(speed.units) : nullptr;
+  json["mean_ms"] = {{"motion", speed.mean.motion},     {"features", speed.mean.features},
+                     {"matching", speed.mean.matching}, {"pose", speed.mean.pose},
+                     {"mapping", speed.mean.mapping},   {"bundle", speed.mean.bundle},
+                     {"total", speed.mean.total}};
+  return json;
+}
+
+/// "12-15, 40": the frames of a status, neighbours joined.
+template <typename Predicate>
+std::string ranges(const std::vector<FrameRecord>& records, Predicate is) {
+  std::string text;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!is(records[i])) continue;
+    std::size_t last = i;
+    while (last + 1 < records.size() && is(records[last + 1])) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", records[i].index);
+    if (last > i) text += fmt::format("-{}", records[last].index);
+    i = last;
+  }
+  return text;
+}
+
+std::string share_text(const std::optional<double>& share) {
+  return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string("-");
+}
+
+}  // namespace
+
+RunReport report_on(const RunResult& run, const FrameSource& source) {
+  RunReport report;
+  report.sequence = source.name();
+  report.method = run.config.run.method;
+  report.frames = static_cast<int>(run.records.size());
+  report.tracked = run.tracked();
+  report.lost = report.frames - report.tracked;
+  report.coverage = report.frames > 0 ? static_cast<double>(report.tracked) / report.frames : 0.0;
+  report.keyframes = static_cast<int>(run.keyframes.size());
+  report.map_points = static_cast<int>(run.points.size());
+  if (!source.ground_truth().empty() && !run.trajectory.empty()) {
+    EvaluationOptions options;
+    options.expected_frames = report.frames;
+    report.evaluation = evaluate_trajectory(source.ground_truth(), run.trajectory, options);
+    report.evaluation_live = evaluate_trajectory(source.ground_truth(), run.live, options);
+  }
+  for (const FrameScores& scores : run.scores) report.scores += scores;
+  report.speed = speed_of(run);
+  report.hash = run_hash(run.records);
+  report.peak_memory_mb = peak_memory_mb();
+  return report;
+}
+
+std::string run_hash(const std::vector<FrameRecord>& records) {
+  Fingerprint print;
+  for (const FrameRecord& r : records) {
+    print.add(r.index);
+    print.add(static_cast<int>(r.status));
+    for (int i = 0; i < 12; ++i) print.add(r.world_from_camera.matrix()(i % 3, i / 3));
+    for (const int figure : {r.features_found, r.features_removed, r.motion_rounds, r.matches, r.inliers, r.map_points,
+                             r.map_keyframes, static_cast<int>(r.keyframe)})
+      print.add(figure);
+    print.add(r.mask_share);
+  }
+  return print.hex();
+}
+
+nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run, const FrameSource& source) {
+  nlohmann::ordered_json json;
+  json["sequence"] = report.sequence;
+  json["camera"] = source.camera().name;
+  json["depth_scale"] = source.camera().depth_scale;
+  json["method"] = report.method;
+  json["frames_in_sequence"] = run.frames_in_sequence;
+  json["frames"] = report.frames;
+  json["interrupted"] = run.interrupted;
+  json["tracked"] = report.tracked;
+  json["coverage"] = report.coverage;
+  json["lost_frames"] = ranges(run.records, [](const FrameRecord& r) { return !r.estimated; });
+  json["unreadable_frames"] = ranges(run.records, [](const FrameRecord& r) { return r.status == FrameStatus::unreadable; });
+  json["keyframes"] = report.keyframes;
+  json["map_points"] = report.map_points;
+  json["run_hash"] = report.hash;
+  json["evaluation"] = report.evaluation ? nlohmann::ordered_json(nlohmann::json(*report.evaluation)) : nullptr;
+  json["evaluation_live"] = report.evaluation_live ? nlohmann::ordered_json(nlohmann::json(*report.evaluation_live)) : nullptr;
+  json["masks"] = nullptr;
+  if (report.scores.known) {
+    json["masks"]["mask"] = nlohmann::json(report.scores.mask);
+    json["masks"]["forward_mask_alone"] = nlohmann::json(report.scores.forward_mask);
+    json["masks"]["removed_features"] = nlohmann::json(report.scores.removal);
+  }
+  json["speed"] = speed_json(report.speed);
+  json["peak_memory_mb"] = report.peak_memory_mb;
+  json["warnings"] = source.warnings();
+  return json;
+}
+
+std::string to_text(const RunReport& report) {
+  std::string text = fmt::format("{}, method {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
+                                 report.sequence, report.method, report.tracked, report.frames, 100.0 * report.coverage,
+                                 report.keyframes, report.map_points);
+  if (report.evaluation && !report.evaluation->matched.empty()) {
+    const TrajectoryEvaluation& e = *report.evaluation;
+    text += fmt::format("  ATE           {:.4f} m RMSE over {} poses\n", e.ate.translation_m.rmse, e.ate.translation_m.count);
+    for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame})
+      text += fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta, rpe->translation_m.rmse,
+                          rpe->rotation_deg.rmse, rpe->translation_m.count);
+  } else {
+    text += "  no ground truth: no errors\n";
+  }
+  if (report.scores.known && report.method != "none")
+    text += fmt::format("  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",
+                        share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),
+                        share_text(report.scores.mask.iou()), report.scores.removal.removed_rightly,
+                        report.scores.removal.removed_wrongly);
+  text += fmt::format("  time a frame  median {:.1f} ms, 99th percentile {:.1f} ms", report.speed.median_ms, report.speed.p99_ms);
+  if (report.speed.units > 0) text += fmt::format(" ({:.2f} ORB units)", report.speed.units);
+  return text + fmt::format("\n  run hash      {}\n", report.hash);
+}
+
+}  // namespace stillpoint
