@@ -102,7 +102,7 @@ class Body {
     cone(chest_ - spine * m(0.06) + side * m(0.135), 0.066, chest_ - spine * m(0.06) - side * m(0.135), 0.066,
          look_.shirt, front);
     cone(chest_ - spine * m(0.16), 0.13, chest_ + spine * m(0.0), 0.06, look_.shirt, front, 0.75);
-    cone(pelvis_ + spine * m(0.075), 0.16, pelvis_ + spine * m(0.082), 0.16, look_.belt, front, 0.72);
+    ellipsoid(pelvis_ + spine * m(0.055), Vector3d(0.163, 0.122, 0.03) * look_.girth, front, spine, look_.belt);
   }
 
   void add_head(const Vector3d& spine, const Vector3d& front) {

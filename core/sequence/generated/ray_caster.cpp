@@ -87,7 +87,7 @@ class Shader {
 
   [[nodiscard]] float light(const View& view, const Primitive& p, const Vector3f& local, int face,
                             const Vector3f& normal, const Vector3f& world) const {
-    float sky = 0.60f + 0.13f * normal.z() - 0.05f * normal.x();
+    float sky = 0.68f + 0.13f * normal.z() - 0.05f * normal.x();
     float sun = 0.42f * std::max(0.0f, normal.dot(light_direction()));
     if (normal.z() > 0.9f) {
       for (const ShadowPlane& plane : scene_.planes) {
