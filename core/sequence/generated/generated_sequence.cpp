@@ -1,0 +1,135 @@
+#include "core/sequence/generated/generated_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.hpp"
+#include "core/sequence/generated/act.hpp"
+#include "core/sequence/generated/ray_caster.hpp"
+#include "core/sequence/generated/sensor.hpp"
+
+namespace stillpoint {
+namespace {
+
+using namespace generated;
+
+constexpr int kOwnLength = 300, kMostFrames = 100000;
+constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz
+constexpr double kEpoch = 1000.0;                        // s, the first frame's stamp
+
+/// Stamps are whole microseconds, so that six decimals in a file give them back exactly.
+double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
+
+class GeneratedSequence : public FrameSource {
+ public:
+  GeneratedSequence(std::string_view kind, int frames, unsigned seed)
+      : name_(fmt::format("generated:{}", kind)),
+        camera_(camera_by_name("generated")),
+        frames_(frames),
+        act_(make_act(kind, seed, frames / kFrameRate)),
+        motion_(act_.camera, seed),
+        sensor_(seed) {
+    const int poses = static_cast<int>(std::ceil(frames / kFrameRate * kTruthRate)) + 5;
+    for (int i = -5; i < poses; ++i) {
+      const double stamp = microseconds(kEpoch + i / kTruthRate);
+      ground_truth_.push_back({stamp, motion_.world_from_camera(stamp - kEpoch)});
+    }
+  }
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const Camera& camera() const override { return camera_; }
+  [[nodiscard]] int size() const override { return frames_; }
+  [[nodiscard]] double timestamp(int index) const override { return microseconds(kEpoch + index / kFrameRate); }
+  [[nodiscard]] const Trajectory& ground_truth() const override { return ground_truth_; }
+  [[nodiscard]] bool has_depth() const override { return true; }
+  [[nodiscard]] bool has_masks() const override { return true; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+
+  [[nodiscard]] Frame read(int index) const override {
+    const double seconds = timestamp(index) - kEpoch;
+    const Instant middle = instant(seconds);
+    std::array<Instant, 4> exposure;
+    for (std::size_t k = 0; k < exposure.size(); ++k)
+      exposure[k] = instant(seconds + kExposure * (static_cast<double>(k) - 1.5) / 4);
+    const Rendering ideal = cast_frame(act_.scene, camera_, middle, exposure, blur(exposure.front(), exposure.back()));
+
+    Frame frame;
+    frame.index = index;
+    frame.timestamp = timestamp(index);
+    frame.colour = sensor_.colour(ideal.colour, index, seconds);
+    cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
+    sensor_.depth(ideal, dropout(middle), camera_, index).convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
+    return frame;
+  }
+
+  [[nodiscard]] FrameTruth truth(int index) const override {
+    const Instant middle = instant(timestamp(index) - kEpoch);
+    const Rendering ideal = cast_depth(act_.scene, camera_, middle);
+    FrameTruth truth;
+    truth.world_from_camera = middle.world_from_camera;
+    truth.moving.create(ideal.id.size(), CV_8UC1);
+    const std::size_t fixed = act_.scene.fixed.size();
+    for (int y = 0; y < ideal.id.rows; ++y)
+      for (int x = 0; x < ideal.id.cols; ++x) {
+        const std::size_t id = ideal.id.at<std::uint16_t>(y, x);
+        truth.moving.at<std::uint8_t>(y, x) = id >= fixed && middle.movers[id - fixed].moving ? 255 : 0;
+      }
+    return truth;
+  }
+
+ private:
+  [[nodiscard]] Instant instant(double seconds) const {
+    Instant result;
+    result.world_from_camera = motion_.world_from_camera(seconds);
+    act_.play(seconds, result);
+    return result;
+  }
+
+  [[nodiscard]] std::vector<float> dropout(const Instant& middle) const {
+    std::vector<float> shares;
+    for (const Primitive& p : act_.scene.fixed) shares.push_back(p.dropout);
+    for (const Primitive& p : middle.movers) shares.push_back(p.dropout);
+    return shares;
+  }
+
+  /// How far, in px, anything can move in the image between two instants.
+  [[nodiscard]] double blur(const Instant& first, const Instant& last) const {
+    constexpr double kNearest = 0.7;  // m; nothing fixed is nearer
+    const Pose moved = first.world_from_camera.inverse() * last.world_from_camera;
+    const double camera_blur =
+        camera_.fx * (1.4 * rotation_angle(moved.linear()) + moved.translation().norm() / kNearest);
+    double fastest = 0;
+    for (std::size_t i = 0; i < first.movers.size(); ++i) {
+      const Eigen::Vector3d a = first.movers[i].centre.cast<double>(), b = last.movers[i].centre.cast<double>();
+      const double distance = std::max(0.4, (a - first.world_from_camera.translation()).norm());
+      fastest = std::max(fastest, camera_.fx * (b - a).norm() / distance);
+    }
+    return std::min(24.0, camera_blur + 1.3 * fastest);
+  }
+
+  std::string name_;
+  Camera camera_;
+  int frames_;
+  Act act_;
+  CameraMotion motion_;
+  Sensor sensor_;
+  Trajectory ground_truth_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& generated_kinds() { return act_kinds(); }
+
+std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed) {
+  if (frames < 0 || frames > kMostFrames)
+    throw InputError(fmt::format("{} frames cannot be generated: the number goes from 1 to {}, or 0 for the kind's own length",
+                                 frames, kMostFrames));
+  return std::make_unique<GeneratedSequence>(kind, frames == 0 ? kOwnLength : frames, seed);
+}
+
+}  // namespace stillpoint

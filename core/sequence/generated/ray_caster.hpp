@@ -1,0 +1,26 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <span>
+
+#include "core/sequence/generated/scene.hpp"
+
+namespace stillpoint::generated {
+
+/// What an ideal camera sees.
+struct Rendering {
+  cv::Mat colour;  ///< CV_32FC3 BGR, 0 to 255 and beyond where it glares; empty when not asked for
+  cv::Mat depth;   ///< CV_32FC1, m, at the middle of the exposure
+  cv::Mat id;      ///< CV_16UC1: scene.fixed first, then the movers
+};
+
+/// Depth and ids alone, at one instant.
+[[nodiscard]] Rendering cast_depth(const Scene& scene, const Camera& camera, const Instant& middle);
+
+/// Depth and ids at `middle`, colour averaged over the exposure's instants: each gives every pixel one sample at its
+/// own place within the pixel, so that edges are smooth and what moves is blurred by how it truly moves.
+/// @param blur_px no surface moves farther than this in the image during the exposure.
+[[nodiscard]] Rendering cast_frame(const Scene& scene, const Camera& camera, const Instant& middle,
+                                   std::span<const Instant> exposure, double blur_px);
+
+}  // namespace stillpoint::generated
