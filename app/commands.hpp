@@ -11,5 +11,6 @@ namespace stillpoint {
 void add_commands(CLI::App& app);
 
 void add_motion_command(CLI::App& app);
+void add_evaluate_command(CLI::App& app);
 
 }  // namespace stillpoint

@@ -1,0 +1,60 @@
+#include "core/evaluation/alignment.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace stillpoint {
+namespace {
+
+// Second singular value of the positions' cross-covariance against the first, below which they lie on a line.
+constexpr double kLineRatio = 1e-10;
+
+Eigen::Matrix3Xd positions(const std::vector<Pose>& poses) {
+  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(poses.size()));
+  for (Eigen::Index i = 0; i < result.cols(); ++i)
+    result.col(i) = poses[static_cast<std::size_t>(i)].translation();
+  return result;
+}
+
+/// The rotation that turns the estimate's orientations into the truth's with the least sum of squared chords.
+Eigen::Matrix3d mean_rotation(const std::vector<Pose>& estimate, const std::vector<Pose>& truth) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < estimate.size(); ++i)
+    sum += truth[i].linear() * estimate[i].linear().transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+Alignment align(const std::vector<Pose>& estimate, const std::vector<Pose>& truth) {
+  Alignment result;
+  const std::size_t count = std::min(estimate.size(), truth.size());
+  result.degenerate = count < 3;
+  if (count == 0) return result;
+
+  const Eigen::Matrix3Xd from = positions(estimate), to = positions(truth);
+  const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
+  const Eigen::Matrix3d covariance = (to.colwise() - to_mean) * (from.colwise() - from_mean).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d spread = svd.singularValues();
+  if (count >= 3 && spread[1] > kLineRatio * spread[0]) {
+    result.truth_from_estimate.matrix() = Eigen::umeyama(from, to, false);
+    return result;
+  }
+
+  result.degenerate = true;
+  Eigen::Matrix3d rotation = mean_rotation(estimate, truth);
+  if (spread[0] > 0) {
+    // Positions on a line: the rotation nearest the orientations' that lays line on line.
+    const Eigen::Vector3d line_from = rotation * svd.matrixV().col(0), line_to = svd.matrixU().col(0);
+    rotation = Eigen::Quaterniond::FromTwoVectors(line_from, line_to).toRotationMatrix() * rotation;
+  }
+  result.truth_from_estimate.linear() = rotation;
+  result.truth_from_estimate.translation() = to_mean - rotation * from_mean;
+  return result;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/alignment.hpp"
+#include "core/geometry/trajectory.hpp"
+#include "core/sequence/association.hpp"
+
+namespace stillpoint {
+
+/// A sample of errors in a few figures; all 0 when there is none. Units are the sample's.
+struct ErrorStatistics {
+  double rmse = 0.0;
+  double mean = 0.0;
+  double median = 0.0;  ///< of an even number, the mean of the middle two
+  double stddev = 0.0;  ///< of the population: divided by count
+  double min = 0.0;
+  double max = 0.0;
+  int count = 0;  ///< errors in the sample
+};
+
+[[nodiscard]] ErrorStatistics statistics_of(std::vector<double> errors);
+
+/// An estimated pose and the ground truth that belongs to it.
+struct MatchedPose {
+  double timestamp = 0.0;            ///< s, of the estimate
+  double truth_timestamp = 0.0;      ///< s
+  Pose estimate = Pose::Identity();  ///< world_from_camera in the estimate's own world
+  Pose truth = Pose::Identity();     ///< world_from_camera in the truth's world
+};
+
+/// The error of one aligned pose.
+struct AbsoluteError {
+  double timestamp = 0.0;  ///< s, of the estimate
+  double translation_m = 0.0;
+  double rotation_deg = 0.0;
+};
+
+/// Absolute trajectory error: what is left of the positions after a rigid alignment without scale.
+struct AbsoluteTrajectoryError {
+  Alignment alignment;
+  std::vector<AbsoluteError> errors;  ///< one a matched pose, by time
+  ErrorStatistics translation_m;      ///< its rmse is the ATE
+  ErrorStatistics rotation_deg;       ///< of the same aligned poses
+};
+
+/// The error of one motion, E = (G_i⁻¹ G_j)⁻¹ (P_i⁻¹ P_j).
+struct RelativeError {
+  double from_timestamp = 0.0;  ///< s, of pose i
+  double to_timestamp = 0.0;    ///< s, of pose j
+  double translation_m = 0.0;
+  double rotation_deg = 0.0;
+};
+
+/// Relative pose error over motions of one length.
+struct RelativePoseError {
+  std::string delta;                  ///< "1 s" or "1 frame"
+  std::vector<RelativeError> errors;  ///< one a pair, by time of pose i
+  int dropped = 0;                    ///< poses without a partner the right time away
+  ErrorStatistics translation_m;
+  ErrorStatistics rotation_deg;
+};
+
+/// How trajectories are compared. The defaults are the ones all figures of this project are given in.
+struct EvaluationOptions {
+  double max_difference_s = kAssociationTolerance;  ///< poses belong together when strictly closer than this
+  double delta_s = 1.0;                             ///< of the RPE over time
+  double delta_tolerance_s = 0.05;                  ///< pairs off the delta by more than this are dropped
+  double frame_max_gap_s =
+      0.1;  ///< matched poses that follow one another are neighbours, for the RPE of 1 frame, up to
+            ///< this far apart: a frame the camera dropped (67 ms) is bridged, a lost stretch is not
+  int expected_frames = 0;  ///< frames that should have a pose; 0 = not known
+};
+
+/// All that is said about an estimate.
+struct TrajectoryEvaluation {
+  int truth_poses = 0;
+  int estimated_poses = 0;
+  int expected_frames = 0;         ///< 0 = not known
+  std::optional<double> coverage;  ///< share of the expected frames that have a pose, 0 to 1
+  std::vector<MatchedPose> matched;
+  AbsoluteTrajectoryError ate;
+  RelativePoseError rpe_time;   ///< over EvaluationOptions::delta_s
+  RelativePoseError rpe_frame;  ///< from each matched pose to the next
+};
+
+/// Estimated poses with the ground truth that belongs to them: greedy one-to-one, nearest first.
+[[nodiscard]] std::vector<MatchedPose> match_trajectories(const Trajectory& truth, const Trajectory& estimate,
+                                                          double max_difference_s = kAssociationTolerance);
+
+[[nodiscard]] AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched);
+
+/// For each matched pose the one nearest to `delta_s` later, as the TUM benchmark's script does with a fixed
+/// delta in seconds.
+[[nodiscard]] RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& matched,
+                                                         double delta_s, double tolerance_s);
+
+/// From each matched pose to the next, where they are neighbours: at most `max_gap_s` apart.
+[[nodiscard]] RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched,
+                                                         double max_gap_s);
+
+/// Everything at once. Without a single match the figures are empty and `matched` says so.
+[[nodiscard]] TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajectory& estimate,
+                                                       const EvaluationOptions& options = {});
+
+/// The evaluation as people read it: counts, then a table with every delta, unit and number of pairs.
+[[nodiscard]] std::string to_text(const TrajectoryEvaluation& evaluation,
+                                  const EvaluationOptions& options = {});
+
+}  // namespace stillpoint
