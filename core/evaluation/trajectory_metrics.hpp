@@ -73,7 +73,7 @@ struct EvaluationOptions {
                                ///< neighbours up to so many times the median gap apart: a frame the camera
                                ///< dropped is bridged, a stretch that was lost is not. The golden figures
                                ///< bridge all gaps, the largest being 2.2 times the median.
-  int expected_frames = 0;  ///< frames that should have a pose; 0 = not known
+  int expected_frames = 0;     ///< frames that should have a pose; 0 = not known
 };
 
 /// All that is said about an estimate.
