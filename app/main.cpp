@@ -1,11 +1,17 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
 
 #include "app/commands.hpp"
 #include "core/error.hpp"
 
 int main(int argc, char** argv) {
+  // Stages run beside each other here; threads inside OpenCV as well would only contend for the same cores.
+  cv::setNumThreads(1);
+  // What is wrong with an image is said once, by whoever reads it.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move", "stillpoint"};
   app.require_subcommand(1);
   stillpoint::add_commands(app);

@@ -29,6 +29,7 @@ void to_json(nlohmann::json& json, const RelativePoseError& error) {
   json = {{"delta", error.delta},
           {"pairs", error.errors.size()},
           {"dropped", error.dropped},
+          {"limit_s", error.limit_s},
           {"translation_m", error.translation_m},
           {"rotation_deg", error.rotation_deg}};
 }

@@ -97,7 +97,8 @@ std::string to_markdown(const Table& table) {
   };
   line(table.header);
   for (std::size_t i = 0; i < widths.size(); ++i)
-    text += i == 0 ? fmt::format("|:{:-<{}}", "", widths[i] + 1) : fmt::format("|{:-<{}}:", "", widths[i] + 1);
+    text +=
+        i == 0 ? fmt::format("|:{:-<{}}", "", widths[i] + 1) : fmt::format("|{:-<{}}:", "", widths[i] + 1);
   text += "|\n";
   for (const auto& row : table.rows) line(row);
   return text;

@@ -89,6 +89,7 @@ RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& match
                                            double tolerance_s) {
   RelativePoseError result;
   result.delta = fmt::format("{} s", delta_s);
+  result.limit_s = tolerance_s;
   for (std::size_t i = 0; i < matched.size(); ++i) {
     const double wanted = matched[i].timestamp + delta_s;
     auto j = std::lower_bound(matched.begin(), matched.end(), wanted,
@@ -105,11 +106,15 @@ RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& match
   return result;
 }
 
-RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched, double max_gap_s) {
+RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched, double neighbour_gap) {
   RelativePoseError result;
   result.delta = "1 frame";
-  for (std::size_t i = 0; i + 1 < matched.size(); ++i) {
-    if (matched[i + 1].timestamp - matched[i].timestamp > max_gap_s)
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i + 1 < matched.size(); ++i)
+    gaps.push_back(matched[i + 1].timestamp - matched[i].timestamp);
+  result.limit_s = neighbour_gap * statistics_of(gaps).median;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps[i] > result.limit_s)
       ++result.dropped;
     else
       result.errors.push_back(relative_error(matched[i], matched[i + 1]));
@@ -129,7 +134,7 @@ TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajecto
   result.matched = match_trajectories(truth, estimate, options.max_difference_s);
   result.ate = absolute_error(result.matched);
   result.rpe_time = relative_error_over_time(result.matched, options.delta_s, options.delta_tolerance_s);
-  result.rpe_frame = relative_error_per_frame(result.matched, options.frame_max_gap_s);
+  result.rpe_frame = relative_error_per_frame(result.matched, options.neighbour_gap);
   return result;
 }
 
@@ -157,9 +162,9 @@ std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& opti
   }
   text += fmt::format(
       "\nRPE {}: each matched pose with the one nearest {} later; {} without one within {} s dropped\n"
-      "RPE {}: each matched pose with the next; {} gaps above {} s dropped\n",
-      e.rpe_time.delta, e.rpe_time.delta, e.rpe_time.dropped, options.delta_tolerance_s, e.rpe_frame.delta,
-      e.rpe_frame.dropped, options.frame_max_gap_s);
+      "RPE {}: each matched pose with the next; {} gaps above {:.3f} s ({} times the median) dropped\n",
+      e.rpe_time.delta, e.rpe_time.delta, e.rpe_time.dropped, e.rpe_time.limit_s, e.rpe_frame.delta,
+      e.rpe_frame.dropped, e.rpe_frame.limit_s, options.neighbour_gap);
   return text;
 }
 

@@ -59,6 +59,7 @@ struct RelativePoseError {
   std::string delta;                  ///< "1 s" or "1 frame"
   std::vector<RelativeError> errors;  ///< one a pair, by time of pose i
   int dropped = 0;                    ///< poses without a partner the right time away
+  double limit_s = 0.0;  ///< s: how far off the delta, or for 1 frame how far apart, pairs may be
   ErrorStatistics translation_m;
   ErrorStatistics rotation_deg;
 };
@@ -68,10 +69,11 @@ struct EvaluationOptions {
   double max_difference_s = kAssociationTolerance;  ///< poses belong together when strictly closer than this
   double delta_s = 1.0;                             ///< of the RPE over time
   double delta_tolerance_s = 0.05;                  ///< pairs off the delta by more than this are dropped
-  double frame_max_gap_s =
-      0.1;  ///< matched poses that follow one another are neighbours, for the RPE of 1 frame, up to
-            ///< this far apart: a frame the camera dropped (67 ms) is bridged, a lost stretch is not
-  int expected_frames = 0;  ///< frames that should have a pose; 0 = not known
+  double neighbour_gap = 2.5;  ///< for the RPE of 1 frame, matched poses that follow one another are
+                               ///< neighbours up to so many times the median gap apart: a frame the camera
+                               ///< dropped is bridged, a stretch that was lost is not. The golden figures
+                               ///< bridge all gaps, the largest being 2.2 times the median.
+  int expected_frames = 0;     ///< frames that should have a pose; 0 = not known
 };
 
 /// All that is said about an estimate.
@@ -97,9 +99,9 @@ struct TrajectoryEvaluation {
 [[nodiscard]] RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& matched,
                                                          double delta_s, double tolerance_s);
 
-/// From each matched pose to the next, where they are neighbours: at most `max_gap_s` apart.
+/// From each matched pose to the next, where they are at most `neighbour_gap` times the median gap apart.
 [[nodiscard]] RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched,
-                                                         double max_gap_s);
+                                                         double neighbour_gap);
 
 /// Everything at once. Without a single match the figures are empty and `matched` says so.
 [[nodiscard]] TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajectory& estimate,

@@ -100,6 +100,11 @@ void TumFolder::read_lists() {
   if (is_there(path_of("mask.txt"))) {
     join_list("mask.txt", &Entry::mask);
     has_masks_ = true;
+    const auto gone = [this](const Entry& e) { return e.mask && !is_there(path_of(e.mask->file)); };
+    if (const auto first = std::find_if(frames_.begin(), frames_.end(), gone); first != frames_.end())
+      warnings_.push_back(fmt::format(
+          "{}:{}: {} is missing; {} mask(s) are, and their frames have no true mask", path_of("mask.txt"),
+          first->mask->line, first->mask->file, std::count_if(frames_.begin(), frames_.end(), gone)));
   }
 }
 

@@ -178,6 +178,9 @@ TEST(TumFolder, ReadsMasks) {
   EXPECT_TRUE(source->has_masks());
   EXPECT_EQ(cv::countNonZero(source->truth(0).moving), 32);
   EXPECT_TRUE(source->truth(1).moving.empty());
+  folder.write("mask.txt", "100.000 mask/0.png\n100.100 mask/1.png\n");
+  EXPECT_THAT(open_sequence(folder.path())->warnings(),
+              testing::Contains(HasSubstr("mask.txt:2: mask/1.png is missing; 1 mask(s)")));
 }
 
 TEST(TumFolder, OpensIclNuimFolders) {
