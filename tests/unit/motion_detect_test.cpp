@@ -123,7 +123,7 @@ TEST(DetectMotion, RemovedTracksLieInTheMaskOfTheRoundBefore) {
   }
   for (const Track& track : trace.rounds[1].backward.tracks)  // from frame t, the mask's camera
     EXPECT_EQ(track.removed, before.at<unsigned char>(cvRound(track.from.y), cvRound(track.from.x)) != 0);
-  EXPECT_GT(removed, 20);
+  EXPECT_GE(removed, 5);
 }
 
 TEST(DetectMotion, RoundsImproveAHomographyThatACoherentPatchPulls) {
@@ -252,6 +252,7 @@ TEST(DetectMotion, FramesOfOtherSizeOrTypeAreRefused) {
 TEST(DetectMotion, FewStaticTracksKeepTheLastHomography) {
   const PlaneAndPatch scene = pulling_patch();
   MotionConfig config = pulled_config();
+  config.ransac_threshold_px = 50.0;  // every track is an inlier of the first round
   const MotionRound first = detect_motion(scene.reference, scene.target, config).rounds[0];
   // All inliers of the first round are wanted, the patch's among them; the second round has to do without
   // those.

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "core/motion/cleanup.hpp"
 #include "core/motion/compensation.hpp"
+#include "core/motion/corners.hpp"
 #include "core/motion/difference.hpp"
 #include "core/motion/homography.hpp"
 #include "core/motion/regions.hpp"
@@ -18,6 +22,55 @@ using motion_test::textured_image;
 const cv::Size kVga(640, 480);
 
 cv::Mat all_valid(const cv::Size& size) { return {size, CV_8UC1, cv::Scalar(255)}; }
+
+/// Scharr derivatives as the Lucas-Kanade pyramid holds them.
+cv::Mat gradients_of(const cv::Mat& gray) {
+  cv::Mat dx, dy, both;
+  cv::Scharr(gray, dx, CV_16S, 1, 0);
+  cv::Scharr(gray, dy, CV_16S, 0, 1);
+  cv::merge(std::vector<cv::Mat>{dx, dy}, both);
+  return both;
+}
+
+TEST(Corners, LieAtTheCornersOfARectangle) {
+  cv::Mat image(120, 160, CV_8UC1, cv::Scalar(60));
+  image(cv::Rect(40, 30, 60, 50)).setTo(200);
+  const auto corners = find_corners(gradients_of(image), 100, 0.1, 10);
+  ASSERT_EQ(corners.size(), 4U);
+  for (const cv::Point2f expected : {cv::Point2f(40, 30), {99, 30}, {40, 79}, {99, 79}}) {
+    const auto near = std::count_if(corners.begin(), corners.end(), [&](const cv::Point2f& corner) {
+      return cv::norm(corner - expected) <= 1.5;
+    });
+    EXPECT_EQ(near, 1) << expected;
+  }
+}
+
+TEST(Corners, AreThoseOfTheSmallerEigenvalue) {
+  const cv::Mat image = textured_image({200, 150}, 31);
+  const auto corners = find_corners(gradients_of(image), 40, 0.01, 12);
+  ASSERT_EQ(corners.size(), 40U);
+  // OpenCV's own response, from Scharr derivatives too (aperture -1), summed over 3x3.
+  cv::Mat response;
+  cv::cornerMinEigenVal(image, response, 3, cv::FILTER_SCHARR);
+  float last = std::numeric_limits<float>::max();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const cv::Point at(corners[i]);
+    const float value = response.at<float>(at);
+    EXPECT_LE(value, last * 1.0001F) << "strongest first";
+    last = value;
+    double largest = 0.0;
+    cv::minMaxLoc(response(cv::Rect(at.x - 1, at.y - 1, 3, 3)), nullptr, &largest);
+    EXPECT_GE(value, largest * 0.9999) << "a local maximum";
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(cv::norm(corners[i] - corners[j]), 12.0);
+  }
+}
+
+TEST(Corners, FlatImagesAndEdgesHaveNone) {
+  EXPECT_TRUE(find_corners(gradients_of(cv::Mat(50, 50, CV_8UC1, cv::Scalar(90))), 10, 0.01, 5).empty());
+  cv::Mat edge(50, 50, CV_8UC1, cv::Scalar(90));
+  edge.colRange(25, 50).setTo(180);
+  EXPECT_TRUE(find_corners(gradients_of(edge), 10, 0.01, 5).empty());
+}
 
 TEST(Compensation, WarpByHomographyAndItsInverseReturnsTheImage) {
   cv::Mat image;
