@@ -10,9 +10,9 @@ namespace stillpoint {
 
 /// METHOD.md §1: what moves between two frames.
 struct MotionConfig {
-  int max_corners = 1000;               ///< Shi-Tomasi corners followed per direction
+  int max_corners = 600;                ///< Shi-Tomasi corners followed per direction
   double corner_quality = 0.01;         ///< least corner response, as a share of the best corner's
-  double corner_distance_px = 7.0;      ///< least distance between corners
+  double corner_distance_px = 12.0;     ///< least distance between corners
   int flow_window_px = 21;              ///< side of the Lucas-Kanade window
   int flow_levels = 3;                  ///< pyramid levels above the full image
   double flow_max_residual = 20.0;      ///< mean absolute grey-level residual above which a track is dropped

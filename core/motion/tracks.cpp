@@ -1,11 +1,15 @@
 #include "core/motion/tracks.hpp"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+
+#include "core/motion/corners.hpp"
 
 namespace stillpoint {
 namespace {
+
+/// A corner has arrived when a step is shorter than 0.03 px, a tenth of what tracks scatter by anyway.
+const cv::TermCriteria kFlowStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.03);
 
 bool inside(const cv::Point2f& point, const cv::Size& size) {
   return point.x >= 0.0F && point.y >= 0.0F && point.x <= static_cast<float>(size.width - 1) &&
@@ -22,8 +26,9 @@ MotionFrame prepare_motion_frame(const cv::Mat& gray, const MotionConfig& config
   const bool with_derivatives = true;
   cv::buildOpticalFlowPyramid(gray, frame.pyramid, {config.flow_window_px, config.flow_window_px},
                               config.flow_levels, with_derivatives);
-  cv::goodFeaturesToTrack(gray, frame.corners, config.max_corners, config.corner_quality,
-                          config.corner_distance_px);
+  const cv::Mat& gradients = frame.pyramid[1];  // levels and their derivatives take turns
+  frame.corners =
+      find_corners(gradients, config.max_corners, config.corner_quality, config.corner_distance_px);
   return frame;
 }
 
@@ -35,7 +40,7 @@ std::vector<Track> follow_corners(const MotionFrame& source, const MotionFrame& 
   std::vector<unsigned char> found;
   std::vector<float> residuals;  // without OPTFLOW_LK_GET_MIN_EIGENVALS: mean absolute grey-level difference
   cv::calcOpticalFlowPyrLK(source.pyramid, destination.pyramid, source.corners, moved, found, residuals,
-                           {config.flow_window_px, config.flow_window_px}, config.flow_levels);
+                           {config.flow_window_px, config.flow_window_px}, config.flow_levels, kFlowStop);
   tracks.reserve(moved.size());
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const bool good = found[i] != 0 && static_cast<double>(residuals[i]) <= config.flow_max_residual &&

@@ -18,7 +18,7 @@ namespace {
 struct Pair {
   Pair() {
     cv::setNumThreads(1);
-    scene = motion_test::plane_and_patch({640, 480}, {260, 120, 130, 260}, {12, 3});
+    scene = motion_test::plane_and_patch({640, 480}, {260, 120, 130, 240}, {20, -1}, 16);
     reference = prepare_motion_frame(scene.reference, config);
     target = prepare_motion_frame(scene.target, config);
     trace = detect_motion(reference, target, config);

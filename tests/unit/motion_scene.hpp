@@ -35,9 +35,18 @@ struct PlaneAndPatch {
   cv::Rect patch;                     ///< where the patch is in the target
 };
 
+/// Upright stripes of two grey levels under a faint texture: moved by one stripe's width they differ
+/// everywhere.
+inline cv::Mat striped_image(const cv::Size& size, int stripe_px) {
+  cv::Mat image = textured_image(size, 99) * 0.25;
+  for (int x = 0; x < size.width; ++x) image.col(x) += x / stripe_px % 2 == 0 ? 30 : 170;
+  return image;
+}
+
 /// @param shift how the patch moves from the reference to the target, px
+/// @param stripe_px width of the patch's stripes
 inline PlaneAndPatch plane_and_patch(const cv::Size& size, const cv::Rect& patch_in_target,
-                                     const cv::Point& shift) {
+                                     const cv::Point& shift, int stripe_px) {
   PlaneAndPatch scene;
   scene.target_from_reference = slight_motion();
   scene.patch = patch_in_target;
@@ -47,7 +56,7 @@ inline PlaneAndPatch plane_and_patch(const cv::Size& size, const cv::Rect& patch
   plane(cv::Rect({margin, margin}, size)).copyTo(scene.reference);
   const cv::Matx33d reference_from_plane(1, 0, -margin, 0, 1, -margin, 0, 0, 1);
   cv::warpPerspective(plane, scene.target, scene.target_from_reference * reference_from_plane, size);
-  const cv::Mat patch = textured_image(patch_in_target.size(), 99);
+  const cv::Mat patch = striped_image(patch_in_target.size(), stripe_px);
   patch.copyTo(scene.target(patch_in_target));
   patch.copyTo(scene.reference(patch_in_target - shift));
   return scene;
