@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kCell = 80;              // px: a part of the image that shares its vote
 constexpr double kFairShare = 6.0;     // observations a part may have before they weigh less each
+constexpr double kNearestShare = 0.3;  // of a vote, for what is much nearer than the rest
 constexpr double kBoundPx = 1.5;       // at octave 0: beyond it an observation disagrees, however far
 constexpr double kRigidTolerance = 0.01;  // m, and this share of the distance: three points of one rigid scene
 constexpr double kRigidShare = 0.02;
@@ -25,9 +26,16 @@ std::vector<double> weights_by_place(const Camera& camera, const std::vector<Pos
   std::vector<int> counts(static_cast<std::size_t>(columns * rows), 0);
   for (const auto& o : observations) ++counts[cell(o)];
   std::vector<double> weights;
+  std::vector<double> depths;
+  for (const auto& o : observations)
+    if (o.depth > 0) depths.push_back(o.depth);
+  std::sort(depths.begin(), depths.end());
+  const double usual = depths.empty() ? 1.0 : depths[depths.size() / 2];
   double sum = 0.0;
   for (const auto& o : observations) {
-    weights.push_back(std::min(1.0, kFairShare / counts[cell(o)]));
+    // Movers stand before the background, hardly ever behind it.
+    const double behind = o.depth > 0 ? std::clamp(o.depth / usual, kNearestShare, 1.0) : 1.0;
+    weights.push_back(behind * std::min(1.0, kFairShare / counts[cell(o)]));
     sum += weights.back();
   }
   for (double& w : weights) w /= sum;
