@@ -12,7 +12,9 @@ using Colour = cv::Scalar;  // BGR
 
 cv::Mat canvas(int width, int height, const Colour& colour) { return {height, width, CV_8UC3, colour}; }
 
-cv::Point random_point(Dice& dice, const cv::Mat& image) { return {dice.below(image.cols), dice.below(image.rows)}; }
+cv::Point random_point(Dice& dice, const cv::Mat& image) {
+  return {dice.below(image.cols), dice.below(image.rows)};
+}
 
 Colour vivid(Dice& dice) {
   const int hue = dice.below(180);
@@ -23,15 +25,18 @@ Colour vivid(Dice& dice) {
 }
 
 /// Adds noise of several grain sizes that repeats at the edges; `strength` in grey levels a grain size.
-void add_grain(cv::Mat& image, Dice& dice, const std::vector<std::pair<int, double>>& grains, double stretch_x = 1) {
+void add_grain(cv::Mat& image, Dice& dice, const std::vector<std::pair<int, double>>& grains,
+               double stretch_x = 1) {
   cv::Mat sum(image.size(), CV_32F, Colour(0));
   for (const auto& [size, strength] : grains) {
-    const int w = std::max(2, static_cast<int>(image.cols / (size * stretch_x))), h = std::max(2, image.rows / size);
+    const int w = std::max(2, static_cast<int>(image.cols / (size * stretch_x))),
+              h = std::max(2, image.rows / size);
     cv::Mat coarse(h, w, CV_32F), framed, fine;
     const std::uint32_t key = dice.bits();
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x)
-        coarse.at<float>(y, x) = gaussian(hash(key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
+        coarse.at<float>(y, x) =
+            gaussian(hash(key, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)));
     cv::copyMakeBorder(coarse, framed, 1, 1, 1, 1, cv::BORDER_WRAP);
     const cv::Size full(image.cols * (w + 2) / w, image.rows * (h + 2) / h);
     cv::resize(framed, fine, full, 0, 0, cv::INTER_LINEAR);
@@ -75,7 +80,8 @@ void scatter_shapes(cv::Mat image, Dice& dice, int count, int smallest, int larg
     if (kind == 0) cv::circle(image, p, r, colour, cv::FILLED, cv::LINE_AA);
     if (kind == 1) cv::rectangle(image, p, p + cv::Point(r * 2, r), colour, cv::FILLED);
     if (kind == 2) cv::line(image, p, random_point(dice, image), colour, 1 + r / 6, cv::LINE_AA);
-    if (kind == 3) cv::ellipse(image, p, {r, r / 2}, dice.between(0, 180), 0, 300, colour, 1 + r / 4, cv::LINE_AA);
+    if (kind == 3)
+      cv::ellipse(image, p, {r, r / 2}, dice.between(0, 180), 0, 300, colour, 1 + r / 4, cv::LINE_AA);
   }
 }
 
@@ -84,7 +90,8 @@ cv::Mat poster(Dice& dice, int style) {
   cv::Mat image = canvas(256, 512, dark ? Colour(90, 50, 30) : Colour(225, 235, 240));
   const Colour ink = dark ? Colour(235, 240, 245) : Colour(40, 30, 30);
   cv::rectangle(image, {0, 0}, {255, 60}, vivid(dice), cv::FILLED);
-  cv::putText(image, nonsense(dice, 7), {14, 42}, cv::FONT_HERSHEY_DUPLEX, 1.3, {250, 250, 250}, 3, cv::LINE_AA);
+  cv::putText(image, nonsense(dice, 7), {14, 42}, cv::FONT_HERSHEY_DUPLEX, 1.3, {250, 250, 250}, 3,
+              cv::LINE_AA);
   cv::Mat picture = image(cv::Rect(16, 78, 224, 190));
   picture.setTo(vivid(dice));
   scatter_shapes(picture, dice, 42, 4, 40);
@@ -103,12 +110,14 @@ cv::Mat poster(Dice& dice, int style) {
 cv::Mat spine(Dice& dice, int style) {
   cv::Mat image = canvas(64, 256, {205, 205, 205});  // light: books tint it
   cv::Mat lying = canvas(256, 64, {205, 205, 205});
-  cv::putText(lying, nonsense(dice, 9), {24, 42}, style == 1 ? cv::FONT_HERSHEY_TRIPLEX : cv::FONT_HERSHEY_DUPLEX, 0.9,
+  cv::putText(lying, nonsense(dice, 9), {24, 42},
+              style == 1 ? cv::FONT_HERSHEY_TRIPLEX : cv::FONT_HERSHEY_DUPLEX, 0.9,
               style == 2 ? Colour(20, 20, 20) : Colour(255, 255, 255), 2, cv::LINE_AA);
   cv::rotate(lying, image, cv::ROTATE_90_CLOCKWISE);
   for (int i = 0; i < 3 + style; ++i) {
     const int y = dice.below(2) == 0 ? dice.below(30) : 225 + dice.below(28);
-    cv::line(image, {0, y}, {63, y}, style == 0 ? Colour(40, 180, 230) : Colour(60, 60, 60), 2 + dice.below(4));
+    cv::line(image, {0, y}, {63, y}, style == 0 ? Colour(40, 180, 230) : Colour(60, 60, 60),
+             2 + dice.below(4));
   }
   if (style == 2) cv::rectangle(image, {6, 190}, {58, 222}, {250, 250, 250}, cv::FILLED);
   if (style == 2) write_rows(image, dice, {10, 190, 46, 30}, 0.3, {30, 30, 30});
@@ -144,7 +153,8 @@ cv::Mat wood(Dice& dice, const Colour& colour, double contrast) {
 
 cv::Mat ceiling(Dice& dice) {
   cv::Mat image = canvas(256, 256, {212, 216, 218});
-  for (int i = 0; i < 700; ++i) cv::circle(image, random_point(dice, image), dice.below(2), {176, 180, 182}, cv::FILLED);
+  for (int i = 0; i < 700; ++i)
+    cv::circle(image, random_point(dice, image), dice.below(2), {176, 180, 182}, cv::FILLED);
   add_grain(image, dice, {{2, 3}, {32, 2}});
   cv::rectangle(image, {0, 0}, {255, 255}, {150, 152, 155}, 5);
   return image;
@@ -155,9 +165,10 @@ cv::Mat keyboard(Dice& dice) {
   for (int row = 0; row < 5; ++row)
     for (int x = 6, key = 0; x < 500; ++key) {
       const int width = row == 4 && key == 3 ? 150 : (key % 14 == 13 ? 42 : 24);
-      cv::rectangle(image, {x, 6 + row * 24}, {std::min(506, x + width - 4), 25 + row * 24}, {196, 200, 202}, cv::FILLED);
-      cv::putText(image, nonsense(dice, 1), {x + 5, 20 + row * 24}, cv::FONT_HERSHEY_PLAIN, 0.9, {30, 30, 30}, 1,
-                  cv::LINE_AA);
+      cv::rectangle(image, {x, 6 + row * 24}, {std::min(506, x + width - 4), 25 + row * 24}, {196, 200, 202},
+                    cv::FILLED);
+      cv::putText(image, nonsense(dice, 1), {x + 5, 20 + row * 24}, cv::FONT_HERSHEY_PLAIN, 0.9, {30, 30, 30},
+                  1, cv::LINE_AA);
       x += width;
     }
   return image;
@@ -181,7 +192,8 @@ cv::Mat whiteboard(Dice& dice) {
     cv::putText(image, nonsense(dice, 3 + dice.below(7)), {10 + dice.below(330), 24 + i * 26},
                 cv::FONT_HERSHEY_SCRIPT_SIMPLEX, dice.between(0.7, 1.1), pens[dice.below(4)], 2, cv::LINE_AA);
   for (int i = 0; i < 10; ++i) {
-    const cv::Point p = {260 + dice.below(200), 20 + dice.below(190)}, q = {20 + dice.below(60), 14 + dice.below(26)};
+    const cv::Point p = {260 + dice.below(200), 20 + dice.below(190)},
+                    q = {20 + dice.below(60), 14 + dice.below(26)};
     const Colour pen = pens[dice.below(4)];
     if (i % 3 == 0) cv::rectangle(image, p, p + q, pen, 2, cv::LINE_AA);
     if (i % 3 == 1) cv::ellipse(image, p, {q.x / 2, q.y / 2}, 0, 0, 360, pen, 2, cv::LINE_AA);
@@ -199,7 +211,8 @@ cv::Mat cardboard(Dice& dice) {
   cv::putText(image, nonsense(dice, 5), {20, 84}, cv::FONT_HERSHEY_DUPLEX, 1.8, {40, 50, 70}, 4, cv::LINE_AA);
   cv::rectangle(image, {140, 164}, {240, 238}, {235, 238, 240}, cv::FILLED);
   write_rows(image, dice, {146, 164, 88, 70}, 0.34, {30, 30, 30});
-  for (int i = 0; i < 26; ++i) cv::line(image, {20 + i * 4, 180}, {20 + i * 4, 226}, {40, 40, 50}, 1 + dice.below(2));
+  for (int i = 0; i < 26; ++i)
+    cv::line(image, {20 + i * 4, 180}, {20 + i * 4, 226}, {40, 40, 50}, 1 + dice.below(2));
   return image;
 }
 
@@ -207,8 +220,8 @@ cv::Mat window(Dice& dice) {
   cv::Mat image = canvas(256, 256, {250, 248, 240});
   cv::rectangle(image, {0, 170}, {255, 255}, {176, 200, 184}, cv::FILLED);
   for (int i = 0; i < 40; ++i)
-    cv::circle(image, {dice.below(256), 160 + dice.below(60)}, 8 + dice.below(18), {130, 180 + dice.between(0, 30), 150},
-               cv::FILLED, cv::LINE_AA);
+    cv::circle(image, {dice.below(256), 160 + dice.below(60)}, 8 + dice.below(18),
+               {130, 180 + dice.between(0, 30), 150}, cv::FILLED, cv::LINE_AA);
   for (int y = 0; y < 120; y += 9) cv::line(image, {0, y}, {255, y}, {205, 210, 214}, 5);  // blinds
   for (int x : {0, 128, 255}) cv::line(image, {x, 0}, {x, 255}, {190, 190, 190}, 9);
   for (int y : {0, 255}) cv::line(image, {0, y}, {255, y}, {190, 190, 190}, 9);
@@ -219,7 +232,8 @@ cv::Mat plaid(Dice& dice) {
   cv::Mat image = canvas(256, 256, {214, 216, 210});
   cv::Mat lines = canvas(256, 256, {0, 0, 0});
   for (int k = 0; k < 256; k += 64) {
-    for (const auto& [at, width, depth] : {std::tuple{8, 20, 62.0}, std::tuple{38, 5, 88.0}, std::tuple{52, 3, 70.0}}) {
+    for (const auto& [at, width, depth] :
+         {std::tuple{8, 20, 62.0}, std::tuple{38, 5, 88.0}, std::tuple{52, 3, 70.0}}) {
       const Colour dye(depth * 1.1, depth * 0.72, depth * 1.25);
       cv::Mat across = lines(cv::Rect(0, k + at, 256, width)), down = lines(cv::Rect(k + at, 0, width, 256));
       across += dye;
@@ -295,43 +309,74 @@ cv::Mat mug(Dice& dice) {
   cv::Mat image = canvas(256, 128, {228, 232, 235});
   scatter_shapes(image(cv::Rect(20, 20, 220, 84)), dice, 22, 4, 16);
   cv::line(image, {0, 10}, {255, 10}, {60, 60, 160}, 4);
-  cv::putText(image, nonsense(dice, 5), {60, 76}, cv::FONT_HERSHEY_DUPLEX, 1.2, {40, 30, 120}, 3, cv::LINE_AA);
+  cv::putText(image, nonsense(dice, 5), {60, 76}, cv::FONT_HERSHEY_DUPLEX, 1.2, {40, 30, 120}, 3,
+              cv::LINE_AA);
   return image;
 }
 
 cv::Mat draw(Picture which, Dice& dice) {
   switch (which) {
-    case Picture::kCarpet: return carpet(dice);
-    case Picture::kPlaster: return grained(dice, 512, {206, 212, 214}, {{2, 3}, {5, 2.5}, {24, 2.5}, {128, 4}});
-    case Picture::kCeiling: return ceiling(dice);
-    case Picture::kFabric: return grained(dice, 512, {112, 142, 166}, {{2, 8}, {4, 5}, {16, 3}, {128, 3}});
-    case Picture::kWood: return wood(dice, {168, 200, 218}, 5);
-    case Picture::kDarkWood: return wood(dice, {62, 96, 138}, 9);
-    case Picture::kMetal: return grained(dice, 128, {150, 152, 152}, {{2, 3}, {24, 4}}, 4);
-    case Picture::kPaper: return page(dice);
-    case Picture::kKeyboard: return keyboard(dice);
-    case Picture::kScreen: return screen(dice);
-    case Picture::kWhiteboard: return whiteboard(dice);
-    case Picture::kCardboard: return cardboard(dice);
-    case Picture::kSpineA: return spine(dice, 0);
-    case Picture::kSpineB: return spine(dice, 1);
-    case Picture::kSpineC: return spine(dice, 2);
-    case Picture::kPosterA: return poster(dice, 0);
-    case Picture::kPosterB: return poster(dice, 1);
-    case Picture::kPosterC: return poster(dice, 2);
-    case Picture::kPosterD: return poster(dice, 3);
-    case Picture::kCover: return cover(dice);
-    case Picture::kWindow: return window(dice);
-    case Picture::kPlaid: return plaid(dice);
-    case Picture::kStripes: return stripes(dice);
-    case Picture::kCloth: return grained(dice, 128, {200, 200, 200}, {{2, 7}, {6, 5}, {40, 9}});
-    case Picture::kSkin: return grained(dice, 64, {150, 178, 222}, {{2, 3}, {16, 5}});
-    case Picture::kFace: return face(dice);
-    case Picture::kHair: return grained(dice, 128, {34, 44, 58}, {{2, 8}, {8, 7}});
-    case Picture::kLeaf: return grained(dice, 64, {62, 128, 74}, {{2, 8}, {12, 14}}, 3);
-    case Picture::kMug: return mug(dice);
+    case Picture::kCarpet:
+      return carpet(dice);
+    case Picture::kPlaster:
+      return grained(dice, 512, {206, 212, 214}, {{2, 3}, {5, 2.5}, {24, 2.5}, {128, 4}});
+    case Picture::kCeiling:
+      return ceiling(dice);
+    case Picture::kFabric:
+      return grained(dice, 512, {112, 142, 166}, {{2, 8}, {4, 5}, {16, 3}, {128, 3}});
+    case Picture::kWood:
+      return wood(dice, {168, 200, 218}, 5);
+    case Picture::kDarkWood:
+      return wood(dice, {62, 96, 138}, 9);
+    case Picture::kMetal:
+      return grained(dice, 128, {150, 152, 152}, {{2, 3}, {24, 4}}, 4);
+    case Picture::kPaper:
+      return page(dice);
+    case Picture::kKeyboard:
+      return keyboard(dice);
+    case Picture::kScreen:
+      return screen(dice);
+    case Picture::kWhiteboard:
+      return whiteboard(dice);
+    case Picture::kCardboard:
+      return cardboard(dice);
+    case Picture::kSpineA:
+      return spine(dice, 0);
+    case Picture::kSpineB:
+      return spine(dice, 1);
+    case Picture::kSpineC:
+      return spine(dice, 2);
+    case Picture::kPosterA:
+      return poster(dice, 0);
+    case Picture::kPosterB:
+      return poster(dice, 1);
+    case Picture::kPosterC:
+      return poster(dice, 2);
+    case Picture::kPosterD:
+      return poster(dice, 3);
+    case Picture::kCover:
+      return cover(dice);
+    case Picture::kWindow:
+      return window(dice);
+    case Picture::kPlaid:
+      return plaid(dice);
+    case Picture::kStripes:
+      return stripes(dice);
+    case Picture::kCloth:
+      return grained(dice, 128, {200, 200, 200}, {{2, 7}, {6, 5}, {40, 9}});
+    case Picture::kSkin:
+      return grained(dice, 64, {150, 178, 222}, {{2, 3}, {16, 5}});
+    case Picture::kFace:
+      return face(dice);
+    case Picture::kHair:
+      return grained(dice, 128, {34, 44, 58}, {{2, 8}, {8, 7}});
+    case Picture::kLeaf:
+      return grained(dice, 64, {62, 128, 74}, {{2, 8}, {12, 14}}, 3);
+    case Picture::kMug:
+      return mug(dice);
     case Picture::kPlain:
-    case Picture::kCount: break;
+    case Picture::kCount:
+      break;
   }
   return canvas(8, 8, {255, 255, 255});
 }

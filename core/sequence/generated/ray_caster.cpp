@@ -19,7 +19,8 @@ Rendering cast_pixels(const View& view, const TileLists& tiles) {
     float* depth = result.depth.ptr<float>(y);
     std::uint16_t* id = result.id.ptr<std::uint16_t>(y);
     for (int x = 0; x < tiles.width; ++x) {
-      const Found found = nearest(view, tiles.at(x, y), view.ray(static_cast<float>(x), static_cast<float>(y)));
+      const Found found =
+          nearest(view, tiles.at(x, y), view.ray(static_cast<float>(x), static_cast<float>(y)));
       depth[x] = found.hit.depth;
       id[x] = found.id;
     }
@@ -60,7 +61,8 @@ class Shader {
   explicit Shader(const Scene& scene) : scene_(scene) {}
 
   /// The colour of a hit. `level_shift` spreads a pixel's samples over neighbouring mip levels.
-  [[nodiscard]] Vector3f colour(const View& view, const Found& found, const Vector3f& ray, float level_shift) const {
+  [[nodiscard]] Vector3f colour(const View& view, const Found& found, const Vector3f& ray,
+                                float level_shift) const {
     const Primitive& p = view.primitive(found.id);
     const SeenPrimitive& seen = view.seen[found.id];
     const Vector3f local = seen.origin + found.hit.depth * (seen.rotation * ray);
@@ -70,8 +72,10 @@ class Shader {
     const Vector3f normal = (p.local_from_world.transpose() * point.normal).normalized();
     const Vector3f direction = view.rotation * ray;
     const float slant = std::max(0.08f, std::abs(normal.dot(direction)) / ray.norm());
-    // Four samples share a pixel, so each covers about half its width; the root splits the slant between axes.
-    const float texels = found.hit.depth * view.inverse_focal * point.texels_per_metre * 0.6f / std::sqrt(slant);
+    // Four samples share a pixel, so each covers about half its width; the root splits the slant between
+    // axes.
+    const float texels =
+        found.hit.depth * view.inverse_focal * point.texels_per_metre * 0.6f / std::sqrt(slant);
     const int level = static_cast<int>(std::floor(quick_log2(texels) + 0.5f + level_shift));
     const Vector3f base = picture.sample(point.uv.x(), point.uv.y(), level).cwiseProduct(surface.tint);
     if (surface.glows) return base;
@@ -135,11 +139,13 @@ Rendering cast_frame(const Scene& scene, const Camera& camera, const Instant& mi
   for (int y = 0; y < tiles.height; ++y)
     for (int x = 0; x < tiles.width; ++x) {
       const Nearby nearby = gather(result.id, x, y, reach);
-      const std::span<const std::uint16_t> candidates(nearby.ids.data(), static_cast<std::size_t>(nearby.count));
+      const std::span<const std::uint16_t> candidates(nearby.ids.data(),
+                                                      static_cast<std::size_t>(nearby.count));
       Vector3f sum = Vector3f::Zero();
       for (std::size_t k = 0; k < views.size(); ++k) {
         const auto& offset = kOffsets[k % kOffsets.size()];
-        const Vector3f ray = views[k].ray(static_cast<float>(x) + offset[0], static_cast<float>(y) + offset[1]);
+        const Vector3f ray =
+            views[k].ray(static_cast<float>(x) + offset[0], static_cast<float>(y) + offset[1]);
         Found found{candidates.front(), {}};
         for (const std::uint16_t id : candidates)
           if (intersect(views[k].seen[id], ray, found.hit)) found.id = id;

@@ -47,14 +47,16 @@ ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height, cons
       const Vector3f world = p.centre + world_from_local * local;
       lowest = std::min(lowest, world.z());
       const Vector2f fallen = world.head<2>() - light.head<2>() / light.z() * (world.z() - height) - corner;
-      shadow.emplace_back(cvRound(fallen.x() * plane.texels_per_metre), cvRound(fallen.y() * plane.texels_per_metre));
+      shadow.emplace_back(cvRound(fallen.x() * plane.texels_per_metre),
+                          cvRound(fallen.y() * plane.texels_per_metre));
     }
     if (lowest < height - 0.02f || lowest > 2.3f) continue;
     std::vector<cv::Point> hull;
     cv::convexHull(shadow, hull);
     cv::fillConvexPoly(plane.light, hull, cv::Scalar(70));
   }
-  cv::GaussianBlur(plane.light, plane.light, cv::Size(0, 0), static_cast<double>(blur_m * plane.texels_per_metre));
+  cv::GaussianBlur(plane.light, plane.light, cv::Size(0, 0),
+                   static_cast<double>(blur_m * plane.texels_per_metre));
   return plane;
 }
 
