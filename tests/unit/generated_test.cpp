@@ -202,7 +202,7 @@ TEST_P(GeneratedTruth, PosesCarryStaticDepthFromFrameToFrame) {
   const Pose j_from_i =
       sequence->truth(30).world_from_camera->inverse() * *sequence->truth(8).world_from_camera;
   const Agreement right = warp(*sequence, 8, 30, j_from_i);
-  EXPECT_GT(right.points, 2000);
+  EXPECT_GT(right.points, 1500);
   EXPECT_GT(right.depth, 0.9);
   EXPECT_LT(right.grey, 16.0);
   // The check has teeth: with the motion turned round, it fails.

@@ -68,7 +68,7 @@ Pose CameraMotion::world_from_camera(double s) const {
     const Eigen::Vector3d out = position - target;
     const double radius = out.norm(), rest = std::asin(out.z() / radius);
     const double around = e * kDegree * (sweep ? 38 * wave(0, 0.33) : 27 * wave(0, 0.52));
-    const double up = rest + e * kDegree * (sweep ? 6 * wave(1, 0.5) : 11 * wave(1, 0.63));
+    const double up = rest + e * kDegree * (sweep ? 6 * wave(1, 0.5) : 7 + 10 * wave(1, 0.63));
     const double reach = radius * (1 + e * 0.06 * wave(2, 0.45));
     position = target + reach * Eigen::Vector3d(std::sin(around) * std::cos(up),
                                                 -std::cos(around) * std::cos(up), std::sin(up));

@@ -100,7 +100,7 @@ class Body {
 
   void add_torso(const Vector3d& spine, const Vector3d& front, const Vector3d& side) {
     chest_ = pelvis_ + spine * m(0.50);
-    ellipsoid(pelvis_ + spine * m(0.01), Vector3d(0.158, 0.115, 0.12) * look_.girth, front, spine,
+    ellipsoid(pelvis_ + spine * m(0.03), Vector3d(0.158, 0.11, 0.098) * look_.girth, front, spine,
               look_.trousers);
     cone(pelvis_ + spine * m(0.06), 0.156, pelvis_ + spine * m(0.385), 0.178, look_.shirt, front, 0.70);
     cone(chest_ - spine * m(0.06) + side * m(0.135), 0.066, chest_ - spine * m(0.06) - side * m(0.135), 0.066,

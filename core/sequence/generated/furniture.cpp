@@ -76,12 +76,12 @@ void Furnisher::room() {
   box({3.2f, 1.9f, 0.45f}, {0.1f, 1.3f, 0.55f}, 0,
       surface(Picture::kKeyboard, 3, {1.1f, 1.1f, 1.1f}));  // radiator
   hang({-0.35f, 4.48f, 1.62f}, 1.7f, 0.95f, -M_PI / 2, surface(Picture::kWhiteboard));
-  hang({0.95f, 4.48f, 1.7f}, 0.5f, 0.8f, -M_PI / 2, surface(Picture::kPosterB));
-  hang({1.6f, 4.48f, 1.62f}, 0.55f, 0.9f, -M_PI / 2, surface(Picture::kPosterC));
-  hang({-3.28f, 0.35f, 1.6f}, 0.6f, 0.95f, 0, surface(Picture::kPosterA));
+  hang({0.95f, 4.48f, 1.7f}, 0.5f, 0.8f, -M_PI / 2, surface(Picture::kPosterE));
+  hang({1.6f, 4.48f, 1.62f}, 0.55f, 0.9f, -M_PI / 2, surface(Picture::kPosterF));
+  hang({-3.28f, 0.35f, 1.6f}, 0.6f, 0.95f, 0, surface(Picture::kPosterB));
   hang({-3.28f, 1.15f, 1.65f}, 0.45f, 0.75f, 0, surface(Picture::kPosterD));
-  hang({3.28f, 0.2f, 1.6f}, 0.6f, 0.95f, M_PI, surface(Picture::kPosterD));
-  hang({3.28f, 3.4f, 1.6f}, 0.5f, 0.8f, M_PI, surface(Picture::kPosterA));
+  hang({3.28f, 0.2f, 1.6f}, 0.6f, 0.95f, M_PI, surface(Picture::kPosterG));
+  hang({3.28f, 3.4f, 1.6f}, 0.5f, 0.8f, M_PI, surface(Picture::kPosterH));
   hang({-1.0f, -2.68f, 1.6f}, 0.6f, 0.95f, M_PI / 2, surface(Picture::kPosterC));
   hang({1.0f, -2.68f, 1.6f}, 0.9f, 1.2f, M_PI / 2, surface(Picture::kPosterB));
   cylinder({2.35f, 4.49f, 2.15f}, {2.35f, 4.45f, 2.15f}, 0.16f, black_);
@@ -112,9 +112,9 @@ void Furnisher::partition() {
   hang({-1.33f, front, 1.13f}, 0.34f, 0.5f, -M_PI / 2, surface(Picture::kPosterA));
   hang({0.02f, front, 1.15f}, 0.36f, 0.5f, -M_PI / 2, surface(Picture::kPosterD));
   hang({1.45f, front, 1.12f}, 0.34f, 0.48f, -M_PI / 2, surface(Picture::kPosterC));
-  const std::uint16_t page = surface(Picture::kPaper);
+  const Picture pages[] = {Picture::kPaperA, Picture::kPaperB, Picture::kPaperC};
   for (const auto& [x, z] : {std::pair{-0.35f, 1.2f}, {0.36f, 1.24f}, {-1.0f, 1.22f}, {1.16f, 1.22f}})
-    hang({x, front + 0.001f, z}, 0.19f, 0.27f, -M_PI / 2, page);
+    hang({x, front + 0.001f, z}, 0.19f, 0.27f, -M_PI / 2, surface(pages[dice_.below(3)]));
   for (int i = 0; i < 14; ++i) {  // notes
     const float x = static_cast<float>(dice_.between(-1.7, 1.7)),
                 z = static_cast<float>(dice_.between(0.95, 1.38));

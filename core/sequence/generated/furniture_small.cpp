@@ -101,7 +101,9 @@ void Furnisher::books_lying(const Vector3f& foot, int count) {
 
 void Furnisher::desk_things() {
   const float top = kDeskHeight;
-  const std::uint16_t page = surface(Picture::kPaper), keys = surface(Picture::kKeyboard);
+  const std::uint16_t keys = surface(Picture::kKeyboard);
+  const std::uint16_t pages[] = {surface(Picture::kPaperA), surface(Picture::kPaperB),
+                                 surface(Picture::kPaperC)};
   monitor({-0.95f, 2.58f, top}, 0.12, false);
   monitor({0.72f, 2.6f, top}, -0.1, true);
   for (const auto& [x, yaw] : {std::pair{-0.95f, 0.06}, {0.7f, -0.08}}) {
@@ -114,7 +116,7 @@ void Furnisher::desk_things() {
     const float x = static_cast<float>(i < 4 ? -0.32 + 0.13 * i : -1.5 + 0.14 * (i - 4));
     const float y = static_cast<float>(dice_.between(2.22, 2.5)),
                 z = top + 0.001f + 0.0012f * static_cast<float>(i);
-    box({x, y, z}, {0.21f, 0.297f, 0.001f}, dice_.between(-0.6, 0.6), page);
+    box({x, y, z}, {0.21f, 0.297f, 0.001f}, dice_.between(-0.6, 0.6), pages[i % 3]);
   }
   books_lying({-0.42f, 2.62f, top}, 4);
   books_lying({0.24f, 2.66f, top}, 3);

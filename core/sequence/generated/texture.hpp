@@ -61,7 +61,9 @@ enum class Picture {
   kWood,
   kDarkWood,
   kMetal,
-  kPaper,  ///< printed page
+  kPaperA,  ///< printed pages
+  kPaperB,
+  kPaperC,
   kKeyboard,
   kScreen,  ///< lines of code
   kWhiteboard,
@@ -73,6 +75,10 @@ enum class Picture {
   kPosterB,
   kPosterC,
   kPosterD,
+  kPosterE,
+  kPosterF,
+  kPosterG,
+  kPosterH,
   kCover,  ///< of a book
   kWindow,
   kPlaid,
