@@ -25,8 +25,10 @@ void furnish(Furnisher& f) {
   f.shelf({-3.12f, 2.3f}, M_PI / 2, 5);
   f.plant({2.75f, 3.9f, 0}, 1.7f);
   // A cabinet with a robot arm and books on it.
-  f.box({2.08f, 2.5f, 0.42f}, {0.5f, 0.6f, 0.84f}, 0, f.surface(Picture::kMetal, 1.4f, {1.12f, 1.12f, 1.12f}));
-  for (const float z : {0.2f, 0.44f, 0.68f}) f.box({2.08f, 2.19f, z}, {0.18f, 0.03f, 0.02f}, 0, f.plain(50, 50, 50));
+  f.box({2.08f, 2.5f, 0.42f}, {0.5f, 0.6f, 0.84f}, 0,
+        f.surface(Picture::kMetal, 1.4f, {1.12f, 1.12f, 1.12f}));
+  for (const float z : {0.2f, 0.44f, 0.68f})
+    f.box({2.08f, 2.19f, z}, {0.18f, 0.03f, 0.02f}, 0, f.plain(50, 50, 50));
   f.robot_arm({2.15f, 2.6f, 0.84f});
   f.books_lying({1.98f, 2.36f, 0.84f}, 4);
   // Parcels, a bin, a bag by the wall.
@@ -36,7 +38,8 @@ void furnish(Furnisher& f) {
   f.cylinder({-1.85f, 2.05f, 0}, {-1.85f, 2.05f, 0.32f}, 0.14f, f.plain(70, 62, 58));
   f.rod({-0.1f, 2.6f, 0.01f}, {-0.5f, 2.1f, 0.01f}, 0.006f, f.plain(40, 40, 40));
   f.rod({-0.5f, 2.1f, 0.01f}, {-1.4f, 2.3f, 0.01f}, 0.006f, f.plain(40, 40, 40));
-  f.box({-0.75f, 2.5f, 0.24f}, {0.2f, 0.45f, 0.44f}, 0.05, f.surface(Picture::kMetal, 3, {0.25f, 0.25f, 0.25f}));
+  f.box({-0.75f, 2.5f, 0.24f}, {0.2f, 0.45f, 0.44f}, 0.05,
+        f.surface(Picture::kMetal, 3, {0.25f, 0.25f, 0.25f}));
 }
 
 struct Kind {
@@ -134,7 +137,8 @@ Act make_act(std::string_view name, unsigned seed, double seconds) {
   furnish(furnisher);
   stage(kind, furnisher, seed, seconds, act);
   act.scene.planes.push_back(cast_shadows(act.scene.fixed, 0, {-3.3f, -2.7f}, {6.6f, 7.2f}, 0.05f));
-  act.scene.planes.push_back(cast_shadows(act.scene.fixed, kDeskHeight, {-1.62f, 1.94f}, {3.24f, 0.82f}, 0.02f));
+  act.scene.planes.push_back(
+      cast_shadows(act.scene.fixed, kDeskHeight, {-1.62f, 1.94f}, {3.24f, 0.82f}, 0.02f));
   return act;
 }
 

@@ -25,11 +25,16 @@ struct Amplitudes {
 
 Amplitudes drift_of(Handling handling) {
   switch (handling) {
-    case Handling::kStatic: return {0.004, 0.35 * kDegree};
-    case Handling::kXyz: return {0.02, 1.6 * kDegree};
-    case Handling::kRpy: return {0.03, 1.0 * kDegree};
-    case Handling::kHalfsphere: return {0.03, 2.0 * kDegree};
-    case Handling::kSweep: return {0.04, 2.2 * kDegree};
+    case Handling::kStatic:
+      return {0.004, 0.35 * kDegree};
+    case Handling::kXyz:
+      return {0.02, 1.6 * kDegree};
+    case Handling::kRpy:
+      return {0.03, 1.0 * kDegree};
+    case Handling::kHalfsphere:
+      return {0.03, 2.0 * kDegree};
+    case Handling::kSweep:
+      return {0.04, 2.2 * kDegree};
   }
   return {0, 0};
 }
@@ -63,10 +68,10 @@ Pose CameraMotion::world_from_camera(double s) const {
     const Eigen::Vector3d out = position - target;
     const double radius = out.norm(), rest = std::asin(out.z() / radius);
     const double around = e * kDegree * (sweep ? 38 * wave(0, 0.33) : 27 * wave(0, 0.52));
-    const double up = rest + e * kDegree * (sweep ? 6 * wave(1, 0.5) : 11 * wave(1, 0.63));
+    const double up = rest + e * kDegree * (sweep ? 6 * wave(1, 0.5) : 7 + 10 * wave(1, 0.63));
     const double reach = radius * (1 + e * 0.06 * wave(2, 0.45));
-    position = target + reach * Eigen::Vector3d(std::sin(around) * std::cos(up), -std::cos(around) * std::cos(up),
-                                                std::sin(up));
+    position = target + reach * Eigen::Vector3d(std::sin(around) * std::cos(up),
+                                                -std::cos(around) * std::cos(up), std::sin(up));
   }
   Pose pose = look_at(position, target);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -32,9 +32,9 @@ class CameraMotion {
 
  private:
   CameraPlan plan_;
-  std::array<Wander, 3> shift_, turn_;              ///< slow, m and rad
+  std::array<Wander, 3> shift_, turn_;  ///< slow, m and rad
   std::array<Wander, 3> shift_tremor_, turn_tremor_;
-  std::array<double, 3> start_{};                   ///< phases of the main movement
+  std::array<double, 3> start_{};  ///< phases of the main movement
 };
 
 }  // namespace stillpoint::generated

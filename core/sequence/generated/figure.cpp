@@ -38,13 +38,15 @@ class Body {
  private:
   [[nodiscard]] double m(double metres) const { return metres * scale_; }
   /// Sine of the leg's phase, scaled by how fast the person walks.
-  [[nodiscard]] double swing(int leg) const { return state_.stride * std::sin(state_.stride_phase + leg * M_PI); }
+  [[nodiscard]] double swing(int leg) const {
+    return state_.stride * std::sin(state_.stride_phase + leg * M_PI);
+  }
 
-  void cone(const Vector3d& a, double ra, const Vector3d& b, double rb, std::uint16_t surface, const Vector3d& front,
-            double flat = 1, bool cloth = true) {
+  void cone(const Vector3d& a, double ra, const Vector3d& b, double rb, std::uint16_t surface,
+            const Vector3d& front, double flat = 1, bool cloth = true) {
     const double girth = (cloth ? look_.girth : 1.0) * scale_;
-    add(make_cone(a.cast<float>(), static_cast<float>(ra * girth), b.cast<float>(), static_cast<float>(rb * girth),
-                  surface, front.cast<float>(), static_cast<float>(flat)));
+    add(make_cone(a.cast<float>(), static_cast<float>(ra * girth), b.cast<float>(),
+                  static_cast<float>(rb * girth), surface, front.cast<float>(), static_cast<float>(flat)));
   }
   /// An ellipsoid with radii to the side, to the front and up.
   void ellipsoid(const Vector3d& centre, const Vector3d& radii, const Vector3d& front, const Vector3d& up,
@@ -76,7 +78,8 @@ class Body {
     }
     pelvis_ = {state_.position.x(), state_.position.y(), reach + m(0.085)};
     pelvis_ += left_ * m(0.018) * state_.stride * std::cos(state_.stride_phase);
-    for (const int i : {0, 1}) add_leg(i, thigh[static_cast<std::size_t>(i)], knee[static_cast<std::size_t>(i)]);
+    for (const int i : {0, 1})
+      add_leg(i, thigh[static_cast<std::size_t>(i)], knee[static_cast<std::size_t>(i)]);
   }
 
   void add_leg(int i, double thigh, double knee) {
@@ -97,18 +100,21 @@ class Body {
 
   void add_torso(const Vector3d& spine, const Vector3d& front, const Vector3d& side) {
     chest_ = pelvis_ + spine * m(0.50);
-    ellipsoid(pelvis_ + spine * m(0.01), Vector3d(0.158, 0.115, 0.12) * look_.girth, front, spine, look_.trousers);
+    ellipsoid(pelvis_ + spine * m(0.03), Vector3d(0.158, 0.11, 0.098) * look_.girth, front, spine,
+              look_.trousers);
     cone(pelvis_ + spine * m(0.06), 0.156, pelvis_ + spine * m(0.385), 0.178, look_.shirt, front, 0.70);
     cone(chest_ - spine * m(0.06) + side * m(0.135), 0.066, chest_ - spine * m(0.06) - side * m(0.135), 0.066,
          look_.shirt, front);
     cone(chest_ - spine * m(0.16), 0.13, chest_ + spine * m(0.0), 0.06, look_.shirt, front, 0.75);
-    ellipsoid(pelvis_ + spine * m(0.055), Vector3d(0.163, 0.122, 0.03) * look_.girth, front, spine, look_.belt);
+    ellipsoid(pelvis_ + spine * m(0.055), Vector3d(0.163, 0.122, 0.03) * look_.girth, front, spine,
+              look_.belt);
   }
 
   void add_head(const Vector3d& spine, const Vector3d& front) {
     const Vector3d turned_front = turn(front, spine, state_.head_turn);
     const Vector3d across = spine.cross(turned_front);
-    const Vector3d up = turn(spine, across, state_.head_nod), face = turn(turned_front, across, state_.head_nod);
+    const Vector3d up = turn(spine, across, state_.head_nod),
+                   face = turn(turned_front, across, state_.head_nod);
     const Vector3d head = chest_ + spine * m(0.09) + up * m(0.105) + face * m(0.015);
     cone(chest_ - spine * m(0.02), 0.06, head - up * m(0.04), 0.054, look_.skin, front, 1, false);
     ellipsoid(head, {0.076, 0.097, 0.122}, face, up, look_.face);
@@ -142,8 +148,8 @@ class Body {
     Vector3d flat = front - along * along.dot(front);
     flat = flat.norm() > 1e-3 ? flat.normalized() : side;
     ellipsoid(palm, {0.024, 0.04, 0.062}, flat, along, look_.skin);
-    cone(wrist + along * m(0.02) + flat * m(0.03), 0.014, wrist + along * m(0.075) + flat * m(0.045), 0.011, look_.skin,
-         front, 1, false);
+    cone(wrist + along * m(0.02) + flat * m(0.03), 0.014, wrist + along * m(0.075) + flat * m(0.045), 0.011,
+         look_.skin, front, 1, false);
     return palm;
   }
 

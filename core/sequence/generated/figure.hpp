@@ -21,17 +21,17 @@ struct FigureLook {
 
 /// What a hand does: hangs with the arm, or is held at a point.
 struct HandGoal {
-  double weight = 0;          ///< 0 = swings with the arm, 1 = at the target
-  Vector3d target{0, 0, 0};   ///< world, m
+  double weight = 0;         ///< 0 = swings with the arm, 1 = at the target
+  Vector3d target{0, 0, 0};  ///< world, m
 };
 
 /// A person at one instant. Angles in radians; side 0 is left.
 struct FigureState {
-  Vector2d position{0, 0};  ///< of the pelvis over the floor, m
-  double heading = 0;       ///< about z, 0 = along +x
-  double stride_phase = 0;  ///< 2 pi a pair of steps
-  double stride = 0;        ///< 0 = stands, 1 = walks at full step
-  double sitting = 0;       ///< 0 = upright, 1 = on a chair
+  Vector2d position{0, 0};               ///< of the pelvis over the floor, m
+  double heading = 0;                    ///< about z, 0 = along +x
+  double stride_phase = 0;               ///< 2 pi a pair of steps
+  double stride = 0;                     ///< 0 = stands, 1 = walks at full step
+  double sitting = 0;                    ///< 0 = upright, 1 = on a chair
   double lean = 0, sway = 0, twist = 0;  ///< of the torso: forward, to the left, turned left
   double head_turn = 0, head_nod = 0;    ///< relative to the torso: left, down
   std::array<HandGoal, 2> hands;

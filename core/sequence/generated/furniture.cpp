@@ -18,7 +18,8 @@ Furnisher::Furnisher(Scene& scene, Dice& dice) : scene_(scene), dice_(dice) {
 std::uint16_t Furnisher::surface(Picture picture, float repeats, const Vector3f& tint, bool glows) {
   Surface s;
   s.picture = picture, s.repeats = repeats, s.tint = tint, s.glows = glows;
-  if (repeats > 0) s.offset = {static_cast<float>(dice_.between(0, 1)), static_cast<float>(dice_.between(0, 1))};
+  if (repeats > 0)
+    s.offset = {static_cast<float>(dice_.between(0, 1)), static_cast<float>(dice_.between(0, 1))};
   return scene_.add(s);
 }
 
@@ -34,22 +35,26 @@ Primitive& Furnisher::rod(const Vector3f& from, const Vector3f& to, float radius
   return scene_.fixed.emplace_back(make_cone(from, radius, to, radius, surface));
 }
 
-Primitive& Furnisher::cylinder(const Vector3f& from, const Vector3f& to, float radius, std::uint16_t surface) {
+Primitive& Furnisher::cylinder(const Vector3f& from, const Vector3f& to, float radius,
+                               std::uint16_t surface) {
   return scene_.fixed.emplace_back(make_cylinder(from, to, radius, surface));
 }
 
-Primitive& Furnisher::ellipsoid(const Vector3f& centre, const Vector3f& radii, double yaw, std::uint16_t surface) {
+Primitive& Furnisher::ellipsoid(const Vector3f& centre, const Vector3f& radii, double yaw,
+                                std::uint16_t surface) {
   return scene_.fixed.emplace_back(make_ellipsoid(centre, radii, turned(yaw), surface));
 }
 
-void Furnisher::hang(const Vector3f& centre, float width, float height, double facing, std::uint16_t surface) {
+void Furnisher::hang(const Vector3f& centre, float width, float height, double facing,
+                     std::uint16_t surface) {
   // The picture is on the box's -y face; the edges are paper white.
   Primitive& p = box(centre, {width, 0.012f, height}, facing + M_PI / 2, white_);
   p.surface[2] = surface;
 }
 
 void Furnisher::room() {
-  Primitive p = make_box({0, 0.9f, 1.4f}, {3.3f, 3.6f, 1.4f}, Matrix3f::Identity(), surface(Picture::kPlaster, 0.55f));
+  Primitive p =
+      make_box({0, 0.9f, 1.4f}, {3.3f, 3.6f, 1.4f}, Matrix3f::Identity(), surface(Picture::kPlaster, 0.55f));
   p.shape = Shape::kRoom;
   p.surface[0] = surface(Picture::kPlaster, 0.55f, {0.94f, 0.99f, 1.0f});
   p.surface[1] = surface(Picture::kPlaster, 0.55f, {0.99f, 0.97f, 0.93f});
@@ -58,7 +63,8 @@ void Furnisher::room() {
   scene_.fixed.push_back(p);
 
   for (const float y : {0.2f, 2.4f})  // lamps in the ceiling
-    for (const float x : {-1.4f, 1.4f}) box({x, y, 2.78f}, {0.55f, 1.2f, 0.05f}, 0, surface(Picture::kPlain, 0, {1, 1, 1}, true));
+    for (const float x : {-1.4f, 1.4f})
+      box({x, y, 2.78f}, {0.55f, 1.2f, 0.05f}, 0, surface(Picture::kPlain, 0, {1, 1, 1}, true));
   const std::uint16_t skirting = surface(Picture::kDarkWood, 1);
   box({0, 4.49f, 0.05f}, {6.6f, 0.02f, 0.1f}, 0, skirting);
   box({-3.29f, 0.9f, 0.05f}, {0.02f, 7.2f, 0.1f}, 0, skirting);
@@ -67,14 +73,15 @@ void Furnisher::room() {
   hang({3.28f, 1.9f, 1.55f}, 1.5f, 1.3f, M_PI, surface(Picture::kWindow, 0, {1.05f, 1.05f, 1.05f}, true));
   scene_.fixed.back().dropout = 1.0f;
   box({3.24f, 1.9f, 0.87f}, {0.14f, 1.7f, 0.04f}, 0, white_);
-  box({3.2f, 1.9f, 0.45f}, {0.1f, 1.3f, 0.55f}, 0, surface(Picture::kKeyboard, 3, {1.1f, 1.1f, 1.1f}));  // radiator
+  box({3.2f, 1.9f, 0.45f}, {0.1f, 1.3f, 0.55f}, 0,
+      surface(Picture::kKeyboard, 3, {1.1f, 1.1f, 1.1f}));  // radiator
   hang({-0.35f, 4.48f, 1.62f}, 1.7f, 0.95f, -M_PI / 2, surface(Picture::kWhiteboard));
-  hang({0.95f, 4.48f, 1.7f}, 0.5f, 0.8f, -M_PI / 2, surface(Picture::kPosterB));
-  hang({1.6f, 4.48f, 1.62f}, 0.55f, 0.9f, -M_PI / 2, surface(Picture::kPosterC));
-  hang({-3.28f, 0.35f, 1.6f}, 0.6f, 0.95f, 0, surface(Picture::kPosterA));
+  hang({0.95f, 4.48f, 1.7f}, 0.5f, 0.8f, -M_PI / 2, surface(Picture::kPosterE));
+  hang({1.6f, 4.48f, 1.62f}, 0.55f, 0.9f, -M_PI / 2, surface(Picture::kPosterF));
+  hang({-3.28f, 0.35f, 1.6f}, 0.6f, 0.95f, 0, surface(Picture::kPosterB));
   hang({-3.28f, 1.15f, 1.65f}, 0.45f, 0.75f, 0, surface(Picture::kPosterD));
-  hang({3.28f, 0.2f, 1.6f}, 0.6f, 0.95f, M_PI, surface(Picture::kPosterD));
-  hang({3.28f, 3.4f, 1.6f}, 0.5f, 0.8f, M_PI, surface(Picture::kPosterA));
+  hang({3.28f, 0.2f, 1.6f}, 0.6f, 0.95f, M_PI, surface(Picture::kPosterG));
+  hang({3.28f, 3.4f, 1.6f}, 0.5f, 0.8f, M_PI, surface(Picture::kPosterH));
   hang({-1.0f, -2.68f, 1.6f}, 0.6f, 0.95f, M_PI / 2, surface(Picture::kPosterC));
   hang({1.0f, -2.68f, 1.6f}, 0.9f, 1.2f, M_PI / 2, surface(Picture::kPosterB));
   cylinder({2.35f, 4.49f, 2.15f}, {2.35f, 4.45f, 2.15f}, 0.16f, black_);
@@ -105,11 +112,12 @@ void Furnisher::partition() {
   hang({-1.33f, front, 1.13f}, 0.34f, 0.5f, -M_PI / 2, surface(Picture::kPosterA));
   hang({0.02f, front, 1.15f}, 0.36f, 0.5f, -M_PI / 2, surface(Picture::kPosterD));
   hang({1.45f, front, 1.12f}, 0.34f, 0.48f, -M_PI / 2, surface(Picture::kPosterC));
-  const std::uint16_t page = surface(Picture::kPaper);
+  const Picture pages[] = {Picture::kPaperA, Picture::kPaperB, Picture::kPaperC};
   for (const auto& [x, z] : {std::pair{-0.35f, 1.2f}, {0.36f, 1.24f}, {-1.0f, 1.22f}, {1.16f, 1.22f}})
-    hang({x, front + 0.001f, z}, 0.19f, 0.27f, -M_PI / 2, page);
+    hang({x, front + 0.001f, z}, 0.19f, 0.27f, -M_PI / 2, surface(pages[dice_.below(3)]));
   for (int i = 0; i < 14; ++i) {  // notes
-    const float x = static_cast<float>(dice_.between(-1.7, 1.7)), z = static_cast<float>(dice_.between(0.95, 1.38));
+    const float x = static_cast<float>(dice_.between(-1.7, 1.7)),
+                z = static_cast<float>(dice_.between(0.95, 1.38));
     const Vector3f colours[] = {{90, 235, 250}, {150, 220, 140}, {190, 150, 245}, {240, 200, 130}};
     const Vector3f& c = colours[dice_.below(4)];
     hang({x, front - 0.004f, z}, 0.07f, 0.07f, -M_PI / 2, plain(c.x(), c.y(), c.z()));

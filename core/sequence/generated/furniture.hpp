@@ -11,7 +11,8 @@ class Furnisher {
   Furnisher(Scene& scene, Dice& dice);
 
   /// A picture with a tint, repeated `repeats` times a metre (0 = stretched over each face).
-  std::uint16_t surface(Picture picture, float repeats = 0, const Vector3f& tint = {1, 1, 1}, bool glows = false);
+  std::uint16_t surface(Picture picture, float repeats = 0, const Vector3f& tint = {1, 1, 1},
+                        bool glows = false);
   /// A plain colour, BGR 0 to 255.
   std::uint16_t plain(float blue, float green, float red);
 

@@ -43,7 +43,9 @@ class GeneratedSequence : public FrameSource {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Camera& camera() const override { return camera_; }
   [[nodiscard]] int size() const override { return frames_; }
-  [[nodiscard]] double timestamp(int index) const override { return microseconds(kEpoch + index / kFrameRate); }
+  [[nodiscard]] double timestamp(int index) const override {
+    return microseconds(kEpoch + index / kFrameRate);
+  }
   [[nodiscard]] const Trajectory& ground_truth() const override { return ground_truth_; }
   [[nodiscard]] bool has_depth() const override { return true; }
   [[nodiscard]] bool has_masks() const override { return true; }
@@ -55,14 +57,16 @@ class GeneratedSequence : public FrameSource {
     std::array<Instant, 4> exposure;
     for (std::size_t k = 0; k < exposure.size(); ++k)
       exposure[k] = instant(seconds + kExposure * (static_cast<double>(k) - 1.5) / 4);
-    const Rendering ideal = cast_frame(act_.scene, camera_, middle, exposure, blur(exposure.front(), exposure.back()));
+    const Rendering ideal =
+        cast_frame(act_.scene, camera_, middle, exposure, blur(exposure.front(), exposure.back()));
 
     Frame frame;
     frame.index = index;
     frame.timestamp = timestamp(index);
     frame.colour = sensor_.colour(ideal.colour, index, seconds);
     cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
-    sensor_.depth(ideal, dropout(middle), camera_, index).convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
+    sensor_.depth(ideal, dropout(middle), camera_, index)
+        .convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     return frame;
   }
 
@@ -104,7 +108,8 @@ class GeneratedSequence : public FrameSource {
         camera_.fx * (1.4 * rotation_angle(moved.linear()) + moved.translation().norm() / kNearest);
     double fastest = 0;
     for (std::size_t i = 0; i < first.movers.size(); ++i) {
-      const Eigen::Vector3d a = first.movers[i].centre.cast<double>(), b = last.movers[i].centre.cast<double>();
+      const Eigen::Vector3d a = first.movers[i].centre.cast<double>(),
+                            b = last.movers[i].centre.cast<double>();
       const double distance = std::max(0.4, (a - first.world_from_camera.translation()).norm());
       fastest = std::max(fastest, camera_.fx * (b - a).norm() / distance);
     }
@@ -127,8 +132,9 @@ const std::vector<std::string>& generated_kinds() { return act_kinds(); }
 
 std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed) {
   if (frames < 0 || frames > kMostFrames)
-    throw InputError(fmt::format("{} frames cannot be generated: the number goes from 1 to {}, or 0 for the kind's own length",
-                                 frames, kMostFrames));
+    throw InputError(fmt::format(
+        "{} frames cannot be generated: the number goes from 1 to {}, or 0 for the kind's own length", frames,
+        kMostFrames));
   return std::make_unique<GeneratedSequence>(kind, frames == 0 ? kOwnLength : frames, seed);
 }
 

@@ -9,22 +9,25 @@
 
 namespace stillpoint {
 
-/// The kinds of generated sequence: the benchmark's nine by name, `room` (nothing moves), `approach` (motion along
-/// the optical axis) and `cup` (a small thing pushed across a table).
+/// The kinds of generated sequence: the benchmark's nine by name, `room` (nothing moves), `approach` (motion
+/// along the optical axis) and `cup` (a small thing pushed across a table).
 [[nodiscard]] const std::vector<std::string>& generated_kinds();
 
 /// A sequence filmed in a furnished room by ray casting: 640x480 at 30 Hz through camera `generated` and a
 /// Kinect-like sensor (generated/sensor.hpp), with exact poses and masks.
 ///
-/// A frame depends on (kind, seed, index) alone, so a longer sequence begins with the shorter one. Depth is what a
-/// 16-bit depth image at 5000 a metre gives back, so that a sequence written to a folder reads the same.
+/// A frame depends on (kind, seed, index) alone, so a longer sequence begins with the shorter one. Depth is
+/// what a 16-bit depth image at 5000 a metre gives back, so that a sequence written to a folder reads the
+/// same.
 ///
-/// Poses and masks are those at the middle of the exposure. The moving mask holds people whole, also while they
-/// stand or sit (they belong to what moves in the sequence, and never keep quite still), the cart that is pushed,
-/// and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or after. Furniture,
-/// chairs and shadows are not moving.
+/// Poses and masks are those at the middle of the exposure. The moving mask holds people whole, also while
+/// they stand or sit (they belong to what moves in the sequence, and never keep quite still), the cart that
+/// is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
+/// after. Furniture, chairs and shadows are not moving.
 /// @param frames how many; 0 = the kind's own length, 300.
-/// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above 100,000.
-[[nodiscard]] std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed);
+/// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above
+/// 100,000.
+[[nodiscard]] std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames,
+                                                                   unsigned seed);
 
 }  // namespace stillpoint

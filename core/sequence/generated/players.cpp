@@ -77,7 +77,8 @@ FigureLook dress(int who, Furnisher& f) {
   return look;
 }
 
-Player sitter(const FigureLook& look, const Vector2d& seat, double heading, const Vector2d& partner, unsigned seed) {
+Player sitter(const FigureLook& look, const Vector2d& seat, double heading, const Vector2d& partner,
+              unsigned seed) {
   const Vector2d way = partner - seat;
   const double towards = std::remainder(std::atan2(way.y(), way.x()) - heading, 2 * M_PI);
   return [=, restless = Restless(seed)](double s, Instant& instant) {
@@ -93,7 +94,8 @@ Player sitter(const FigureLook& look, const Vector2d& seat, double heading, cons
     const double active = 0.12 + 0.88 * talk;
     state.hands[1] = {1, beside(state, 0.36, -0.16, 0.72 + 0.22 * talk) + active * restless.hand(1, s)};
     const double other = smooth(0.3 - 1.4 * restless.gate.at(s + 4));
-    state.hands[0] = {1, beside(state, 0.34, 0.15, 0.71 + 0.14 * other) + (0.08 + 0.5 * other) * restless.hand(0, s)};
+    state.hands[0] = {
+        1, beside(state, 0.34, 0.15, 0.71 + 0.14 * other) + (0.08 + 0.5 * other) * restless.hand(0, s)};
     add_figure(look, state, instant);
   };
 }
@@ -105,11 +107,16 @@ Player walkers(const FigureLook& first, const FigureLook& second, double seconds
   };
   const auto pause = [&](double s) { return s * dice.between(0.7, 1.4); };
   std::vector<std::vector<Stop>> routes(2);
-  routes[0] = {{at(0.3, 1.1)},          {at(-0.75, 1.2), 1.1, pause(1.2), 1.9}, {at(-1.7, 1.3), 1.0},
-               {at(-1.2, 0.95), 0.9},   {at(0.1, 1.0), 1.15},                   {at(0.62, 1.35), 0.9, pause(1.6), 1.3},
-               {at(1.6, 1.3), 1.1},     {at(1.3, 1.0), 0.9}};
-  routes[1] = {{at(-0.55, 1.55), 1.0}, {at(0.05, 1.45), 1.0, pause(1.0), 1.5}, {at(0.7, 1.3), 0.9},
-               {{0.95, 1.6}, 0.6, 6.0, 1.75, true}, {at(0.5, 1.15), 0.9},          {at(-0.6, 1.35), 1.1},
+  routes[0] = {{at(0.3, 1.1)},       {at(-0.75, 1.2), 1.1, pause(1.2), 1.9},
+               {at(-1.7, 1.3), 1.0}, {at(-1.2, 0.95), 0.9},
+               {at(0.1, 1.0), 1.15}, {at(0.62, 1.35), 0.9, pause(1.6), 1.3},
+               {at(1.6, 1.3), 1.1},  {at(1.3, 1.0), 0.9}};
+  routes[1] = {{at(-0.55, 1.55), 1.0},
+               {at(0.05, 1.45), 1.0, pause(1.0), 1.5},
+               {at(0.7, 1.3), 0.9},
+               {{0.95, 1.6}, 0.6, 6.0, 1.75, true},
+               {at(0.5, 1.15), 0.9},
+               {at(-0.6, 1.35), 1.1},
                {at(-1.55, 1.2), 1.1, pause(0.9), 2.4}};
   auto walk = std::make_shared<const Walk>(routes, seconds + 3);
   return [=, a = Restless(seed + 11), b = Restless(seed + 12)](double s, Instant& instant) {
@@ -158,8 +165,8 @@ bool is_moving(const std::function<Vector3d(double)>& place, double s) {
 Player desk_worker(const FigureLook& look, const Vector2d& seat, Furnisher& f, unsigned seed) {
   const std::uint16_t side = f.surface(Picture::kMug, 0, {1.1f, 0.85f, 0.6f}), inside = f.plain(30, 45, 70);
   const double x = seat.x(), top = static_cast<double>(kDeskHeight) + 0.004;
-  const std::array<Vector3d, 4> places = {Vector3d(x + 0.34, 2.1, top), {x + 0.12, 2.06, top}, {x + 0.42, 2.03, top},
-                                          {x + 0.22, 2.12, top}};
+  const std::array<Vector3d, 4> places = {
+      Vector3d(x + 0.34, 2.1, top), {x + 0.12, 2.06, top}, {x + 0.42, 2.03, top}, {x + 0.22, 2.12, top}};
   constexpr double kTurn = 3.4;  // s a mug's journey
   const auto mug = [=](double s) -> Vector3d {
     const double turns = std::max(0.0, s + 1) / kTurn;
@@ -188,7 +195,8 @@ Player desk_worker(const FigureLook& look, const Vector2d& seat, Furnisher& f, u
 
 Player cart_pusher(const FigureLook& look, Furnisher& f, unsigned seed) {
   const std::uint16_t carton = f.surface(Picture::kCardboard), poster = f.surface(Picture::kPosterC);
-  const std::uint16_t steel = f.surface(Picture::kMetal, 2, {0.6f, 0.6f, 0.65f}), rubber = f.plain(35, 35, 38);
+  const std::uint16_t steel = f.surface(Picture::kMetal, 2, {0.6f, 0.6f, 0.65f}),
+                      rubber = f.plain(35, 35, 38);
   Dice dice(hash(seed, 0xCA27u));
   const double phase = dice.between(0, 2 * M_PI), rate = 2 * M_PI / 8.5;
   const auto place = [=](double s) { return 0.62 + 0.62 * std::cos(rate * s + phase); };  // y, m

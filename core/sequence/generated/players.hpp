@@ -14,12 +14,14 @@ using Player = std::function<void(double seconds, Instant& instant)>;
 [[nodiscard]] FigureLook dress(int who, Furnisher& furnisher);
 
 /// Someone on a chair who sways, turns the head towards `partner` and gestures now and then.
-[[nodiscard]] Player sitter(const FigureLook& look, const Vector2d& seat, double heading, const Vector2d& partner,
-                            unsigned seed);
+[[nodiscard]] Player sitter(const FigureLook& look, const Vector2d& seat, double heading,
+                            const Vector2d& partner, unsigned seed);
 /// Two people who walk about the desk, pause, and sit down for a while.
-[[nodiscard]] Player walkers(const FigureLook& first, const FigureLook& second, double seconds, unsigned seed);
+[[nodiscard]] Player walkers(const FigureLook& first, const FigureLook& second, double seconds,
+                             unsigned seed);
 /// Someone at a desk who takes a mug from place to place and types in between.
-[[nodiscard]] Player desk_worker(const FigureLook& look, const Vector2d& seat, Furnisher& furnisher, unsigned seed);
+[[nodiscard]] Player desk_worker(const FigureLook& look, const Vector2d& seat, Furnisher& furnisher,
+                                 unsigned seed);
 /// Someone who pushes a cart with a large box to and fro along the camera's optical axis.
 [[nodiscard]] Player cart_pusher(const FigureLook& look, Furnisher& furnisher, unsigned seed);
 /// A mug pushed along the front of the table by a stick, with rests.

@@ -32,7 +32,7 @@ bool meet_box(const Vector3f& o, const Vector3f& d, bool from_inside, Hit& hit) 
   for (int i = 0; i < 3; ++i) {
     const float inverse = 1.0f / d[i];
     const float down = (-1.0f - o[i]) * inverse, up = (1.0f - o[i]) * inverse;
-    const bool rising = d[i] > 0;
+    const bool rising = inverse > 0;  // also right when d is a zero of either sign
     const float first = rising ? down : up, second = rising ? up : down;
     if (first > enter) enter = first, enter_face = 2 * i + (rising ? 0 : 1);
     if (second < leave) leave = second, leave_face = 2 * i + (rising ? 1 : 0);
@@ -94,7 +94,8 @@ Matrix3f turned(double yaw) {
   return Eigen::AngleAxisf(static_cast<float>(yaw), Vector3f::UnitZ()).toRotationMatrix();
 }
 
-Primitive make_box(const Vector3f& centre, const Vector3f& half, const Matrix3f& axes, std::uint16_t surface) {
+Primitive make_box(const Vector3f& centre, const Vector3f& half, const Matrix3f& axes,
+                   std::uint16_t surface) {
   Primitive p;
   p.centre = centre;
   p.half = half;
@@ -103,7 +104,8 @@ Primitive make_box(const Vector3f& centre, const Vector3f& half, const Matrix3f&
   return p;
 }
 
-Primitive make_ellipsoid(const Vector3f& centre, const Vector3f& radii, const Matrix3f& axes, std::uint16_t surface) {
+Primitive make_ellipsoid(const Vector3f& centre, const Vector3f& radii, const Matrix3f& axes,
+                         std::uint16_t surface) {
   Primitive p = make_box(centre, radii, axes, surface);
   p.shape = Shape::kEllipsoid;
   return p;
@@ -165,11 +167,16 @@ SeenPrimitive see(const Primitive& p, const Matrix3f& world_from_camera, const V
 bool intersect(const SeenPrimitive& p, const Vector3f& ray, Hit& hit) {
   const Vector3f d = p.rotation * ray;
   switch (p.shape) {
-    case Shape::kBox: return meet_box(p.origin, d, false, hit);
-    case Shape::kRoom: return meet_box(p.origin, d, true, hit);
-    case Shape::kEllipsoid: return meet_sphere(p.origin, d, 0, 1, hit);
-    case Shape::kCylinder: return meet_cylinder(p.origin, d, hit);
-    case Shape::kCone: return meet_cone(p, p.origin, d, hit);
+    case Shape::kBox:
+      return meet_box(p.origin, d, false, hit);
+    case Shape::kRoom:
+      return meet_box(p.origin, d, true, hit);
+    case Shape::kEllipsoid:
+      return meet_sphere(p.origin, d, 0, 1, hit);
+    case Shape::kCylinder:
+      return meet_cylinder(p.origin, d, hit);
+    case Shape::kCone:
+      return meet_cone(p, p.origin, d, hit);
   }
   return false;
 }
@@ -191,8 +198,8 @@ SurfacePoint describe_box(const Primitive& p, const Vector3f& local, int face) {
 
 }  // namespace
 
-SurfacePoint describe(const Primitive& p, const Surface& surface, const Texture& picture, const Vector3f& local,
-                      int face) {
+SurfacePoint describe(const Primitive& p, const Surface& surface, const Texture& picture,
+                      const Vector3f& local, int face) {
   SurfacePoint point{local, {0, 0}, 0};
   Vector2f half(1, 1);  // metres from the middle of the picture to its edges
   switch (p.shape) {

@@ -16,10 +16,10 @@ using Eigen::Vector3f;
 /// What a face of a primitive is covered with.
 struct Surface {
   Picture picture = Picture::kPlain;
-  Vector3f tint{1, 1, 1};   ///< BGR factors on the picture
-  float repeats = 0;        ///< repeats of the picture a metre; 0 = stretched once over the face
-  Vector2f offset{0, 0};    ///< added to (u, v), in repeats
-  bool glows = false;       ///< shown as it is, without shading: screens, lamps, windows
+  Vector3f tint{1, 1, 1};  ///< BGR factors on the picture
+  float repeats = 0;       ///< repeats of the picture a metre; 0 = stretched once over the face
+  Vector2f offset{0, 0};   ///< added to (u, v), in repeats
+  bool glows = false;      ///< shown as it is, without shading: screens, lamps, windows
 };
 
 enum class Shape : std::uint8_t {
@@ -35,29 +35,33 @@ enum class Shape : std::uint8_t {
 /// Faces: boxes -x +x -y +y -z +z; cylinders side, caps; others one.
 struct Primitive {
   Shape shape = Shape::kBox;
-  bool moving = false;   ///< belongs to the moving mask
-  float dropout = 0;     ///< 0 to 1: how much of it a depth camera fails to see (dark, shiny, transparent)
-  Vector3f centre{0, 0, 0};          ///< world, m
-  Matrix3f local_from_world = Matrix3f::Identity();  ///< local = local_from_world * (world - centre)
-  Vector3f half{1, 1, 1};            ///< metres a local unit; scales pictures
+  bool moving = false;  ///< belongs to the moving mask
+  float dropout = 0;    ///< 0 to 1: how much of it a depth camera fails to see (dark, shiny, transparent)
+  Vector3f centre{0, 0, 0};                            ///< world, m
+  Matrix3f local_from_world = Matrix3f::Identity();    ///< local = local_from_world * (world - centre)
+  Vector3f half{1, 1, 1};                              ///< metres a local unit; scales pictures
   float radius_start = 0, radius_end = 0, length = 0;  ///< cones: spheres at z = 0 and z = length, m
-  std::array<std::uint16_t, 6> surface{};  ///< indices into Scene::surfaces
+  std::array<std::uint16_t, 6> surface{};              ///< indices into Scene::surfaces
 };
 
 /// Axes as columns from a rotation about z (radians).
 [[nodiscard]] Matrix3f turned(double yaw);
 
-[[nodiscard]] Primitive make_box(const Vector3f& centre, const Vector3f& half, const Matrix3f& axes, std::uint16_t surface);
+[[nodiscard]] Primitive make_box(const Vector3f& centre, const Vector3f& half, const Matrix3f& axes,
+                                 std::uint16_t surface);
 [[nodiscard]] Primitive make_ellipsoid(const Vector3f& centre, const Vector3f& radii, const Matrix3f& axes,
                                        std::uint16_t surface);
 /// An upright or lying cylinder between two points.
-[[nodiscard]] Primitive make_cylinder(const Vector3f& from, const Vector3f& to, float radius, std::uint16_t surface);
-/// A rounded cone between two points. `front` is where its picture's middle faces; the shape is thinner along it by
-/// the factor `flat`.
-[[nodiscard]] Primitive make_cone(const Vector3f& from, float radius_from, const Vector3f& to, float radius_to,
-                                  std::uint16_t surface, const Vector3f& front = {0, -1, 0}, float flat = 1);
+[[nodiscard]] Primitive make_cylinder(const Vector3f& from, const Vector3f& to, float radius,
+                                      std::uint16_t surface);
+/// A rounded cone between two points. `front` is where its picture's middle faces; the shape is thinner along
+/// it by the factor `flat`.
+[[nodiscard]] Primitive make_cone(const Vector3f& from, float radius_from, const Vector3f& to,
+                                  float radius_to, std::uint16_t surface, const Vector3f& front = {0, -1, 0},
+                                  float flat = 1);
 
-/// A primitive as one camera sees it at one instant: local = origin + t * rotation * (x, y, 1), with t the depth in m.
+/// A primitive as one camera sees it at one instant: local = origin + t * rotation * (x, y, 1), with t the
+/// depth in m.
 struct SeenPrimitive {
   Matrix3f rotation;
   Vector3f origin;
@@ -71,19 +75,20 @@ struct Hit {
   int face = 0;
 };
 
-[[nodiscard]] SeenPrimitive see(const Primitive& primitive, const Matrix3f& world_from_camera, const Vector3f& position);
+[[nodiscard]] SeenPrimitive see(const Primitive& primitive, const Matrix3f& world_from_camera,
+                                const Vector3f& position);
 
-/// Where the ray through (x, y, 1) enters the primitive (leaves it, for rooms); true when nearer than `hit`, which it
-/// then replaces.
+/// Where the ray through (x, y, 1) enters the primitive (leaves it, for rooms); true when nearer than `hit`,
+/// which it then replaces.
 [[nodiscard]] bool intersect(const SeenPrimitive& primitive, const Vector3f& ray, Hit& hit);
 
 /// Outward normal in local coordinates (not normalised) and picture coordinates of a point on a primitive.
 struct SurfacePoint {
   Vector3f normal;
-  Vector2f uv;              ///< repeats
+  Vector2f uv;  ///< repeats
   float texels_per_metre;
 };
-[[nodiscard]] SurfacePoint describe(const Primitive& primitive, const Surface& surface, const Texture& picture,
-                                    const Vector3f& local, int face);
+[[nodiscard]] SurfacePoint describe(const Primitive& primitive, const Surface& surface,
+                                    const Texture& picture, const Vector3f& local, int face);
 
 }  // namespace stillpoint::generated

@@ -6,8 +6,8 @@
 
 namespace stillpoint::generated {
 
-// Randomness by counting: every value is a function of what it is for (pixel, frame, seed), so it never depends on the
-// order in which, or the thread on which, values are drawn.
+// Randomness by counting: every value is a function of what it is for (pixel, frame, seed), so it never
+// depends on the order in which, or the thread on which, values are drawn.
 
 /// Mixes four counters into 32 well-spread bits.
 [[nodiscard]] inline std::uint32_t hash(std::uint32_t a, std::uint32_t b = 0, std::uint32_t c = 0,
@@ -22,7 +22,9 @@ namespace stillpoint::generated {
 }
 
 /// 0 to 1.
-[[nodiscard]] inline float uniform(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f); }
+[[nodiscard]] inline float uniform(std::uint32_t bits) {
+  return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f);
+}
 
 /// Mean 0, deviation 1, within ±3.5: the sum of the four bytes, near enough to normal for sensor noise.
 [[nodiscard]] inline float gaussian(std::uint32_t bits) {
@@ -57,7 +59,8 @@ class Wander {
     for (int i = 0; i < waves; ++i) {
       const double share = waves > 1 ? (i + dice.between(0.1, 0.9)) / waves : 0.5;
       waves_.push_back({amplitude / std::sqrt(static_cast<double>(waves)) * dice.between(0.7, 1.3),
-                        6.283185307179586 * (low + (high - low) * share), dice.between(0.0, 6.283185307179586)});
+                        6.283185307179586 * (low + (high - low) * share),
+                        dice.between(0.0, 6.283185307179586)});
     }
   }
   [[nodiscard]] double at(double seconds) const {

@@ -17,8 +17,9 @@ struct Rendering {
 /// Depth and ids alone, at one instant.
 [[nodiscard]] Rendering cast_depth(const Scene& scene, const Camera& camera, const Instant& middle);
 
-/// Depth and ids at `middle`, colour averaged over the exposure's instants: each gives every pixel one sample at its
-/// own place within the pixel, so that edges are smooth and what moves is blurred by how it truly moves.
+/// Depth and ids at `middle`, colour averaged over the exposure's instants: each gives every pixel one sample
+/// at its own place within the pixel, so that edges are smooth and what moves is blurred by how it truly
+/// moves.
 /// @param blur_px no surface moves farther than this in the image during the exposure.
 [[nodiscard]] Rendering cast_frame(const Scene& scene, const Camera& camera, const Instant& middle,
                                    std::span<const Instant> exposure, double blur_px);

@@ -37,7 +37,7 @@ ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height, cons
     const Primitive& p = fixed[i];
     const Matrix3f world_from_local = p.local_from_world.inverse();
     std::vector<cv::Point> shadow;
-    float lowest = 1e9f;
+    float lowest = 1e9f, highest = -1e9f;
     for (int k = 0; k < 8; ++k) {
       Vector3f local(k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f);
       if (p.shape == Shape::kCone) {
@@ -46,15 +46,18 @@ ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height, cons
       }
       const Vector3f world = p.centre + world_from_local * local;
       lowest = std::min(lowest, world.z());
+      highest = std::max(highest, world.z());
       const Vector2f fallen = world.head<2>() - light.head<2>() / light.z() * (world.z() - height) - corner;
-      shadow.emplace_back(cvRound(fallen.x() * plane.texels_per_metre), cvRound(fallen.y() * plane.texels_per_metre));
+      shadow.emplace_back(cvRound(fallen.x() * plane.texels_per_metre),
+                          cvRound(fallen.y() * plane.texels_per_metre));
     }
-    if (lowest < height - 0.02f || lowest > 2.3f) continue;
+    if (lowest < height - 0.02f || lowest > 2.3f || highest - lowest < 0.005f) continue;  // paper throws none
     std::vector<cv::Point> hull;
     cv::convexHull(shadow, hull);
     cv::fillConvexPoly(plane.light, hull, cv::Scalar(70));
   }
-  cv::GaussianBlur(plane.light, plane.light, cv::Size(0, 0), static_cast<double>(blur_m * plane.texels_per_metre));
+  cv::GaussianBlur(plane.light, plane.light, cv::Size(0, 0),
+                   static_cast<double>(blur_m * plane.texels_per_metre));
   return plane;
 }
 

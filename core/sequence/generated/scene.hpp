@@ -23,10 +23,10 @@ struct Blob {
 
 /// The shadow that furniture throws on a level surface: floor or table top.
 struct ShadowPlane {
-  float height = 0;               ///< z of the surface, m
-  Vector2f corner{0, 0};          ///< smallest x and y, m
+  float height = 0;       ///< z of the surface, m
+  Vector2f corner{0, 0};  ///< smallest x and y, m
   float texels_per_metre = 100;
-  cv::Mat light;                  ///< CV_8UC1, 255 = lit
+  cv::Mat light;  ///< CV_8UC1, 255 = lit
 
   /// Share of the light that arrives, 0 to 1; 1 outside of the plane.
   [[nodiscard]] float at(const Vector3f& world) const;
@@ -44,8 +44,8 @@ struct Scene {
 };
 
 /// Computes where the fixed primitives keep the light off the plane.
-[[nodiscard]] ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height, const Vector2f& corner,
-                                       const Vector2f& size, float blur_m);
+[[nodiscard]] ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height,
+                                       const Vector2f& corner, const Vector2f& size, float blur_m);
 
 /// What moves, at one instant. Every instant of a sequence lists the same primitives in the same order.
 struct Instant {

@@ -6,11 +6,11 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr float kBase = 0.075f;         // m between projector and depth camera
-constexpr float kSteps = 8.0f;          // disparity steps a pixel
+constexpr float kBase = 0.075f;                       // m between projector and depth camera
+constexpr float kSteps = 8.0f;                        // disparity steps a pixel
 constexpr float kMinDepth = 0.45f, kMaxDepth = 6.0f;  // m
-constexpr float kSteepest = 6.0f;       // depth gained a metre across, beyond which nothing comes back
-constexpr float kEdge = 0.04f;          // relative depth step that makes an outline
+constexpr float kSteepest = 6.0f;  // depth gained a metre across, beyond which nothing comes back
+constexpr float kEdge = 0.04f;     // relative depth step that makes an outline
 
 std::uint32_t u32(int i) { return static_cast<std::uint32_t>(i); }
 
@@ -20,7 +20,8 @@ float lattice(std::uint32_t key, int x, int y, int pitch) {
   const float a = (static_cast<float>(x % pitch) + 0.5f) / static_cast<float>(pitch);
   const float b = (static_cast<float>(y % pitch) + 0.5f) / static_cast<float>(pitch);
   const auto at = [&](int u, int v) { return gaussian(hash(key, u32(u), u32(v))); };
-  return (at(i, j) * (1 - a) + at(i + 1, j) * a) * (1 - b) + (at(i, j + 1) * (1 - a) + at(i + 1, j + 1) * a) * b;
+  return (at(i, j) * (1 - a) + at(i + 1, j) * a) * (1 - b) +
+         (at(i, j + 1) * (1 - a) + at(i + 1, j + 1) * a) * b;
 }
 
 /// Marks what the projector, to the camera's right, cannot light: there the order of columns is turned round.
@@ -44,7 +45,8 @@ cv::Mat Sensor::colour(const cv::Mat& ideal, int frame, double seconds) const {
   cv::Mat image(ideal.size(), CV_8UC3);
   const float flicker = 0.006f * gaussian(hash(seed_, u32(frame), 1u));
   const float gain = 1.0f + static_cast<float>(exposure_.at(seconds)) + flicker;
-  const float middle_x = 0.5f * static_cast<float>(ideal.cols), middle_y = 0.5f * static_cast<float>(ideal.rows);
+  const float middle_x = 0.5f * static_cast<float>(ideal.cols),
+              middle_y = 0.5f * static_cast<float>(ideal.rows);
   const float reach = 1.0f / (middle_x * middle_x + middle_y * middle_y);
   for (int y = 0; y < ideal.rows; ++y) {
     const auto* in = ideal.ptr<cv::Vec3f>(y);
@@ -96,7 +98,8 @@ cv::Mat Sensor::depth(const Rendering& ideal, const std::vector<float>& dropout,
       // Off outlines a large step means a surface seen at a grazing angle.
       if (!outline && step * focal > kSteepest * z * (0.7f + 0.6f * uniform(hash(bits, 5u)))) continue;
       const float lost = dropout[id[x]];
-      if (lost > 0 && 0.5f + 0.4f * lattice(patches, x, y, 7) + 0.12f * lattice(patches + 1u, x, y, 2) < lost) continue;
+      if (lost > 0 && 0.5f + 0.4f * lattice(patches, x, y, 7) + 0.12f * lattice(patches + 1u, x, y, 2) < lost)
+        continue;
       const float away = z - 0.4f;
       const float sigma = 0.0012f + 0.0019f * away * away;
       const float noise = 0.8f * gaussian(hash(bits, 6u)) + 0.6f * 1.5f * lattice(key, x, y, 4);

@@ -13,9 +13,10 @@ constexpr double kExposure = 0.012;  // s
 
 /// A structured-light depth camera beside a colour camera, of the first Kinect's kind.
 ///
-/// Depth noise and step sizes grow with the square of depth (deviation 1.2 mm + 1.9 mm/m² (z - 0.4 m)²; disparity in
-/// steps of 1/8 px at a 75 mm base), after Khoshelham & Elberink 2012 and Nguyen et al. 2012. What the projector
-/// cannot reach, grazing surfaces, ragged outlines, and dark or shiny things have no depth.
+/// Depth noise and step sizes grow with the square of depth (deviation 1.2 mm + 1.9 mm/m² (z - 0.4 m)²;
+/// disparity in steps of 1/8 px at a 75 mm base), after Khoshelham & Elberink 2012 and Nguyen et al. 2012.
+/// What the projector cannot reach, grazing surfaces, ragged outlines, and dark or shiny things have no
+/// depth.
 class Sensor {
  public:
   explicit Sensor(unsigned seed);

@@ -16,7 +16,8 @@ class Texture {
   [[nodiscard]] int width() const { return levels_.front().width; }
   [[nodiscard]] int height() const { return levels_.front().height; }
 
-  /// Bilinear colour (BGR, 0 to 255) at (u, v) in repeats of the texture, v downwards, on a level (0 = full size).
+  /// Bilinear colour (BGR, 0 to 255) at (u, v) in repeats of the texture, v downwards, on a level (0 = full
+  /// size).
   [[nodiscard]] Eigen::Vector3f sample(float u, float v, int level) const {
     const Level& l = levels_[static_cast<std::size_t>(level < last_ ? (level > 0 ? level : 0) : last_)];
     const float x = u * static_cast<float>(l.width) - 0.5f, y = v * static_cast<float>(l.height) - 0.5f;
@@ -24,7 +25,8 @@ class Texture {
     const float ax = x - static_cast<float>(x0), ay = y - static_cast<float>(y0);
     const int xm = l.width - 1, ym = l.height - 1;
     const std::uint32_t* top = texels_.data() + l.offset + static_cast<std::size_t>((y0 & ym) * l.width);
-    const std::uint32_t* bottom = texels_.data() + l.offset + static_cast<std::size_t>(((y0 + 1) & ym) * l.width);
+    const std::uint32_t* bottom =
+        texels_.data() + l.offset + static_cast<std::size_t>(((y0 + 1) & ym) * l.width);
     const int xa = x0 & xm, xb = (x0 + 1) & xm;
     return (colour(top[xa]) * (1 - ax) + colour(top[xb]) * ax) * (1 - ay) +
            (colour(bottom[xa]) * (1 - ax) + colour(bottom[xb]) * ax) * ay;
@@ -59,20 +61,31 @@ enum class Picture {
   kWood,
   kDarkWood,
   kMetal,
-  kPaper,      ///< printed page
+  kPaperA,  ///< printed pages
+  kPaperB,
+  kPaperC,
   kKeyboard,
-  kScreen,     ///< lines of code
+  kScreen,  ///< lines of code
   kWhiteboard,
   kCardboard,
-  kSpineA, kSpineB, kSpineC,
-  kPosterA, kPosterB, kPosterC, kPosterD,
-  kCover,      ///< of a book
+  kSpineA,
+  kSpineB,
+  kSpineC,
+  kPosterA,
+  kPosterB,
+  kPosterC,
+  kPosterD,
+  kPosterE,
+  kPosterF,
+  kPosterG,
+  kPosterH,
+  kCover,  ///< of a book
   kWindow,
   kPlaid,
   kStripes,
-  kCloth,      ///< plain, woven
+  kCloth,  ///< plain, woven
   kSkin,
-  kFace,       ///< wrapped round a head, the face in the middle
+  kFace,  ///< wrapped round a head, the face in the middle
   kHair,
   kLeaf,
   kMug,

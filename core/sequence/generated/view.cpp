@@ -45,7 +45,8 @@ Bounds bounds_of(const Primitive& p, const View& view, const Camera& camera) {
     // Where an edge passes the near plane, the part before it counts.
     for (const std::size_t bit : {1u, 2u, 4u}) {
       const Vector3f& b = corners[k ^ bit];
-      if (a.z() < kNear && b.z() >= kNear) bounds.add(a + (b - a) * ((kNear - a.z()) / (b.z() - a.z())), camera);
+      if (a.z() < kNear && b.z() >= kNear)
+        bounds.add(a + (b - a) * ((kNear - a.z()) / (b.z() - a.z())), camera);
     }
   }
   return bounds;
@@ -82,7 +83,9 @@ TileLists::TileLists(const View& view, const Camera& camera)
     const auto id = static_cast<std::uint16_t>(i);
     Bounds b = bounds_of(view.primitive(id), view, camera);
     if (view.seen[i].shape == Shape::kRoom) b = {-1e6f, 1e6f, -1e6f, 1e6f, 1e8f};  // last, and everywhere
-    if (b.right < -1 || b.left > static_cast<float>(width) || b.down < -1 || b.up > static_cast<float>(height)) continue;
+    if (b.right < -1 || b.left > static_cast<float>(width) || b.down < -1 ||
+        b.up > static_cast<float>(height))
+      continue;
     entries.push_back({b, id});
   }
   std::stable_sort(entries.begin(), entries.end(),

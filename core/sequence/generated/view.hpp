@@ -7,12 +7,15 @@
 
 namespace stillpoint::generated {
 
-/// Everything as one camera sees it at one instant. Refers to the scene and the instant, which must outlive it.
+/// Everything as one camera sees it at one instant. Refers to the scene and the instant, which must outlive
+/// it.
 struct View {
   View(const Scene& scene, const Camera& camera, const Instant& instant);
 
   /// The direction of a pixel in camera coordinates; its z is 1, so lengths along it are depths.
-  [[nodiscard]] Vector3f ray(float x, float y) const { return {(x - cx) * inverse_fx, (y - cy) * inverse_fy, 1.0f}; }
+  [[nodiscard]] Vector3f ray(float x, float y) const {
+    return {(x - cx) * inverse_fx, (y - cy) * inverse_fy, 1.0f};
+  }
   [[nodiscard]] const Primitive& primitive(std::uint16_t id) const {
     const std::size_t fixed_count = fixed->size();
     return id < fixed_count ? (*fixed)[id] : (*movers)[id - fixed_count];
@@ -51,7 +54,8 @@ struct Found {
 };
 
 /// The first of the candidates that a ray meets.
-[[nodiscard]] inline Found nearest(const View& view, std::span<const Candidate> candidates, const Vector3f& ray) {
+[[nodiscard]] inline Found nearest(const View& view, std::span<const Candidate> candidates,
+                                   const Vector3f& ray) {
   Found found;
   for (const Candidate& c : candidates) {
     if (c.nearest > found.hit.depth) break;

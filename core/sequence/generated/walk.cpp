@@ -6,10 +6,10 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr double kPairOfSteps = 1.38;   // m, at full stride
-constexpr double kFullSpeed = 1.15;     // m/s at which steps are longest
-constexpr double kTurnRate = 2.6;       // rad/s
-constexpr double kElbowRoom = 0.75;     // m people keep from each other
+constexpr double kPairOfSteps = 1.38;  // m, at full stride
+constexpr double kFullSpeed = 1.15;    // m/s at which steps are longest
+constexpr double kTurnRate = 2.6;      // rad/s
+constexpr double kElbowRoom = 0.75;    // m people keep from each other
 
 double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
 

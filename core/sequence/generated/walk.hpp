@@ -8,14 +8,15 @@ namespace stillpoint::generated {
 
 /// A place someone walks to, and what happens there.
 struct Stop {
-  Vector2d position;       ///< m
-  double speed = 1.1;      ///< on the way there, m/s
-  double pause = 0;        ///< seconds spent there; 0 = passes through
-  double heading = 0;      ///< while pausing
-  bool sits = false;       ///< on a chair, while pausing
+  Vector2d position;   ///< m
+  double speed = 1.1;  ///< on the way there, m/s
+  double pause = 0;    ///< seconds spent there; 0 = passes through
+  double heading = 0;  ///< while pausing
+  bool sits = false;   ///< on a chair, while pausing
 };
 
-/// People who walk their rounds for a while and step aside for each other. Simulated once at kRate, from rest.
+/// People who walk their rounds for a while and step aside for each other. Simulated once at kRate, from
+/// rest.
 class Walk {
  public:
   static constexpr double kRate = 120.0;  // Hz

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/commands.hpp"
+#include "core/sequence/generated/generated_sequence.hpp"
+#include "core/sequence/write_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct GenerateOptions {
+  std::string kind, out;
+  int frames = 0;
+  unsigned seed = 1;
+  int threads = 2;
+  bool force = false;
+};
+
+/// Frames done and the rate: one line that is rewritten on a terminal, a line every 50 frames elsewhere.
+class ProgressLine {
+ public:
+  void operator()(int done, int total) const {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double rate = done / std::max(seconds, 1e-3);
+    const bool last = done == total;
+    if (terminal_)
+      fmt::print(stderr, "\r{}/{} frames, {:.1f} a second, {:.0f} s left   {}", done, total, rate,
+                 (total - done) / rate, last ? "\n" : "");
+    else if (last || done % 50 == 0)
+      fmt::print(stderr, "{}/{} frames, {:.1f} a second\n", done, total, rate);
+    std::fflush(stderr);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+};
+
+void generate(const GenerateOptions& options) {
+  const auto sequence = make_generated_sequence(options.kind, options.frames, options.seed);
+  WriteOptions write;
+  write.force = options.force;
+  write.threads = options.threads;
+  write.progress = ProgressLine();
+  write_sequence(*sequence, options.out, write);
+  fmt::print("{}: {} frames of {}, seed {}\n", options.out, sequence->size(), sequence->name(), options.seed);
+}
+
+}  // namespace
+
+void add_generate_command(CLI::App& app) {
+  auto options = std::make_shared<GenerateOptions>();
+  CLI::App* command =
+      app.add_subcommand("generate", "Film a generated room and write it as a TUM RGB-D folder");
+  command->add_option("kind", options->kind, fmt::format("one of: {}", fmt::join(generated_kinds(), ", ")))
+      ->required();
+  command->add_option("--out", options->out, "the folder to write, created when missing")->required();
+  command->add_option("--frames", options->frames, "how many frames; 0 = the kind's own length (300)");
+  command->add_option("--seed", options->seed, "another seed is another film of the same kind")
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads, "threads that make frames; any number gives the same files")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_flag("--force", options->force, "replace the sequence that the folder holds");
+  command->callback([options] { generate(*options); });
+}
+
+}  // namespace stillpoint
