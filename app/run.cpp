@@ -45,7 +45,6 @@ void run(const RunArguments& arguments) {
   const RunReport report = report_on(result, *source);
   // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
-  std::fflush(stdout);
   if (!arguments.out.empty()) {
     write_run(arguments.out, result, report, *source);
     fmt::print("  written to    {}\n", arguments.out);
