@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
@@ -9,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/evaluation/tables.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 
@@ -85,30 +88,69 @@ void write_tables(const std::filesystem::path& folder, const Table& table_1, con
   write_text_file(folder / "details.csv", to_csv(details));
 }
 
+/// Opens a sequence that odometry can run on.
+std::unique_ptr<FrameSource> open_with_depth(const std::string& sequence, const BenchmarkArguments& arguments,
+                                             const Config& config) {
+  auto source = arguments.frames.open(sequence, config);
+  if (!source->has_depth()) throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
+  for (const std::string& method : arguments.methods)
+    if (method == "oracle" && !source->has_masks())
+      throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", sequence));
+  return source;
+}
+
+/// Everything that can be known to be wrong is told before the first frame, not hours later.
+std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arguments, Config config) {
+  std::set<std::string> methods;
+  for (const std::string& method : arguments.methods) {
+    set_parameter(config, "run.method=" + method);
+    if (!methods.insert(method).second) throw InputError(fmt::format("--methods names {} twice", method));
+  }
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  for (const std::string& sequence : expanded(arguments.sequences))
+    sources.push_back(open_with_depth(sequence, arguments, config));
+  if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
+  return sources;
+}
+
+/// Where a sequence's runs go below the out folder: by its name (`generated:room` as `generated_room`), numbered where
+/// several share it.
+std::filesystem::path runs_folder(const std::string& out, std::string sequence, std::set<std::string>& taken) {
+  std::replace(sequence.begin(), sequence.end(), ':', '_');
+  std::string name = sequence;
+  for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", sequence, number);
+  return std::filesystem::path(out) / name;
+}
+
+RunResult run_one(const FrameSource& source, const Config& config, int frames) {
+  RunOptions options;
+  options.count = frames;
+  options.stop = &stop_requested();
+  options.measure_orb_unit = true;
+  const int total = frames > 0 ? std::min(frames, source.size()) : source.size();
+  Progress progress(fmt::format("{} ({})", source.name(), config.run.method), total);
+  options.on_frame = [&progress](const FrameResult& frame) { progress.advance(std::string(to_string(frame.record.status))); };
+  return run_sequence(source, config, options);
+}
+
 void benchmark(const BenchmarkArguments& arguments) {
   Config config = arguments.config.config();
-  for (const std::string& method : arguments.methods) set_parameter(config, "run.method=" + method);
-  if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
-
+  const auto sources = open_all(arguments, config);
   std::vector<BenchmarkRow> rows;
   std::vector<RunReport> reports;
-  for (const std::string& sequence : expanded(arguments.sequences)) {
-    const auto source = arguments.frames.open(sequence, config);
-    if (!source->has_depth()) throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
+  std::set<std::string> taken;
+  for (const auto& source : sources) {
     BenchmarkRow row{source->name(), {}};
+    const auto runs = runs_folder(arguments.out, source->name(), taken);
     for (const std::string& method : arguments.methods) {
       set_parameter(config, "run.method=" + method);
-      RunOptions options;
-      options.count = arguments.frames.frames;
-      options.stop = &stop_requested();
-      options.measure_orb_unit = true;
-      const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
-      Progress progress(fmt::format("{} ({})", source->name(), method), total);
-      options.on_frame = [&progress](const FrameResult& frame) { progress.advance(std::string(to_string(frame.record.status))); };
-      const RunResult result = run_sequence(*source, config, options);
+      const RunResult result = run_one(*source, config, arguments.frames.frames);
       if (result.interrupted) break;
       reports.push_back(report_on(result, *source));
       row.cells.push_back(cell_of(reports.back()));
+      if (arguments.out.empty()) continue;
+      prepare_run_folder(runs / method, arguments.force);
+      write_run(runs / method, result, reports.back(), *source);
     }
     rows.push_back(std::move(row));
     // After each sequence, so that an interrupted benchmark keeps what it has.
@@ -118,6 +160,7 @@ void benchmark(const BenchmarkArguments& arguments) {
   fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
              to_markdown(table_one(rows, arguments.methods)), to_markdown(details_table(reports)));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
+  throw_if_interrupted();
 }
 
 }  // namespace
@@ -128,7 +171,7 @@ void add_benchmark_command(CLI::App& app) {
       app.add_subcommand("benchmark", "Run sequences by several methods and print the paper's Table 1 with our columns");
   command->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")->required();
   command->add_option("--methods", arguments->methods, "Methods to compare, separated by commas")->delimiter(',')->capture_default_str();
-  command->add_option("--out", arguments->out, "Folder for the tables, as Markdown and CSV");
+  command->add_option("--out", arguments->out, "Folder for the tables, as Markdown and CSV, and for SEQUENCE/METHOD folders of the runs");
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
   arguments->config.add_to(*command, false);
   arguments->frames.add_to(*command);

@@ -8,6 +8,7 @@ void add_commands(CLI::App& app) {
   add_benchmark_command(app);
   add_generate_command(app);
   add_motion_command(app);
+  add_config_command(app);
 }
 
 }  // namespace stillpoint

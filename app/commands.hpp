@@ -15,5 +15,6 @@ void add_evaluate_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
+void add_config_command(CLI::App& app);
 
 }  // namespace stillpoint

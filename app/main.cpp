@@ -1,24 +1,44 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "core/error.hpp"
+
+namespace {
+
+/// What was printed may have gone nowhere: into a pipe nobody reads, or onto a full disk.
+bool output_arrived() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::fprintf(stderr, "stillpoint: standard output cannot be written (%s)\n",
+               std::strerror(errno != 0 ? errno : EIO));
+  return false;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   // Stages run beside each other here; threads inside OpenCV as well would only contend for the same cores.
   cv::setNumThreads(1);
   // What is wrong with an image is said once, by whoever reads it.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move", "stillpoint"};
+  CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move",
+               "stillpoint"};
   app.require_subcommand(1);
   stillpoint::add_commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? (output_arrived() ? 0 : 1) : 2;
+  } catch (const stillpoint::Interrupted& interrupted) {
+    (void)output_arrived();
+    return 128 + interrupted.signal;
   } catch (const stillpoint::InputError& error) {
     std::fprintf(stderr, "stillpoint: %s\n", error.what());
     return 1;
@@ -26,5 +46,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "stillpoint: unexpected: %s\n", error.what());
     return 1;
   }
-  return 0;
+  return output_arrived() ? 0 : 1;
 }

@@ -11,8 +11,10 @@ namespace stillpoint {
 namespace {
 
 std::atomic<bool> stop_flag{false};
+std::atomic<int> stop_signal{0};
 
 extern "C" void request_stop(int signal) {
+  stop_signal = signal;
   stop_flag = true;
   std::signal(signal, SIG_DFL);
 }
@@ -32,6 +34,10 @@ const std::atomic<bool>& stop_requested() {
   }();
   (void)installed;
   return stop_flag;
+}
+
+void throw_if_interrupted() {
+  if (stop_requested()) throw Interrupted{stop_signal};
 }
 
 Progress::Progress(std::string title, int total)

@@ -28,11 +28,10 @@ void run(const RunArguments& arguments) {
                                  arguments.sequence));
   if (config.run.method == "oracle" && !source->has_masks())
     throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", arguments.sequence));
-  if (!arguments.out.empty()) prepare_run_folder(arguments.out, arguments.force);
-
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();
+  if (!arguments.out.empty()) prepare_run_folder(arguments.out, arguments.force);
   options.measure_orb_unit = arguments.measure_unit;
   const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
   RunResult result;
@@ -44,11 +43,17 @@ void run(const RunArguments& arguments) {
     result = run_sequence(*source, config, options);
   }
   const RunReport report = report_on(result, *source);
-  if (!arguments.out.empty()) write_run(arguments.out, result, report, *source);
-  if (result.interrupted)
-    fmt::print("stopped after {} of {} frames; what was done is kept\n", report.frames, total);
+  // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
-  if (!arguments.out.empty()) fmt::print("  written to    {}\n", arguments.out);
+  if (!arguments.out.empty()) {
+    write_run(arguments.out, result, report, *source);
+    fmt::print("  written to    {}\n", arguments.out);
+  }
+  if (result.interrupted) {
+    fmt::print("stopped after {} of {} frames{}\n", report.frames, total,
+               arguments.out.empty() ? "" : "; what was done is kept");
+    throw_if_interrupted();
+  }
   if (report.tracked == 0)
     throw InputError(fmt::format("{}: no frame could be tracked ({})", arguments.sequence,
                                  result.records.empty() ? "there was none" : result.records.front().note));

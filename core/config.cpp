@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <toml++/toml.h>
 
 #include "core/assets.hpp"
@@ -154,13 +154,15 @@ std::vector<Parameter> parameters(Config& c) {
 }
 
 Config read_config(const std::string& path) {
+  std::error_code none;
   std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw InputError(fmt::format("{}: the configuration cannot be read", path));
+  if (!file || std::filesystem::is_directory(path, none))
+    throw InputError(fmt::format("{}: the configuration cannot be read", path));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
 
   toml::table table;
   try {
-    table = toml::parse(text.str(), path);
+    table = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
     throw InputError(line_prefix(path, error.source()) + "not valid TOML: " + std::string(error.description()));
   }
@@ -200,12 +202,16 @@ void set_parameter(Config& config, std::string_view assignment) {
   const std::string_view key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   std::vector<Parameter> all = parameters(config);
   Parameter& parameter = find_parameter(all, key, "");
-  const bool text = std::holds_alternative<std::string*>(parameter.value);
   toml::table table;
-  try {
-    table = toml::parse(text ? fmt::format("value = \"{}\"", value) : fmt::format("value = {}", value));
-  } catch (const toml::parse_error&) {
-    throw InputError(fmt::format("'{}' is no value for {}", value, key));
+  if (std::holds_alternative<std::string*>(parameter.value)) {
+    table.insert("value", std::string(value));
+  } else {
+    try {
+      table = toml::parse(fmt::format("value = {}", value));
+    } catch (const toml::parse_error&) {
+      table.clear();
+    }
+    if (table.size() != 1) throw InputError(fmt::format("'{}' is no value for {}", value, key));
   }
   assign(parameter, *table.get("value"), "");
 }

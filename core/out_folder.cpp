@@ -25,6 +25,7 @@ void prepare_out_folder(const std::filesystem::path& folder, std::initializer_li
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();

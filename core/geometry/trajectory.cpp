@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include "core/error.hpp"
@@ -90,6 +92,7 @@ Trajectory read_tum_trajectory(const std::string& path, std::vector<std::string>
 }
 
 void write_tum_trajectory(const std::string& path, const Trajectory& trajectory) {
+  errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.world_from_camera.translation();
@@ -98,7 +101,8 @@ void write_tum_trajectory(const std::string& path, const Trajectory& trajectory)
                         t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
   file.close();
-  if (!file) throw InputError(fmt::format("{}: the trajectory cannot be written", path));
+  if (!file)
+    throw InputError(fmt::format("{}: the trajectory cannot be written ({})", path, std::strerror(errno)));
 }
 
 std::optional<std::size_t> nearest_pose(const Trajectory& trajectory, double timestamp, double tolerance) {

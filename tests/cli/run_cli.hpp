@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,23 +14,28 @@
 namespace stillpoint {
 
 struct CliResult {
-  int exit_code = -1;  ///< 128 + signal when a signal ended it, as a shell tells
-  std::string out;     ///< standard output
-  std::string err;     ///< standard error
+  int exit_code = -1;      ///< 128 + signal when a signal ended it, as a shell tells
+  bool by_signal = false;  ///< a signal ended it; it did not exit by itself
+  std::string out;         ///< standard output
+  std::string err;         ///< standard error
 };
 
-/// Runs the built program with these arguments, as a user would, and waits for its end.
-inline CliResult run_cli(const std::vector<std::string>& arguments) {
-  const TemporaryFolder folder;
-  const std::string out = folder.path("out"), err = folder.path("err");
-  std::vector<std::string> words = {STILLPOINT_PROGRAM};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
-  const pid_t child = ::fork();
-  if (child == 0) {
+/// The built program, started with these arguments as a user would.
+class CliProcess {
+ public:
+  /// @param standard_output where it goes instead of into the result; empty = into the result
+  explicit CliProcess(const std::vector<std::string>& arguments,
+                      const std::string& program = STILLPOINT_PROGRAM,
+                      const std::string& standard_output = "") {
+    const std::string out = standard_output.empty() ? folder_.path("out") : standard_output,
+                      err = folder_.path("err");
+    std::vector<std::string> words = {program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    child_ = ::fork();
+    if (child_ != 0) return;
     const int flags = O_WRONLY | O_CREAT | O_TRUNC;
     ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
     ::dup2(::open(out.c_str(), flags, 0600), STDOUT_FILENO);
@@ -37,17 +43,31 @@ inline CliResult run_cli(const std::vector<std::string>& arguments) {
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }
-  CliResult result;
-  int status = 0;
-  if (child < 0 || ::waitpid(child, &status, 0) != child) {
-    ADD_FAILURE() << "the program could not be started";
+
+  void send(int signal) const { ::kill(child_, signal); }
+
+  /// Waits for its end.
+  [[nodiscard]] CliResult wait() {
+    CliResult result;
+    int status = 0;
+    if (child_ < 0 || ::waitpid(child_, &status, 0) != child_) {
+      ADD_FAILURE() << "the program could not be started";
+      return result;
+    }
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.by_signal = WIFSIGNALED(status);
+    result.out = folder_.read("out");
+    result.err = folder_.read("err");
     return result;
   }
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  result.out = folder.read("out");
-  result.err = folder.read("err");
-  return result;
-}
+
+ private:
+  TemporaryFolder folder_;
+  pid_t child_ = -1;
+};
+
+/// Runs the built program to its end.
+inline CliResult run_cli(const std::vector<std::string>& arguments) { return CliProcess(arguments).wait(); }
 
 /// Expects a run that failed as bad input should: exit status 1, nothing on standard output, and one line on
 /// standard error that holds `part`.
