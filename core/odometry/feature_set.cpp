@@ -63,14 +63,39 @@ FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, 
   return kept;
 }
 
-std::vector<float> depth_at(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& depth) {
-  std::vector<float> result(keypoints.size(), 0.0F);
+std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Mat& depth) {
+  std::vector<float> result(pixels.size(), 0.0F);
   if (depth.empty()) return result;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    const int x = cvRound(keypoints[i].pt.x), y = cvRound(keypoints[i].pt.y);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const int x = cvRound(pixels[i].x), y = cvRound(pixels[i].y);
     if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
     const float z = depth.at<float>(y, x);
     if (std::isfinite(z) && z > 0) result[i] = z;
+  }
+  return result;
+}
+
+std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const std::vector<cv::Point2f>& undistorted,
+                            const cv::Mat& depth, const Camera& camera, const Pose& then_from_now) {
+  std::vector<float> result = depth_at(pixels, depth);
+  if (depth.empty()) return result;
+  // The first reading is near enough to tell where the point was seen then; distortion is the same over so few pixels.
+  std::vector<cv::Point2f> then(pixels);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (result[i] <= 0) continue;
+    const Eigen::Vector2d now(undistorted[i].x, undistorted[i].y);
+    const Eigen::Vector3d p = then_from_now * camera.back_project(now, result[i]);
+    if (p.z() <= 0) continue;
+    const Eigen::Vector2d shift = camera.project(p) - now;
+    then[i] += cv::Point2f(static_cast<float>(shift.x()), static_cast<float>(shift.y()));
+  }
+  const std::vector<float> measured = depth_at(then, depth);
+  const Pose now_from_then = then_from_now.inverse();
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (result[i] <= 0) continue;
+    const cv::Point2f pixel = undistorted[i] + then[i] - pixels[i];
+    const double z = measured[i] > 0 ? (now_from_then * camera.back_project({pixel.x, pixel.y}, measured[i])).z() : 0.0;
+    result[i] = z > 0 ? static_cast<float>(z) : 0.0F;
   }
   return result;
 }

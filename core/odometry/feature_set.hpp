@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/se3.hpp"
 
 namespace stillpoint {
 
@@ -41,7 +42,13 @@ struct FeatureSet {
 /// The features of `all` for which keep[i] is non-zero, undistorted and indexed anew.
 [[nodiscard]] FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height);
 
-/// Reads each keypoint's depth (m) from a CV_32FC1 image; 0 where the image is empty or has no measurement.
-[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::KeyPoint>& keypoints, const cv::Mat& depth);
+/// Reads each pixel's depth (m) from a CV_32FC1 image; 0 where the image is empty or has no measurement.
+[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Mat& depth);
+
+/// The same from a depth image taken a moment before or after, when the camera stood elsewhere: each pixel is looked up where
+/// its point was seen then, and its depth brought back to now.
+/// @param pixels in the image as it is; @param undistorted the same ones as a pinhole would see them
+[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const std::vector<cv::Point2f>& undistorted,
+                                          const cv::Mat& depth, const Camera& camera, const Pose& then_from_now);
 
 }  // namespace stillpoint

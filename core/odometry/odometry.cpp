@@ -23,6 +23,7 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   record.index = frame.index;
   record.timestamp = frame.timestamp;
   record.note = frame.problem;
+  now_ = frame.timestamp;
   const Stopwatch whole;
 
   apply_due_bundle(record, false);
@@ -112,10 +113,12 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures&
   FeatureSet all;
   all.keypoints = found.keypoints;
   all.descriptors = found.descriptors;
-  all.depth = depth_at(found.keypoints, frame.depth);
   std::vector<cv::Point2f> pixels;
   cv::KeyPoint::convert(found.keypoints, pixels);
   all.undistorted = camera_.undistort(pixels);
+  const double lag = config_.tracking.correct_depth_lag != 0 ? frame.depth_timestamp - frame.timestamp : 0.0;
+  all.depth = lag == 0.0 ? depth_at(pixels, frame.depth)
+                         : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity_ * lag));
 
   std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
   current.records.resize(found.keypoints.size());
@@ -177,7 +180,7 @@ void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) 
   record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
   record.estimated = true;
   const Pose last = last_camera_from_world();
-  velocity_ = was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()));
+  velocity_ = was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
   if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
   remember(current, record);
@@ -258,6 +261,7 @@ void Odometry::remember(const Current& current, FrameRecord& record) {
   record.camera_from_reference = last.camera_from_reference;
   record.world_from_camera = current.camera_from_world.inverse();
   last_ = std::move(last);
+  last_timestamp_ = now_;
 }
 
 void Odometry::mark_lost(FrameRecord& record, FrameStatus status, const std::string& why) {
@@ -270,6 +274,7 @@ void Odometry::mark_lost(FrameRecord& record, FrameStatus status, const std::str
   record.reference_keyframe = last_->reference_keyframe;
   last_->camera_from_reference = predicted * map_.pose_of(last_->reference_keyframe).inverse();
   record.camera_from_reference = last_->camera_from_reference;
+  last_timestamp_ = now_;
   velocity_ *= kVelocityDecay;
   ++lost_frames_;
 }
@@ -278,6 +283,13 @@ Pose Odometry::last_camera_from_world() const {
   return last_->camera_from_reference * map_.pose_of(last_->reference_keyframe);
 }
 
-Pose Odometry::predicted_camera_from_world() const { return se3_exp(velocity_) * last_camera_from_world(); }
+double Odometry::elapsed() const {
+  constexpr double kShortest = 1e-3, kLongest = 0.2;  // s: beyond, a constant velocity predicts nothing
+  return std::clamp(now_ - last_timestamp_, kShortest, kLongest);
+}
+
+Pose Odometry::predicted_camera_from_world() const {
+  return se3_exp(velocity_ * elapsed()) * last_camera_from_world();
+}
 
 }  // namespace stillpoint

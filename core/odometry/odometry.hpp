@@ -97,6 +97,7 @@ class Odometry {
   void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
   void remember(const Current& current, FrameRecord& record);
   void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
+  [[nodiscard]] double elapsed() const;
   [[nodiscard]] Pose predicted_camera_from_world() const;
   [[nodiscard]] Pose last_camera_from_world() const;
 
@@ -106,7 +107,9 @@ class Odometry {
   std::vector<double> scales_;
   LocalMap map_;
   std::optional<Last> last_;                  // empty until the map has begun
-  Vector6d velocity_ = Vector6d::Zero();      // of the camera from frame to frame: log(current_from_last)
+  Vector6d velocity_ = Vector6d::Zero();      // of the camera, a second: log(current_from_last) over the time between
+  double last_timestamp_ = 0.0;               // s, of the frame last_ stands for
+  double now_ = 0.0;                          // s, of the frame at hand
   int lost_frames_ = 0;                       // in a row
   int last_keyframe_frame_ = 0;               // frame index of the newest keyframe
   std::deque<std::shared_ptr<const MotionFrame>> references_;  // newest last, as far back as motion detection looks

@@ -218,7 +218,10 @@ void TumFolder::read_depth(const Entry& listed, Frame& frame) const {
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
   else
+{
     depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
+    frame.depth_timestamp = listed.depth->timestamp;
+  }
 }
 
 FrameTruth TumFolder::truth(int index) const {

@@ -147,9 +147,29 @@ TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {
   cv::Mat depth = cv::Mat::zeros(10, 10, CV_32FC1);
   depth.at<float>(3, 4) = 1.5F;
   depth.at<float>(5, 5) = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<cv::KeyPoint> keypoints = {{4.2F, 2.9F, 1}, {5, 5, 1}, {9.9F, 3, 1}, {0, 0, 1}};
-  EXPECT_EQ(depth_at(keypoints, depth), (std::vector<float>{1.5F, 0, 0, 0}));
-  EXPECT_EQ(depth_at(keypoints, {}), (std::vector<float>{0, 0, 0, 0}));
+  const std::vector<cv::Point2f> pixels = {{4.2F, 2.9F}, {5, 5}, {9.9F, 3}, {0, 0}};
+  EXPECT_EQ(depth_at(pixels, depth), (std::vector<float>{1.5F, 0, 0, 0}));
+  EXPECT_EQ(depth_at(pixels, {}), (std::vector<float>{0, 0, 0, 0}));
+}
+
+TEST(FeatureSet, DepthTakenFromElsewhereIsCarriedToNow) {
+  // The depth image was taken 2 cm to the left and 5 cm farther back, of a wall that slopes.
+  const Camera camera = camera_by_name("freiburg3");
+  Pose then_from_now = Pose::Identity();
+  then_from_now.translation() = Eigen::Vector3d(0.02, 0, 0.05);
+  const auto plane_depth = [](double x) { return 2.0 / (1.0 - 0.3 * x); };  // z = 2 + 0.3 X, by x = X / z
+  cv::Mat depth(480, 640, CV_32FC1);
+  // The wall in coordinates of then: z - 0.05 = 2 + 0.3 (X - 0.02).
+  for (int v = 0; v < 480; ++v)
+    for (int u = 0; u < 640; ++u) {
+      const double x = (u - camera.cx) / camera.fx;
+      depth.at<float>(v, u) = static_cast<float>((2.05 - 0.3 * 0.02) / (1.0 - 0.3 * x));
+    }
+  for (const cv::Point2f pixel : {cv::Point2f(100, 100), cv::Point2f(320, 240), cv::Point2f(500, 400)}) {
+    const float z = depth_at({pixel}, {pixel}, depth, camera, then_from_now).front();
+    EXPECT_NEAR(z, plane_depth((pixel.x - camera.cx) / camera.fx), 0.002);
+    EXPECT_GT(std::abs(depth_at({pixel}, depth).front() - z), 0.03) << "without being carried it is off";
+  }
 }
 
 TEST(Matching, TheNearestDescriptorInTheWindowWins) {
