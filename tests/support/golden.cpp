@@ -32,32 +32,36 @@ bool wants_update() {
 ::testing::AssertionResult images_agree(const cv::Mat& actual, const cv::Mat& expected,
                                         const ImageTolerance& tolerance) {
   if (actual.size() != expected.size() || actual.type() != expected.type()) {
-    return ::testing::AssertionFailure() << "images of " << actual.size() << " and " << expected.size()
-                                         << " (types " << actual.type() << " and " << expected.type()
-                                         << ") are not comparable";
+    return ::testing::AssertionFailure()
+           << "images of " << actual.size() << " and " << expected.size() << " (types " << actual.type()
+           << " and " << expected.type() << ") are not comparable";
   }
   const cv::Mat difference = largest_difference(actual, expected);
   const int beyond = cv::countNonZero(difference > tolerance.channel);
-  const double allowed = std::max(tolerance.pixels, tolerance.pixels_share * static_cast<double>(actual.total()));
+  const double allowed =
+      std::max(tolerance.pixels, tolerance.pixels_share * static_cast<double>(actual.total()));
   if (beyond <= allowed) return ::testing::AssertionSuccess();
   double most = 0.0;
   cv::minMaxLoc(difference, nullptr, &most);
-  return ::testing::AssertionFailure() << beyond << " pixels differ by more than " << tolerance.channel << " (at most "
-                                       << allowed << " may), the worst by " << most;
+  return ::testing::AssertionFailure() << beyond << " pixels differ by more than " << tolerance.channel
+                                       << " (at most " << allowed << " may), the worst by " << most;
 }
 
 ::testing::AssertionResult matches_golden(const cv::Mat& actual, const std::string& name,
                                           const ImageTolerance& tolerance) {
-  const std::filesystem::path golden = std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
+  const std::filesystem::path golden =
+      std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
   if (wants_update()) {
     std::filesystem::create_directories(golden.parent_path());
-    if (!cv::imwrite(golden.string(), actual)) return ::testing::AssertionFailure() << "cannot write " << golden;
+    if (!cv::imwrite(golden.string(), actual))
+      return ::testing::AssertionFailure() << "cannot write " << golden;
     return ::testing::AssertionSuccess();
   }
   const cv::Mat expected = cv::imread(golden.string(), cv::IMREAD_COLOR);
   ::testing::AssertionResult result =
-      expected.empty() ? ::testing::AssertionFailure() << golden << " is missing; STILLPOINT_UPDATE_GOLDEN=1 writes it"
-                       : images_agree(actual, expected, tolerance);
+      expected.empty()
+          ? ::testing::AssertionFailure() << golden << " is missing; STILLPOINT_UPDATE_GOLDEN=1 writes it"
+          : images_agree(actual, expected, tolerance);
   if (result) return result;
   const std::filesystem::path place = std::filesystem::path(STILLPOINT_TEST_OUTPUT_DIR) / name;
   std::filesystem::create_directories(place.parent_path());

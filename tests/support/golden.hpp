@@ -17,14 +17,16 @@ struct ImageTolerance {
 inline constexpr ImageTolerance kInterfaceTolerance{2, 10.0, 0.0};
 inline constexpr ImageTolerance kSceneTolerance{2, 0.0, 0.0005};
 
-/// Whether two images agree: same size and type, and within tolerance. The message says by how much they do not.
+/// Whether two images agree: same size and type, and within tolerance. The message says by how much they do
+/// not.
 [[nodiscard]] ::testing::AssertionResult images_agree(const cv::Mat& actual, const cv::Mat& expected,
                                                       const ImageTolerance& tolerance);
 
-/// Compares with tests/golden/NAME.png. On failure NAME.actual.png and NAME.diff.png (differences made bright) are
-/// written beside the build. With STILLPOINT_UPDATE_GOLDEN=1 in the environment the golden image is written anew.
-[[nodiscard]] ::testing::AssertionResult matches_golden(const cv::Mat& actual, const std::string& name,
-                                                        const ImageTolerance& tolerance = kInterfaceTolerance);
+/// Compares with tests/golden/NAME.png. On failure NAME.actual.png and NAME.diff.png (differences made
+/// bright) are written beside the build. With STILLPOINT_UPDATE_GOLDEN=1 in the environment the golden image
+/// is written anew.
+[[nodiscard]] ::testing::AssertionResult matches_golden(
+    const cv::Mat& actual, const std::string& name, const ImageTolerance& tolerance = kInterfaceTolerance);
 
 /// Whether an image shows nothing: fewer than `colours` different colours.
 [[nodiscard]] bool is_blank(const cv::Mat& image, int colours = 4);

@@ -35,7 +35,8 @@ SceneData example_scene(int poses, int points) {
   const double step = std::sqrt(600.0 / poses);
   for (int i = 0; i < poses; ++i) {
     const double angle = 1.7 * std::numbers::pi * i / poses;
-    const Eigen::Vector3d place{1.6 * std::cos(angle), 1.2 * std::sin(angle), 1.4 + 0.15 * std::sin(3.0 * angle)};
+    const Eigen::Vector3d place{1.6 * std::cos(angle), 1.2 * std::sin(angle),
+                                1.4 + 0.15 * std::sin(3.0 * angle)};
     const auto wander = [&](double size) -> Eigen::Vector3d {
       return size * step * Eigen::Vector3d(noise(random), noise(random), noise(random));
     };
@@ -45,7 +46,8 @@ SceneData example_scene(int poses, int points) {
     estimate.positions.push_back((place + drift).cast<float>());
     baseline.positions.push_back((place + worse).cast<float>());
     if (i % std::max(1, poses / 120) == 0) {
-      scene.errors.push_back({truth.positions.back(), estimate.positions.back(), static_cast<float>(drift.norm())});
+      scene.errors.push_back(
+          {truth.positions.back(), estimate.positions.back(), static_cast<float>(drift.norm())});
     }
     Eigen::Matrix3d world_from_camera;
     const Eigen::Vector3d forward = (Eigen::Vector3d(0.0, 0.0, 0.9) - place).normalized();
@@ -60,9 +62,12 @@ SceneData example_scene(int poses, int points) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (int i = 0; i < points; ++i) {
     Eigen::Vector3d place;
-    if (i % 3 == 0) place = {3.0 * share(random) - 1.5, 2.0 * share(random) - 1.0, 0.75 + 0.01 * noise(random)};
-    else if (i % 3 == 1) place = {-3.0 + 0.01 * noise(random), 6.0 * share(random) - 3.0, 2.5 * share(random)};
-    else place = {6.0 * share(random) - 3.0, 3.0 + 0.01 * noise(random), 2.5 * share(random)};
+    if (i % 3 == 0)
+      place = {3.0 * share(random) - 1.5, 2.0 * share(random) - 1.0, 0.75 + 0.01 * noise(random)};
+    else if (i % 3 == 1)
+      place = {-3.0 + 0.01 * noise(random), 6.0 * share(random) - 3.0, 2.5 * share(random)};
+    else
+      place = {6.0 * share(random) - 3.0, 3.0 + 0.01 * noise(random), 2.5 * share(random)};
     scene.points.push_back({place.cast<float>(), false});
   }
   for (int i = 0; i < points / 25; ++i) {
@@ -102,12 +107,14 @@ Gallery::Gallery(bool with_scene)
     const double t = i / 30.0;
     time_.push_back(t);
     rpe_.push_back(0.008 + 0.002 * std::abs(noise(random)) + 0.01 * std::exp(-std::pow(t - 12.0, 2)));
-    baseline_.push_back(0.01 + 0.006 * std::abs(noise(random)) + 0.09 * std::exp(-0.3 * std::pow(t - 12.0, 2)));
+    baseline_.push_back(0.01 + 0.006 * std::abs(noise(random)) +
+                        0.09 * std::exp(-0.3 * std::pow(t - 12.0, 2)));
     if (i > 600 && i < 660) rpe_.back() = std::nan("");
   }
   for (int i = 0; i < 64; ++i) {
     bins_.push_back(4.0 * i);
-    counts_.push_back(std::round(120000.0 * std::exp(-i / 3.0) + 900.0 * std::exp(-0.01 * (i - 38) * (i - 38)) + 1.0));
+    counts_.push_back(
+        std::round(120000.0 * std::exp(-i / 3.0) + 900.0 * std::exp(-0.01 * (i - 38) * (i - 38)) + 1.0));
   }
 }
 
@@ -116,7 +123,8 @@ Gallery::~Gallery() = default;
 void Gallery::plots(const UiFrame& frame, ImVec2 size) {
   const ThemeName name = frame.theme.name;
   Plot plot{.x_label = "time", .x_unit = "s", .y_label = "RPE per second", .y_unit = "m"};
-  plot.series.push_back({"baseline", time_, baseline_, role_colour(Role::kBaseline, name), SeriesStyle::kDashed});
+  plot.series.push_back(
+      {"baseline", time_, baseline_, role_colour(Role::kBaseline, name), SeriesStyle::kDashed});
   plot.series.push_back({"paper", time_, rpe_, role_colour(Role::kEstimate, name), SeriesStyle::kLine});
   plot.levels.push_back({0.05, "break at 0.05 m", role_colour(Role::kWarning, name)});
   plot.bands.push_back({{20.0, 22.0}, role_colour(Role::kRemoved, name)});
@@ -158,10 +166,13 @@ void Gallery::operator()(UiFrame& frame) {
     mask_->upload(mask);
     if (with_scene_) scene_widget_ = std::make_unique<SceneWidget>(frame.gl);
   }
-  const float split_x = std::round(0.58F * frame.size.x), split_y = std::round(0.55F * frame.size.y), gap = 4.0F;
+  const float split_x = std::round(0.58F * frame.size.x), split_y = std::round(0.55F * frame.size.y),
+              gap = 4.0F;
   begin_tile("Trajectory", {gap, gap}, {split_x, split_y});
-  if (with_scene_) scene_response = scene_widget_->draw(frame, "scene", scene, scene_view);
-  else ImGui::TextWrapped("No trajectory yet. Open a sequence, or drop a folder here. Größe: 3 µm, α ≤ β → γ ✓");
+  if (with_scene_)
+    scene_response = scene_widget_->draw(frame, "scene", scene, scene_view);
+  else
+    ImGui::TextWrapped("No trajectory yet. Open a sequence, or drop a folder here. Größe: 3 µm, α ≤ β → γ ✓");
   ImGui::End();
 
   begin_tile("Union mask", {split_x + gap, gap}, {frame.size.x - gap, split_y});

@@ -15,8 +15,8 @@ namespace stillpoint::testing {
 /// A grey picture with shapes and fine texture, 8UC3.
 [[nodiscard]] cv::Mat example_image(int width = 320, int height = 240);
 
-/// One frame with all that the foundations offer: widgets, plots, an image panel and the trajectory view. The same
-/// object must be drawn by one shell only, whose GL context its textures belong to.
+/// One frame with all that the foundations offer: widgets, plots, an image panel and the trajectory view. The
+/// same object must be drawn by one shell only, whose GL context its textures belong to.
 class Gallery {
  public:
   explicit Gallery(bool with_scene = true);

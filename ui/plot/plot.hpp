@@ -54,7 +54,7 @@ struct Plot {
   std::vector<PlotBand> bands{};
   std::optional<double> cursor_x{};     ///< the current frame
   std::optional<AxisRange> x_limits{};  ///< what "everything" means in x; else the series' extent
-  bool y_from_zero = true;            ///< the y axis begins at zero when nothing is negative
+  bool y_from_zero = true;              ///< the y axis begins at zero when nothing is negative
   bool legend = true;
 };
 

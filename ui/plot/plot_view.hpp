@@ -12,7 +12,8 @@ namespace stillpoint {
 /// How a plot is looked at: plain data, kept between frames and with the layout. Without ranges of its own a
 /// plot shows everything.
 struct PlotView {
-  std::optional<AxisRange> x{};  ///< set by zooming and panning; shared by plots that are given the same PlotView
+  std::optional<AxisRange>
+      x{};  ///< set by zooming and panning; shared by plots that are given the same PlotView
   std::optional<AxisRange> y{};
   bool log_y = false;
 };

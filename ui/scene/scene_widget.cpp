@@ -22,28 +22,48 @@ class Overlay {
       : frame_(frame), list_(*ImGui::GetWindowDrawList()), low_(low), high_(high), scale_(frame.scale) {}
 
   void legend(const SceneData& scene) const {
-    float top = low_.y + 10.0F * scale_;
-    const float left = low_.x + 12.0F * scale_, line = frame_.fonts.small->FontSize + 4.0F * scale_;
+    struct Entry {
+      std::string name;
+      Rgb colour;
+      float width_px;  ///< of its line; 0 for a dot
+    };
+    std::vector<Entry> entries;
+    const ThemeName theme = frame_.theme.name;
     for (const ScenePath& path : scene.paths) {
-      if (path.name.empty()) continue;
-      const float middle = std::round(top + 0.5F * frame_.fonts.small->FontSize) ;
-      list_.AddLine({left, middle}, {left + 18.0F * scale_, middle},
-                    to_u32(role_colour(path.role, frame_.theme.name)),
-                    std::max(2.0F, path.width_px) * scale_);
-      text({left + 26.0F * scale_, top}, path.name, frame_.theme.text);
+      if (!path.name.empty())
+        entries.push_back({path.name, role_colour(path.role, theme), std::max(2.0F, path.width_px)});
+    }
+    const auto removed = [](const ScenePoint& point) { return point.removed; };
+    if (std::any_of(scene.points.begin(), scene.points.end(), removed)) {
+      entries.push_back({"removed points", role_colour(Role::kRemoved, theme), 0.0F});
+    }
+    if (entries.empty()) return;
+    float widest = 0.0F;
+    for (const Entry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
+    const float font = frame_.fonts.small->FontSize, line = font + 4.0F * scale_;
+    const ImVec2 corner{low_.x + 8.0F * scale_, low_.y + 8.0F * scale_};
+    backdrop(corner, {corner.x + widest + 46.0F * scale_,
+                      corner.y + line * static_cast<float>(entries.size()) + 8.0F * scale_});
+    const float left = corner.x + 8.0F * scale_;
+    float top = corner.y + 5.0F * scale_;
+    for (const Entry& entry : entries) {
+      const float middle = std::round(top + 0.5F * font);
+      const ImU32 colour = to_u32(entry.colour);
+      if (entry.width_px > 0.0F)
+        list_.AddLine({left, middle}, {left + 18.0F * scale_, middle}, colour, entry.width_px * scale_);
+      else
+        list_.AddCircleFilled({left + 9.0F * scale_, middle}, 3.0F * scale_, colour);
+      text({left + 26.0F * scale_, top}, entry.name, frame_.theme.text);
       top += line;
     }
-    const bool removed =
-        std::any_of(scene.points.begin(), scene.points.end(), [](const auto& p) { return p.removed; });
-    if (!removed) return;
-    list_.AddCircleFilled({left + 9.0F * scale_, top + 0.5F * frame_.fonts.small->FontSize}, 3.0F * scale_,
-                          to_u32(role_colour(Role::kRemoved, frame_.theme.name)));
-    text({left + 26.0F * scale_, top}, "removed points", frame_.theme.text);
   }
 
   void error_scale(float most_m) const {
     const float height = 110.0F * scale_, width = 10.0F * scale_;
-    const ImVec2 corner{high_.x - 64.0F * scale_, low_.y + 30.0F * scale_};
+    const ImVec2 corner{high_.x - 64.0F * scale_, low_.y + 34.0F * scale_};
+    const float half = 0.5F * frame_.fonts.small->FontSize;
+    backdrop({corner.x - 8.0F * scale_, low_.y + 8.0F * scale_},
+             {high_.x - 8.0F * scale_, corner.y + height + half + 5.0F * scale_});
     constexpr int kSteps = 32;
     for (int i = 0; i < kSteps; ++i) {
       const float value = 1.0F - (static_cast<float>(i) + 0.5F) / kSteps;
@@ -51,7 +71,6 @@ class Overlay {
       list_.AddRectFilled({corner.x, from}, {corner.x + width, from + height / kSteps + 1.0F},
                           to_u32(map_colour(Colormap::kInferno, 0.25F + 0.75F * value)));
     }
-    const float half = 0.5F * frame_.fonts.small->FontSize;
     text({corner.x - 2.0F * scale_, corner.y - 2.0F * half - 6.0F * scale_}, "error", frame_.theme.text_dim);
     text({corner.x + width + 5.0F * scale_, corner.y - half}, length_text(static_cast<double>(most_m)),
          frame_.theme.text);
@@ -61,9 +80,10 @@ class Overlay {
   void scale_bar(double metres_per_pixel) const {
     const double metres = scale_bar_length(metres_per_pixel, 120.0 * static_cast<double>(scale_));
     const auto length = static_cast<float>(metres / metres_per_pixel);
-    const float y = std::round(high_.y - 14.0F * scale_) , x = low_.x + 12.0F * scale_,
-                tick = 4.0F * scale_;
+    const float y = std::round(high_.y - 14.0F * scale_), x = low_.x + 12.0F * scale_, tick = 4.0F * scale_;
     const ImU32 ink = to_u32(frame_.theme.text_dim);
+    const float font = frame_.fonts.small->FontSize;
+    backdrop({x - 4.0F * scale_, y - font - 6.0F * scale_}, {x + length + 4.0F * scale_, y + 6.0F * scale_});
     list_.AddLine({x, y}, {x + length, y}, ink, scale_);
     list_.AddLine({x, y - tick}, {x, y + tick}, ink, scale_);
     list_.AddLine({x + length, y - tick}, {x + length, y + tick}, ink, scale_);
@@ -96,6 +116,11 @@ class Overlay {
   }
 
  private:
+  /// A ground that keeps writing readable over points and lines.
+  void backdrop(ImVec2 low, ImVec2 high) const {
+    list_.AddRectFilled(low, high, to_u32(frame_.theme.plot, 0.8F), 4.0F * scale_);
+  }
+
   [[nodiscard]] ImVec2 extent_of(const std::string& words) const {
     return frame_.fonts.small->CalcTextSizeA(frame_.fonts.small->FontSize, 1e6F, 0.0F, words.c_str());
   }

@@ -29,12 +29,12 @@ struct UiFrame {
   const Gl& gl;
   const Fonts& fonts;
   const Theme& theme;
-  ImVec2 size;                             ///< px, of the whole
-  float scale = 1.0F;                      ///< px a design pixel: multiply lengths by it
-  double time_s = 0.0;                     ///< of the interface's own clock; offscreen it ticks by frames
+  ImVec2 size;                               ///< px, of the whole
+  float scale = 1.0F;                        ///< px a design pixel: multiply lengths by it
+  double time_s = 0.0;                       ///< of the interface's own clock; offscreen it ticks by frames
   std::vector<std::string> dropped_files{};  ///< since the frame before
-  bool close_requested = false;            ///< the person closes the window
-  Look wanted_look{};                                                 ///< from the next frame on
+  bool close_requested = false;              ///< the person closes the window
+  Look wanted_look{};                        ///< from the next frame on
   double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
   bool quit = false;                                                ///< leave the shell's loop
 };
