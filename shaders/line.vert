@@ -1,6 +1,6 @@
 #version 330 core
-// Makes a line segment, one instance, into a screen-aligned quad of constant width with room for round caps: core
-// GL need not draw lines wider than a pixel.
+// Makes a line segment, four vertices that all know both ends, into a screen-aligned quad of constant width with room
+// for round caps: core GL need not draw lines wider than a pixel.
 layout(location = 0) in vec3 from_world;
 layout(location = 1) in vec4 from_colour;
 layout(location = 2) in vec3 to_world;
@@ -37,7 +37,7 @@ void main() {
   vec2 direction = length_px > 1e-4 ? span / length_px : vec2(1.0, 0.0);
   vec2 normal = vec2(-direction.y, direction.x);
 
-  bool at_end = gl_VertexID >= 2;
+  bool at_end = (gl_VertexID & 2) != 0;
   float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
   float reach = 0.5 * width_px + 1.0;  // a pixel more, for the soft edge
   vec2 shift = normal * side * reach + direction * (at_end ? reach : -reach);

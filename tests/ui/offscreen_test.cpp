@@ -201,13 +201,15 @@ TEST(OffscreenTest, LooksChangeFromTheNextFrameOn) {
 TEST(OffscreenTest, FontsHaveTheSignsWeWrite) {
   Offscreen offscreen({.width = 64, .height = 64});
   offscreen.draw([](UiFrame& frame) {
-    for (const int sign :
-         {0x2013, 0x2026, 0x00B0, 0x00D7, 0x2212, 0x2264, 0x2192, 0x03C3, 0x25A0, 0x2713}) {
-      EXPECT_NE(frame.fonts.text->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr) << std::hex << sign;
-      EXPECT_NE(frame.fonts.small->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr) << std::hex << sign;
+    for (const int sign : {0x2013, 0x2026, 0x00B0, 0x00D7, 0x2212, 0x2264, 0x2192, 0x03C3, 0x25A0, 0x2713}) {
+      EXPECT_NE(frame.fonts.text->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr)
+          << std::hex << sign;
+      EXPECT_NE(frame.fonts.small->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr)
+          << std::hex << sign;
     }
     for (const int sign : {0x2212, 0x00B1, 0x00B0, 0x2026}) {
-      EXPECT_NE(frame.fonts.mono->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr) << std::hex << sign;
+      EXPECT_NE(frame.fonts.mono->FindGlyphNoFallback(static_cast<ImWchar>(sign)), nullptr)
+          << std::hex << sign;
     }
     EXPECT_NE(frame.fonts.strong->FindGlyphNoFallback(0xF04B), nullptr);
   });

@@ -56,15 +56,17 @@ TEST_F(WidgetsTest, ImageTellsThePixelUnderTheMouse) {
 }
 
 TEST_F(WidgetsTest, ImageZoomsAboutTheMouseAndShowsNumbers) {
-  const ImVec2 place = image_place(200.5, 100.5);
+  const ImVec2 place = image_place(60.5, 118.5);
   move_to(place);
+  // ImGui keeps the mouse on whole pixels, so it may point beside the place asked for.
+  const auto before = gallery.image_response.pixel;
   for (int i = 0; i < 20; ++i) {
     offscreen.send(MouseWheel{0.0F, 1.0F, {}});
     offscreen.draw(std::ref(gallery));
   }
   const cv::Mat zoomed = render();
   EXPECT_GT(gallery.image_response.map.scale(), 32.0);
-  EXPECT_EQ(gallery.image_response.pixel, Eigen::Vector2i(200, 100));
+  EXPECT_EQ(gallery.image_response.pixel, before);
   EXPECT_TRUE(matches_golden(zoomed, "image_numbers", kSceneTolerance));
 }
 
@@ -115,13 +117,14 @@ TEST_F(WidgetsTest, PickedPlaceIsWhereTheLineIsDrawn) {
   gallery.scene.points.clear();
   gallery.scene.keyframes.clear();
   gallery.scene.errors.clear();
+  gallery.scene.paths.erase(gallery.scene.paths.begin(), gallery.scene.paths.begin() + 2);
   ++gallery.scene.revision;
   const cv::Mat image = render();
   const Rgb colour = role_colour(Role::kEstimate, ThemeName::kDark);
   int found = 0;
   for (const std::size_t index : {50UL, 150UL, 250UL, 350UL}) {
     const auto seen = project(gallery.scene_view, gallery.scene_response.viewport,
-                              gallery.scene.paths[2].positions[index].cast<double>());
+                              gallery.scene.paths[0].positions[index].cast<double>());
     const ImVec2 place = gallery.scene_response.to_screen(seen->head<2>());
     const auto& bgr = image.at<cv::Vec3b>(static_cast<int>(place.y), static_cast<int>(place.x));
     if (std::abs(bgr[0] - colour.b) < 40 && std::abs(bgr[1] - colour.g) < 40 &&

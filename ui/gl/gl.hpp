@@ -42,7 +42,6 @@ namespace stillpoint {
   X(DEPTHMASK, DepthMask)                                           \
   X(DISABLE, Disable)                                               \
   X(DRAWARRAYS, DrawArrays)                                         \
-  X(DRAWARRAYSINSTANCED, DrawArraysInstanced)                       \
   X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex)                 \
   X(ENABLE, Enable)                                                 \
   X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)               \
@@ -82,7 +81,6 @@ namespace stillpoint {
   X(UNIFORM4F, Uniform4f)                                           \
   X(UNIFORMMATRIX4FV, UniformMatrix4fv)                             \
   X(USEPROGRAM, UseProgram)                                         \
-  X(VERTEXATTRIBDIVISOR, VertexAttribDivisor)                       \
   X(VERTEXATTRIBPOINTER, VertexAttribPointer)                       \
   X(VIEWPORT, Viewport)
 

@@ -31,6 +31,27 @@ Segments path_segments(const ScenePath& path, ThemeName theme) {
   return segments;
 }
 
+std::vector<Eigen::Vector3f> simplified(const std::vector<Eigen::Vector3f>& positions, double tolerance_m) {
+  std::vector<Eigen::Vector3f> kept;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool gap = !positions[i].allFinite();
+    const bool at_end = i == 0 || i + 1 == positions.size() || gap || !positions[i - 1].allFinite() ||
+                        !positions[i + 1].allFinite();
+    if (at_end || static_cast<double>((positions[i] - kept.back()).norm()) > tolerance_m)
+      kept.push_back(positions[i]);
+  }
+  return kept;
+}
+
+double unseen_detail(const SceneView& view, const Viewport& viewport, const SceneBounds& box) {
+  const Eigen::Vector3d forward = view.world_from_view * -Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d half = 0.5 * (box.high - box.low);
+  const double nearest = forward.dot(0.5 * (box.low + box.high) - eye(view)) - half.dot(forward.cwiseAbs());
+  if (!(nearest > 0.1 * view.distance)) return 0.0;
+  const double half_pixel = nearest * std::tan(0.5 * view.fov_y) / viewport.height;
+  return std::exp2(std::floor(std::log2(half_pixel)));
+}
+
 Segments error_segments(const std::vector<SceneError>& errors, float scale_m) {
   Segments segments;
   segments.reserve(2 * errors.size());

@@ -26,6 +26,15 @@ using Segments = std::vector<SceneVertex>;
 /// The segments of a path; none from or to a position that is not finite.
 [[nodiscard]] Segments path_segments(const ScenePath& path, ThemeName theme);
 
+/// A path with fewer positions, none of those left out farther than `tolerance_m` from the one kept before
+/// it. Ends and gaps stay.
+[[nodiscard]] std::vector<Eigen::Vector3f> simplified(const std::vector<Eigen::Vector3f>& positions,
+                                                      double tolerance_m);
+
+/// How much of a path in `box` cannot be seen: half a pixel at its nearest, m, rounded down to a power of two
+/// so that it seldom changes while the view moves; 0 when the path comes near to the eye.
+[[nodiscard]] double unseen_detail(const SceneView& view, const Viewport& viewport, const SceneBounds& box);
+
 /// Error lines, coloured by value over `scale_m`.
 [[nodiscard]] Segments error_segments(const std::vector<SceneError>& errors, float scale_m);
 

@@ -1,5 +1,6 @@
 #include "ui/scene/scene_renderer.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace stillpoint {
@@ -24,6 +25,7 @@ SceneRenderer::SceneRenderer(const Gl& gl)
       line_program_(Program::embedded(gl, "line")),
       point_program_(Program::embedded(gl, "point")),
       image_program_(Program::embedded(gl, "image")),
+      segment_indices_(make_buffer(gl)),
       grid_(make_batch(Layout::kSegments)),
       axes_(make_batch(Layout::kSegments)),
       errors_(make_batch(Layout::kSegments)),
@@ -48,7 +50,7 @@ SceneRenderer::Batch SceneRenderer::make_batch(Layout layout) const {
   Batch batch{make_vertex_array(*gl_), make_buffer(*gl_)};
   gl_->BindVertexArray(batch.vertex_array.id());
   gl_->BindBuffer(GL_ARRAY_BUFFER, batch.buffer.id());
-  // A segment is one instance of two vertices; the shader makes four corners of it.
+  if (layout == Layout::kSegments) gl_->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, segment_indices_.id());
   const GLuint ends = layout == Layout::kSegments ? 2 : 1;
   const auto stride = static_cast<GLsizei>(ends * sizeof(SceneVertex));
   for (GLuint end = 0; end < ends; ++end) {
@@ -58,20 +60,45 @@ SceneRenderer::Batch SceneRenderer::make_batch(Layout layout) const {
                              offset(begin + offsetof(SceneVertex, position)));
     gl_->VertexAttribPointer(colour, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
                              offset(begin + offsetof(SceneVertex, rgba)));
-    for (const GLuint attribute : {position, colour}) {
-      gl_->EnableVertexAttribArray(attribute);
-      if (layout == Layout::kSegments) gl_->VertexAttribDivisor(attribute, 1);
-    }
+    gl_->EnableVertexAttribArray(position);
+    gl_->EnableVertexAttribArray(colour);
   }
   gl_->BindVertexArray(0);
   return batch;
 }
 
-void SceneRenderer::fill(Batch& batch, Layout layout, const std::vector<SceneVertex>& vertices) const {
+void SceneRenderer::fill(Batch& batch, Layout layout, const std::vector<SceneVertex>& vertices) {
+  std::vector<SceneVertex> corners;
+  if (layout == Layout::kSegments) {
+    // Each of a segment's four corners knows both ends. One instance a segment would need less memory, but
+    // software renderers take instances one by one.
+    corners.reserve(4 * vertices.size());
+    for (std::size_t i = 0; i + 1 < vertices.size(); i += 2) {
+      for (int corner = 0; corner < 4; ++corner)
+        corners.insert(corners.end(), {vertices[i], vertices[i + 1]});
+    }
+    reserve_segment_indices(vertices.size() / 2);
+  }
+  const std::vector<SceneVertex>& data = layout == Layout::kSegments ? corners : vertices;
   gl_->BindBuffer(GL_ARRAY_BUFFER, batch.buffer.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(SceneVertex)),
-                  vertices.data(), GL_STATIC_DRAW);
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(data.size() * sizeof(SceneVertex)), data.data(),
+                  GL_STATIC_DRAW);
   batch.count = static_cast<GLsizei>(layout == Layout::kSegments ? vertices.size() / 2 : vertices.size());
+}
+
+void SceneRenderer::reserve_segment_indices(std::size_t segments) {
+  if (segments <= indexed_segments_) return;
+  indexed_segments_ = std::max(segments, 2 * indexed_segments_);
+  std::vector<GLuint> indices;
+  indices.reserve(6 * indexed_segments_);
+  for (GLuint first = 0; first < 4 * indexed_segments_; first += 4) {
+    indices.insert(indices.end(), {first, first + 1, first + 2, first + 2, first + 1, first + 3});
+  }
+  // No vertex array may be bound: it would take this buffer for its own.
+  gl_->BindVertexArray(0);
+  gl_->BindBuffer(GL_ARRAY_BUFFER, segment_indices_.id());
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)), indices.data(),
+                  GL_STATIC_DRAW);
 }
 
 void SceneRenderer::upload_scene(const SceneData& scene, ThemeName theme) {
@@ -80,8 +107,9 @@ void SceneRenderer::upload_scene(const SceneData& scene, ThemeName theme) {
   uploaded_theme_ = theme;
   paths_.clear();
   for (const ScenePath& path : scene.paths) {
-    paths_.push_back({make_batch(Layout::kSegments), path.width_px});
-    fill(paths_.back().batch, Layout::kSegments, path_segments(path, theme));
+    SceneData alone;
+    alone.paths.push_back(path);
+    paths_.push_back({make_batch(Layout::kSegments), bounds(alone)});
   }
   fill(errors_, Layout::kSegments, error_segments(scene.errors, scene.error_scale_m));
   Segments frusta;
@@ -103,11 +131,24 @@ void SceneRenderer::upload_scene(const SceneData& scene, ThemeName theme) {
   fill(removed_points_, Layout::kPoints, removed);
 }
 
+void SceneRenderer::upload_paths(const SceneData& scene, const SceneView& view, const Viewport& viewport,
+                                 ThemeName theme) {
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const double tolerance = unseen_detail(view, viewport, paths_[i].box);
+    if (tolerance == paths_[i].tolerance_m) continue;
+    paths_[i].tolerance_m = tolerance;
+    ScenePath path{.name = "",
+                   .role = scene.paths[i].role,
+                   .positions = simplified(scene.paths[i].positions, tolerance)};
+    fill(paths_[i].batch, Layout::kSegments, path_segments(path, theme));
+  }
+}
+
 void SceneRenderer::draw_segments(const Batch& batch, float width_px) const {
   if (batch.count == 0) return;
   line_program_.set("width_px", width_px);
   gl_->BindVertexArray(batch.vertex_array.id());
-  gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, batch.count);
+  gl_->DrawElementsBaseVertex(GL_TRIANGLES, 6 * batch.count, GL_UNSIGNED_INT, nullptr, 0);
 }
 
 void SceneRenderer::draw_points(const Batch& batch, float size_px) const {
@@ -142,6 +183,7 @@ void SceneRenderer::draw(const SceneData& scene, const SceneView& view, const Th
                          const Framebuffer& target) {
   upload_scene(scene, theme.name);
   const Viewport viewport{static_cast<double>(target.width()), static_cast<double>(target.height())};
+  upload_paths(scene, view, viewport, theme.name);
   const Eigen::Matrix4f clip_from_world =
       (clip_from_view(view, viewport) * view_from_world(view)).cast<float>();
   const Eigen::Vector2f size{static_cast<float>(viewport.width), static_cast<float>(viewport.height)};
@@ -189,7 +231,8 @@ void SceneRenderer::draw(const SceneData& scene, const SceneView& view, const Th
   }
   draw_segments(errors_, kErrorWidth * scale);
   draw_segments(keyframes_, kKeyframeWidth * scale);
-  for (const PathBatch& path : paths_) draw_segments(path.batch, path.width_px * scale);
+  for (std::size_t i = 0; i < paths_.size(); ++i)
+    draw_segments(paths_[i].batch, scene.paths[i].width_px * scale);
   if (scene.current) {
     Segments frustum;
     append_frustum(frustum, *scene.current, scene.frustum, scene.frustum.current_depth_m,

@@ -25,19 +25,25 @@ class SceneRenderer {
   };
   struct PathBatch {
     Batch batch;
-    float width_px;
+    SceneBounds box;  ///< of its positions
+    double tolerance_m =
+        -1.0;  ///< by which what lies on the card is simplified; negative: nothing lies there yet
   };
 
   enum class Layout { kSegments, kPoints };
   [[nodiscard]] Batch make_batch(Layout layout) const;
-  void fill(Batch& batch, Layout layout, const std::vector<SceneVertex>& vertices) const;
+  void fill(Batch& batch, Layout layout, const std::vector<SceneVertex>& vertices);
+  void reserve_segment_indices(std::size_t segments);
   void upload_scene(const SceneData& scene, ThemeName theme);
+  void upload_paths(const SceneData& scene, const SceneView& view, const Viewport& viewport, ThemeName theme);
   void draw_segments(const Batch& batch, float width_px) const;
   void draw_points(const Batch& batch, float size_px) const;
   void draw_current_image(const SceneData& scene);
 
   const Gl* gl_;
   Program line_program_, point_program_, image_program_;
+  GlObject segment_indices_;  ///< two triangles a segment, shared by all batches
+  std::size_t indexed_segments_ = 0;
   Batch grid_, axes_, errors_, keyframes_, current_, kept_points_, removed_points_;
   std::vector<PathBatch> paths_;
   Texture image_;

@@ -13,7 +13,9 @@ namespace {
 constexpr double kPickRadius = 9.0;  // design px
 constexpr double kWheelFactor = 0.87;
 constexpr float kClickSlack = 4.0F;
-constexpr int kSamples = 4;
+// Lines, points and pictures' outlines are smooth by their shaders; samples would cost a software renderer
+// most of a frame and change little.
+constexpr int kSamples = 0;
 
 /// Writes and paints over a drawn scene; lengths in design px times scale.
 class Overlay {

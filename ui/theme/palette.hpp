@@ -68,7 +68,7 @@ enum class Role {
     case Role::kMapPoint:
       return dark ? Rgb{0x8B, 0x97, 0xA8} : Rgb{0x6B, 0x77, 0x88};
     case Role::kCursor:
-      return dark ? okabe_ito::kYellow : okabe_ito::kBlue;
+      return dark ? okabe_ito::kYellow : Rgb{0xA8, 0x3F, 0x7C};
     case Role::kWarning:
       return dark ? okabe_ito::kYellow : okabe_ito::kVermillion;
     case Role::kCount:

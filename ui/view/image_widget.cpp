@@ -46,32 +46,50 @@ double channel_value(const cv::Mat& image, int x, int y, int channel) {
   }
 }
 
+/// Whether a pixel is so bright that dark letters read better on it; unknown where numbers are no grey
+/// levels.
+std::optional<bool> is_bright(const cv::Mat& image, int x, int y) {
+  if (image.depth() != CV_8U) return std::nullopt;
+  if (image.channels() < 3) return channel_value(image, x, y, 0) > 140.0;
+  return 0.114 * channel_value(image, x, y, 0) + 0.587 * channel_value(image, x, y, 1) +
+             0.299 * channel_value(image, x, y, 2) >
+         140.0;
+}
+
+/// Hairlines between the pixels x0..x1, y0..y1.
+void draw_pixel_grid(const ImageResponse& response, int x0, int y0, int x1, int y1) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 ink = IM_COL32(128, 128, 128, 70);
+  const auto place = [&response](int x, int y) { return response.to_screen(Eigen::Vector2d(x, y)); };
+  for (int x = x0; x <= x1 + 1; ++x) list.AddLine(place(x, y0), place(x, y1 + 1), ink);
+  for (int y = y0; y <= y1 + 1; ++y) list.AddLine(place(x0, y), place(x1 + 1, y), ink);
+}
+
 /// Writes each visible pixel's numbers onto it, light or dark as its ground asks.
 void draw_numbers(const UiFrame& frame, const ImageResponse& response, const cv::Mat& values) {
-  const double scale = response.map.scale();
   const Eigen::Vector2d size = to_vector(response.panel_max) - to_vector(response.panel_min);
   const Eigen::Vector2d first = response.map.to_image({0.0, 0.0}), last = response.map.to_image(size);
   const int x0 = std::max(0, static_cast<int>(std::floor(first.x())));
   const int y0 = std::max(0, static_cast<int>(std::floor(first.y())));
   const int x1 = std::min(values.cols - 1, static_cast<int>(std::floor(last.x())));
   const int y1 = std::min(values.rows - 1, static_cast<int>(std::floor(last.y())));
+  draw_pixel_grid(response, x0, y0, x1, y1);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = frame.fonts.mono;
-  const int lines = values.channels() >= 3 ? 3 : 1;
-  const float font_size =
-      std::min(font->FontSize, static_cast<float>(scale) / (static_cast<float>(lines) + 0.8F));
+  const float lines = values.channels() >= 3 ? 3.0F : 1.0F;
+  const float room = static_cast<float>(response.map.scale());
+  // Three digits must fit the width, all lines the height.
+  const float font_size = std::floor(std::min({font->FontSize, room / (lines + 0.6F), room / 2.2F}));
+  constexpr ImU32 kLight = IM_COL32(255, 255, 255, 235), kDark = IM_COL32(0, 0, 0, 225);
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       const std::string text = pixel_text(values, x, y);
       const ImVec2 extent = font->CalcTextSizeA(font_size, 1e6F, 0.0F, text.c_str());
       const ImVec2 centre = response.to_screen({x + 0.5, y + 0.5});
       const ImVec2 corner{std::round(centre.x - 0.5F * extent.x), std::round(centre.y - 0.5F * extent.y)};
-      // An outline reads on every ground, whatever the colours shown stand for.
-      for (const ImVec2 shift : {ImVec2{-1, 0}, ImVec2{1, 0}, ImVec2{0, -1}, ImVec2{0, 1}}) {
-        list.AddText(font, font_size, {corner.x + shift.x, corner.y + shift.y}, IM_COL32(0, 0, 0, 150),
-                     text.c_str());
-      }
-      list.AddText(font, font_size, corner, IM_COL32(255, 255, 255, 255), text.c_str());
+      const std::optional<bool> bright = is_bright(values, x, y);
+      if (!bright) list.AddText(font, font_size, {corner.x + 1.0F, corner.y + 1.0F}, kDark, text.c_str());
+      list.AddText(font, font_size, corner, bright.value_or(false) ? kDark : kLight, text.c_str());
     }
   }
 }
@@ -88,7 +106,11 @@ void draw_absent(const UiFrame& frame, const ImageResponse& response, const std:
 void draw_pictures(const ImageContent& content, const ImageResponse& response,
                    const Eigen::Vector2d& image_size) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  // An image pixel's edge that falls on the centre of a display pixel would go either way, by rounding that differs
+  // from driver to driver; a hundredth of a pixel decides.
+  constexpr float kDecide = 0.01F;
+  ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  for (float* coordinate : {&low.x, &low.y, &high.x, &high.y}) *coordinate += kDecide;
   if (content.wiped_to != nullptr) {
     list.AddImage(content.wiped_to->imgui_id(), low, high);
     const float edge = low.x + (high.x - low.x) * content.wipe;

@@ -219,6 +219,44 @@ TEST(SceneMeshTest, PathsBreakAtGaps) {
   EXPECT_EQ(path_segments(path, ThemeName::kDark).size(), 2U * 3U);
 }
 
+TEST(SceneMeshTest, SimplifiedPathsStayWithinTolerance) {
+  std::vector<Eigen::Vector3f> path;
+  for (int i = 0; i < 1000; ++i) {
+    const float angle = 0.01F * static_cast<float>(i);
+    path.emplace_back(std::cos(angle), std::sin(angle), i == 500 ? std::nanf("") : 0.0F);
+  }
+  const auto fewer = simplified(path, 0.05);
+  EXPECT_LT(fewer.size(), 250U);
+  EXPECT_EQ(fewer.front(), path.front());
+  EXPECT_EQ(fewer.back(), path.back());
+  EXPECT_EQ(std::count_if(fewer.begin(), fewer.end(), [](const auto& p) { return !p.allFinite(); }), 1);
+  for (const Eigen::Vector3f& position : path) {
+    if (!position.allFinite()) continue;
+    float nearest = 1.0F;
+    for (const Eigen::Vector3f& kept : fewer) {
+      if (kept.allFinite()) nearest = std::min(nearest, (kept - position).norm());
+    }
+    EXPECT_LE(nearest, 0.05F);
+  }
+  EXPECT_EQ(simplified(path, 0.0).size(), path.size());
+}
+
+TEST(SceneMeshTest, UnseenDetailIsUnderHalfAPixel) {
+  SceneView view = oblique();
+  const SceneBounds box{{0.5, 1.5, 0.0}, {1.5, 2.5, 1.0}};
+  const double detail = unseen_detail(view, kViewport, box);
+  ASSERT_GT(detail, 0.0);
+  const Eigen::Vector3d right = view.world_from_view * Eigen::Vector3d::UnitX();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d place{(corner & 1) != 0 ? 1.5 : 0.5, (corner & 2) != 0 ? 2.5 : 1.5,
+                                (corner & 4) != 0 ? 1.0 : 0.0};
+    const auto from = project(view, kViewport, place), to = project(view, kViewport, place + detail * right);
+    EXPECT_LE((from->head<2>() - to->head<2>()).norm(), 0.5);
+  }
+  view.distance = 0.3;
+  EXPECT_EQ(unseen_detail(view, kViewport, box), 0.0);
+}
+
 TEST(SceneMeshTest, FrustumCornersProjectToTheImageCorners) {
   const FrustumShape shape{.half_width = 320.0F / 535.0F, .half_height = 240.0F / 535.0F};
   const auto corners = frustum_image_corners(Pose::Identity(), shape, 0.5F);
