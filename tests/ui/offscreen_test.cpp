@@ -188,6 +188,27 @@ TEST(OffscreenTest, ClippingCutsAtTheGivenPixels) {
   EXPECT_EQ(cv::countNonZero(white), 20 * 30);
 }
 
+TEST(OffscreenTest, ListsAreDrawnAtTheFramebuffersScale) {
+  Offscreen offscreen({.width = 100, .height = 80});
+  offscreen.draw([](UiFrame&) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.PushClipRect({10, 20}, {30, 50});
+    list.AddRectFilled({0, 0}, {100, 80}, IM_COL32(255, 255, 255, 255));
+    list.PopClipRect();
+  });
+  ImDrawData data = *ImGui::GetDrawData();
+  data.FramebufferScale = {2.0F, 2.0F};
+  const Framebuffer target(offscreen.gl(), 200, 160);
+  target.bind();
+  offscreen.gl().ClearColor(0.0F, 0.0F, 0.0F, 1.0F);
+  offscreen.gl().Clear(GL_COLOR_BUFFER_BIT);
+  ImGuiRenderer(offscreen.gl()).draw(data, target.height());
+  cv::Mat white;
+  cv::inRange(target.read(), cv::Scalar::all(255), cv::Scalar::all(255), white);
+  EXPECT_EQ(cv::boundingRect(white), cv::Rect(20, 40, 40, 60));
+  EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+}
+
 TEST(OffscreenTest, LooksChangeFromTheNextFrameOn) {
   Offscreen offscreen({.width = 64, .height = 64});
   offscreen.draw([](UiFrame& frame) { frame.wanted_look = {ThemeName::kLight, 1.5F}; });

@@ -39,6 +39,12 @@ class WidgetsTest : public ::testing::Test {
     render();
   }
   ImVec2 image_place(double x, double y) const { return gallery.image_response.to_screen({x, y}); }
+  cv::Mat image_panel(const cv::Mat& whole) const {
+    const ImageResponse& panel = gallery.image_response;
+    return whole(
+        cv::Rect(cv::Point(static_cast<int>(panel.panel_min.x), static_cast<int>(panel.panel_min.y)),
+                 cv::Point(static_cast<int>(panel.panel_max.x), static_cast<int>(panel.panel_max.y))));
+  }
   ImVec2 scene_middle() const {
     return gallery.scene_response.to_screen(
         {0.5 * gallery.scene_response.viewport.width, 0.5 * gallery.scene_response.viewport.height});
@@ -67,7 +73,7 @@ TEST_F(WidgetsTest, ImageZoomsAboutTheMouseAndShowsNumbers) {
   const cv::Mat zoomed = render();
   EXPECT_GT(gallery.image_response.map.scale(), 32.0);
   EXPECT_EQ(gallery.image_response.pixel, before);
-  EXPECT_TRUE(matches_golden(zoomed, "image_numbers", kSceneTolerance));
+  EXPECT_TRUE(matches_golden(image_panel(zoomed), "image_numbers"));
 }
 
 TEST_F(WidgetsTest, ImagePansAndFitsAgain) {
@@ -160,7 +166,7 @@ TEST_F(WidgetsTest, PlotHoversClicksZoomsAndPans) {
   ASSERT_TRUE(gallery.plot_view.x);
   EXPECT_LT(gallery.plot_view.x->span(), 30.0);
   EXPECT_NEAR(*gallery.plot_response.hovered_x, under, 1e-6);
-  EXPECT_TRUE(matches_golden(hovered, "plot_hover", kSceneTolerance));
+  EXPECT_TRUE(matches_golden(hovered.rowRange(500, 900), "plot_hover"));
 
   const AxisRange before = *gallery.plot_view.x;
   drag(place, {place.x + 100.0F, place.y}, 1);
@@ -190,7 +196,7 @@ TEST_F(WidgetsTest, EmptyPlotsImagesAndScenesAreDrawnToo) {
     ImGui::End();
   });
   EXPECT_FALSE(is_blank(image, 20));
-  EXPECT_TRUE(matches_golden(image, "empty", kInterfaceTolerance));
+  EXPECT_TRUE(matches_golden(image(cv::Rect(0, 0, 600, 800)), "empty"));
 }
 
 }  // namespace
