@@ -53,7 +53,8 @@ bool wants_update() {
       std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
   if (wants_update()) {
     std::filesystem::create_directories(golden.parent_path());
-    if (!cv::imwrite(golden.string(), actual))
+    // Golden images are kept in the repository, so they are packed as small as PNG goes.
+    if (!cv::imwrite(golden.string(), actual, {cv::IMWRITE_PNG_COMPRESSION, 9}))
       return ::testing::AssertionFailure() << "cannot write " << golden;
     return ::testing::AssertionSuccess();
   }
