@@ -70,16 +70,24 @@ TEST_F(WindowTest, ShowsTheTrajectoryAsTheOffscreenImageDoes) {
   EXPECT_TRUE(images_agree(shown, offscreen.render(std::ref(gallery)), kSceneTolerance));
 }
 
-TEST_F(WindowTest, LivesBesideAnOffscreenContext) {
+TEST_F(WindowTest, LivesBesideOffscreenContexts) {
+  const FrameFunction hello = [](UiFrame&) {
+    ImGui::GetForegroundDrawList()->AddRectFilled({20, 20}, {120, 90}, IM_COL32(255, 128, 0, 255));
+    ImGui::GetForegroundDrawList()->AddText({150, 40}, IM_COL32(255, 255, 255, 255), "hello");
+  };
   Window window({.width = 400, .height = 300});
-  const FrameFunction hello = [](UiFrame&) { ImGui::Text("hello"); };
-  for (int i = 0; i < 3; ++i) {
-    window.draw(hello);
-    Offscreen offscreen({.width = 400, .height = 300});
-    EXPECT_FALSE(is_blank(offscreen.render(hello)));
-    EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+  const cv::Mat alone = settled_image(window, hello);
+  for (const OffscreenBackend backend : {OffscreenBackend::kOsMesa, OffscreenBackend::kEgl}) {
+    Offscreen lasting({.width = 400, .height = 300, .backend = backend});
+    for (int i = 0; i < 3; ++i) {
+      Offscreen passing({.width = 400, .height = 300, .backend = backend});
+      EXPECT_TRUE(images_agree(window.capture(hello), alone, kInterfaceTolerance));
+      EXPECT_TRUE(images_agree(passing.render(hello), alone, kInterfaceTolerance));
+      EXPECT_TRUE(images_agree(lasting.render(hello), alone, kInterfaceTolerance));
+      EXPECT_THAT(lasting.take_gl_errors(), IsEmpty());
+    }
   }
-  EXPECT_FALSE(is_blank(window.capture(hello)));
+  EXPECT_TRUE(images_agree(window.capture(hello), alone, kInterfaceTolerance));
   EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
 }
 

@@ -67,7 +67,8 @@ cv::Mat Framebuffer::read() const {
 }
 
 cv::Mat read_pixels(const Gl& gl, int width, int height) {
-  cv::Mat image(height, width, CV_8UC3);
+  // Black rather than whatever lay in memory, should a driver read nothing.
+  cv::Mat image(height, width, CV_8UC3, cv::Scalar::all(0));
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
   gl.ReadPixels(0, 0, width, height, GL_BGR, GL_UNSIGNED_BYTE, image.data);
   cv::flip(image, image, 0);

@@ -20,7 +20,6 @@ struct Egl {
   decltype(&eglCreateContext) CreateContext = nullptr;
   decltype(&eglDestroyContext) DestroyContext = nullptr;
   decltype(&eglMakeCurrent) MakeCurrent = nullptr;
-  decltype(&eglGetCurrentContext) GetCurrentContext = nullptr;
   EGLDisplay display = EGL_NO_DISPLAY;
 };
 
@@ -43,7 +42,6 @@ Egl load_egl() {
   load(library, "eglCreateContext", egl.CreateContext);
   load(library, "eglDestroyContext", egl.DestroyContext);
   load(library, "eglMakeCurrent", egl.MakeCurrent);
-  load(library, "eglGetCurrentContext", egl.GetCurrentContext);
   const char* extensions = egl.QueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const auto get_platform_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.GetProcAddress("eglGetPlatformDisplayEXT"));
@@ -83,20 +81,18 @@ class EglContext : public GraphicsContext {
     }
     if (context_ == EGL_NO_CONTEXT) throw InputError("EGL offers no OpenGL 3.3 core context on this machine");
   }
-  EglContext(const EglContext&) = delete;
-  EglContext& operator=(const EglContext&) = delete;
   ~EglContext() override {
-    if (egl_.GetCurrentContext() == context_) EglContext::release_current();
+    release_current();
     egl_.DestroyContext(egl_.display, context_);
   }
 
-  void make_current() override {
+  void do_make_current() override {
     if (egl_.MakeCurrent(egl_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
       throw InputError("EGL's context cannot be made current without a surface");
     }
   }
 
-  void release_current() override {
+  void do_release_current() override {
     egl_.MakeCurrent(egl_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   }
 

@@ -28,20 +28,18 @@ class OsMesaContext : public GraphicsContext {
     context_ = OSMesaCreateContextAttribs(attributes, nullptr);
     if (context_ == nullptr) throw InputError("OSMesa offers no OpenGL 3.3 core context on this machine");
   }
-  OsMesaContext(const OsMesaContext&) = delete;
-  OsMesaContext& operator=(const OsMesaContext&) = delete;
   ~OsMesaContext() override {
-    if (OSMesaGetCurrentContext() == context_) OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
+    release_current();
     OSMesaDestroyContext(context_);
   }
 
-  void make_current() override {
+  void do_make_current() override {
     if (OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
       throw InputError("OSMesa's context cannot be made current");
     }
   }
 
-  void release_current() override { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
+  void do_release_current() override { OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0); }
 
   [[nodiscard]] void* get_proc_address(const char* name) const override {
     return reinterpret_cast<void*>(OSMesaGetProcAddress(name));

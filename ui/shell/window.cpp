@@ -92,6 +92,24 @@ int cursor_shape(ImGuiMouseCursor cursor) {
   }
 }
 
+/// A window's context, behind the interface that the offscreen ones have too.
+class GlfwContext : public GraphicsContext {
+ public:
+  explicit GlfwContext(GLFWwindow* window) : window_(window) {}
+  ~GlfwContext() override { release_current(); }
+
+  [[nodiscard]] void* get_proc_address(const char* name) const override {
+    return reinterpret_cast<void*>(glfwGetProcAddress(name));
+  }
+  [[nodiscard]] std::string name() const override { return "GLFW"; }
+
+ private:
+  void do_make_current() override { glfwMakeContextCurrent(window_); }
+  void do_release_current() override { glfwMakeContextCurrent(nullptr); }
+
+  GLFWwindow* window_;
+};
+
 }  // namespace
 
 Window::Window(const WindowOptions& options) {
@@ -105,12 +123,14 @@ Window::Window(const WindowOptions& options) {
                     "without a display",
                     reason));
   }
-  glfwMakeContextCurrent(window_);
+  context_ = std::make_unique<GlfwContext>(window_);
+  context_->make_current();
   glfwSwapInterval(1);
   try {
-    canvas_ = std::make_unique<Canvas>(
-        [](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }, options.look);
+    canvas_ = std::make_unique<Canvas>([this](const char* name) { return context_->get_proc_address(name); },
+                                       options.look);
   } catch (...) {
+    context_.reset();
     glfwDestroyWindow(window_);
     glfwTerminate();
     throw;
@@ -122,8 +142,9 @@ Window::Window(const WindowOptions& options) {
 }
 
 Window::~Window() {
-  glfwMakeContextCurrent(window_);
+  context_->make_current();
   canvas_.reset();
+  context_.reset();
   for (GLFWcursor* cursor : cursors_) {
     if (cursor != nullptr) glfwDestroyCursor(cursor);
   }
@@ -180,7 +201,7 @@ void Window::show_cursor() {
 }
 
 UiFrame Window::draw_unshown(const FrameFunction& function) {
-  glfwMakeContextCurrent(window_);
+  context_->make_current();
   const auto [width, height] = framebuffer_size();
   const auto [ratio_x, ratio_y] = pixel_ratio(window_);
   float content_x = 1.0F, content_y = 1.0F;

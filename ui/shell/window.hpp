@@ -57,6 +57,7 @@ class Window {
   void show_cursor();
 
   GLFWwindow* window_ = nullptr;
+  std::unique_ptr<GraphicsContext> context_;
   std::unique_ptr<Canvas> canvas_;
   std::array<GLFWcursor*, 16> cursors_{};
   double last_frame_s_ = 0.0;

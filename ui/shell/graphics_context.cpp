@@ -1,12 +1,32 @@
+#include "ui/shell/graphics_context.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <string_view>
 
 #include "core/error.hpp"
-#include "ui/shell/graphics_context.hpp"
 
 namespace stillpoint {
+namespace {
+
+/// The context that this thread draws with.
+thread_local GraphicsContext* current_context = nullptr;
+
+}  // namespace
+
+void GraphicsContext::make_current() {
+  if (current_context == this) return;
+  if (current_context != nullptr) current_context->release_current();
+  do_make_current();
+  current_context = this;
+}
+
+void GraphicsContext::release_current() {
+  if (current_context != this) return;
+  do_release_current();
+  current_context = nullptr;
+}
 
 std::unique_ptr<GraphicsContext> make_offscreen_context(OffscreenBackend backend) {
   if (backend == OffscreenBackend::kAny) {
