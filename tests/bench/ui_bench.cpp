@@ -1,0 +1,84 @@
+#include <benchmark/benchmark.h>
+
+#include "tests/ui/gallery.hpp"
+#include "ui/shell/offscreen.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+/// The trajectory view alone: range(0) points, range(1) poses, range(2) samples a pixel, at 800x600.
+void draw_scene(benchmark::State& state) {
+  Offscreen offscreen({.width = 64, .height = 64});
+  SceneRenderer renderer(offscreen.gl());
+  const SceneData scene = example_scene(static_cast<int>(state.range(1)), static_cast<int>(state.range(0)));
+  const Framebuffer target(offscreen.gl(), 800, 600, static_cast<int>(state.range(2)));
+  SceneView view;
+  look_from(view, ViewPreset::kOblique, scene.up);
+  fit(view, {800, 600}, bounds(scene));
+  for (auto _ : state) {
+    orbit(view, {800, 600}, {1.0, 0.0}, scene.up);
+    renderer.draw(scene, view, theme(ThemeName::kDark), 1.0F, target);
+    offscreen.gl().Finish();
+  }
+}
+BENCHMARK(draw_scene)
+    ->Args({100000, 10000, 0})
+    ->Args({100000, 10000, 4})
+    ->Args({0, 10000, 0})
+    ->Args({100000, 10, 0})
+    ->Args({0, 10, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+void pick_pose(benchmark::State& state) {
+  const SceneData scene = example_scene(10000, 0);
+  SceneView view;
+  look_from(view, ViewPreset::kOblique, scene.up);
+  fit(view, {800, 600}, bounds(scene));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(pick(view, {800, 600}, scene.paths[2].positions, {300, 300}, 9.0));
+}
+BENCHMARK(pick_pose)->Unit(benchmark::kMillisecond);
+
+/// A whole frame of plots, picture and trajectory view at 1600x900, without reading it back.
+void draw_gallery(benchmark::State& state) {
+  Offscreen offscreen({.width = 1600, .height = 900});
+  Gallery gallery;
+  offscreen.render(std::ref(gallery));
+  for (auto _ : state) {
+    offscreen.draw(std::ref(gallery));
+    offscreen.gl().Finish();
+  }
+}
+BENCHMARK(draw_gallery)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// From nothing to the first image: context, fonts, shaders, one frame.
+void open_offscreen(benchmark::State& state) {
+  for (auto _ : state) {
+    Offscreen offscreen({.width = 1600, .height = 900});
+    benchmark::DoNotOptimize(offscreen.render([](UiFrame&) { ImGui::Text("hello"); }));
+  }
+}
+BENCHMARK(open_offscreen)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void upload_image(benchmark::State& state) {
+  Offscreen offscreen({.width = 64, .height = 64});
+  Texture texture(offscreen.gl(), state.range(0) != 0 ? Sampling::kPixels : Sampling::kNearest);
+  const cv::Mat image = example_image(640, 480);
+  for (auto _ : state) {
+    texture.upload(image);
+    offscreen.gl().Finish();
+  }
+}
+BENCHMARK(upload_image)
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+}  // namespace
+}  // namespace stillpoint::testing
+
+BENCHMARK_MAIN();

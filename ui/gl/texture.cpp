@@ -1,0 +1,87 @@
+#include "ui/gl/texture.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace stillpoint {
+namespace {
+
+struct PixelFormat {
+  GLint internal;
+  GLenum format;
+  GLenum type;
+};
+
+PixelFormat pixel_format(int type) {
+  switch (type) {
+    case CV_8UC1:
+      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case CV_8UC3:
+      return {GL_RGB8, GL_BGR, GL_UNSIGNED_BYTE};
+    case CV_8UC4:
+      return {GL_RGBA8, GL_BGRA, GL_UNSIGNED_BYTE};
+    case CV_32FC1:
+      return {GL_R32F, GL_RED, GL_FLOAT};
+    default:
+      throw std::invalid_argument(fmt::format("no texture is made of images of OpenCV type {}", type));
+  }
+}
+
+}  // namespace
+
+Texture::Texture(const Gl& gl, Sampling sampling)
+    : gl_(&gl), texture_(make_texture(gl)), sampling_(sampling) {
+  gl.BindTexture(GL_TEXTURE_2D, texture_.id());
+  const GLint magnified = sampling == Sampling::kLinear ? GL_LINEAR : GL_NEAREST;
+  const GLint reduced = sampling == Sampling::kNearest  ? GL_NEAREST
+                        : sampling == Sampling::kLinear ? GL_LINEAR
+                                                        : GL_LINEAR_MIPMAP_LINEAR;
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, magnified);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, reduced);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void Texture::upload(const cv::Mat& image) {
+  if (image.empty()) {
+    width_ = height_ = 0;
+    return;
+  }
+  const PixelFormat format = pixel_format(image.type());
+  gl_->BindTexture(GL_TEXTURE_2D, texture_.id());
+  gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(image.step[0] / image.elemSize()));
+  if (image.cols == width_ && image.rows == height_ && image.type() == type_) {
+    gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, format.format, format.type, image.data);
+  } else {
+    gl_->TexImage2D(GL_TEXTURE_2D, 0, format.internal, image.cols, image.rows, 0, format.format, format.type,
+                    image.data);
+    width_ = image.cols;
+    height_ = image.rows;
+    type_ = image.type();
+    const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
+    const GLint colour[] = {GL_RED, GL_GREEN, GL_BLUE, image.channels() == 4 ? GL_ALPHA : GL_ONE};
+    gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, image.channels() == 1 ? grey : colour);
+  }
+  gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  if (sampling_ == Sampling::kPixels) gl_->GenerateMipmap(GL_TEXTURE_2D);
+}
+
+void Texture::allocate(int width, int height) {
+  gl_->BindTexture(GL_TEXTURE_2D, texture_.id());
+  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  width_ = width;
+  height_ = height;
+  type_ = CV_8UC4;
+}
+
+ImTextureID Texture::imgui_id() const { return to_imgui_texture(texture_.id()); }
+
+// ImTextureID is a pointer in older versions of ImGui and an integer in newer ones; a C-style cast serves
+// both.
+ImTextureID to_imgui_texture(GLuint id) { return (ImTextureID)(static_cast<std::intptr_t>(id)); }
+
+GLuint from_imgui_texture(ImTextureID id) { return static_cast<GLuint>((std::intptr_t)id); }
+
+}  // namespace stillpoint

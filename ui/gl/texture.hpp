@@ -1,0 +1,51 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "ui/gl/gl.hpp"
+
+namespace stillpoint {
+
+/// How a texture is read between its pixels.
+enum class Sampling {
+  kNearest,  ///< sharp pixels at every size
+  kLinear,   ///< smooth at every size
+  kPixels,   ///< sharp pixels when enlarged, smooth (by mipmaps) when reduced: for images one inspects
+};
+
+/// A picture on the graphics card.
+class Texture {
+ public:
+  explicit Texture(const Gl& gl, Sampling sampling = Sampling::kPixels);
+
+  /// Takes over an image: 8UC1 and 32FC1 (0 to 1) show as grey, 8UC3 is BGR, 8UC4 is BGRA. Rows may be
+  /// padded. Storage is kept while size and type stay the same. An empty image leaves the texture empty.
+  /// @throws std::invalid_argument for another type.
+  void upload(const cv::Mat& image);
+
+  /// Makes uninitialised RGBA storage to draw into.
+  void allocate(int width, int height);
+
+  [[nodiscard]] bool empty() const { return width_ == 0; }
+  [[nodiscard]] int width() const { return width_; }    ///< px
+  [[nodiscard]] int height() const { return height_; }  ///< px
+  [[nodiscard]] GLuint id() const { return texture_.id(); }
+
+  /// The name under which ImGui's draw lists know it.
+  [[nodiscard]] ImTextureID imgui_id() const;
+
+ private:
+  const Gl* gl_;
+  GlObject texture_;
+  Sampling sampling_;
+  int width_ = 0, height_ = 0, type_ = -1;
+};
+
+/// A GL texture's name in ImGui's terms, whose type differs between ImGui's versions.
+[[nodiscard]] ImTextureID to_imgui_texture(GLuint id);
+[[nodiscard]] GLuint from_imgui_texture(ImTextureID id);
+
+}  // namespace stillpoint

@@ -1,0 +1,229 @@
+#include "ui/plot/plot_paint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+constexpr float kDash = 6.0F, kGap = 4.0F;  // design px
+constexpr float kSwatchLength = 16.0F;
+
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return unit.empty() ? label : label.empty() ? unit : label + " (" + unit + ")";
+}
+
+}  // namespace
+
+ImVec2 PlotPaint::text_size(const std::string& words) const {
+  const ImFont* font = frame_.fonts.small;
+  return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, words.c_str());
+}
+
+ImVec2 PlotPaint::place(double value_x, double value_y) const {
+  // Far outside the area positions only need to be outside; beyond what a float holds they would break the
+  // line.
+  const double py = std::clamp(y.to_pixel(value_y), -1e5, 1e5),
+               px = std::clamp(x.to_pixel(value_x), -1e5, 1e5);
+  return {static_cast<float>(px), static_cast<float>(py)};
+}
+
+void PlotPaint::text(ImVec2 at, const std::string& words, ImU32 colour) const {
+  list_.AddText(frame_.fonts.small, frame_.fonts.small->FontSize, {std::round(at.x), std::round(at.y)},
+                colour, words.c_str());
+}
+
+void PlotPaint::ground(const Plot&) const { list_.AddRectFilled(low, high, to_u32(frame_.theme.plot), 2.0F); }
+
+void PlotPaint::axes(const Plot& plot, ImVec2, ImVec2 outer_high) const {
+  const ImU32 grid = to_u32(frame_.theme.grid), faint = to_u32(frame_.theme.grid, 0.45F);
+  const ImU32 ink = to_u32(frame_.theme.text_dim);
+  const float gap = 6.0F * frame_.scale;
+  for (const AxisTick& tick : y_ticks) {
+    const float at = std::round(place(x.range.low, tick.value).y);
+    list_.AddLine({low.x, at}, {high.x, at}, tick.major ? grid : faint);
+    const ImVec2 extent = text_size(tick.label);
+    text({low.x - gap - extent.x, at - 0.5F * extent.y}, tick.label, ink);
+  }
+  for (const AxisTick& tick : x_ticks) {
+    const float at = std::round(static_cast<float>(x.to_pixel(tick.value)));
+    list_.AddLine({at, low.y}, {at, high.y}, grid);
+    const ImVec2 extent = text_size(tick.label);
+    // The outermost labels stay within the plot.
+    const float left = std::min(at - 0.5F * extent.x, outer_high.x - extent.x);
+    text({left, high.y + 4.0F * frame_.scale}, tick.label, ink);
+  }
+  if (plot.x_label.empty()) return;
+  const std::string label = with_unit(plot.x_label, plot.x_unit);
+  const ImVec2 extent = text_size(label);
+  text({0.5F * (low.x + high.x - extent.x), outer_high.y - extent.y}, label, ink);
+}
+
+void PlotPaint::clip() const { list_.PushClipRect(low, high, true); }
+
+void PlotPaint::unclip() const { list_.PopClipRect(); }
+
+void PlotPaint::band(const PlotBand& band) const {
+  // However short, a band is seen.
+  const float from = place(band.x.low, y.range.low).x;
+  const float to = std::max(place(band.x.high, y.range.low).x, from + 2.0F);
+  list_.AddRectFilled({from, low.y}, {to, high.y}, to_u32(band.colour, band.opacity));
+}
+
+void PlotPaint::dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase) const {
+  const float dash = kDash * frame_.scale, period = dash + kGap * frame_.scale;
+  const float length = std::hypot(to.x - from.x, to.y - from.y);
+  if (!(length > 0.0F)) return;
+  const auto at = [&](float along) {
+    return ImVec2{from.x + (to.x - from.x) * along / length, from.y + (to.y - from.y) * along / length};
+  };
+  for (float along = -phase; along < length; along += period) {
+    const float begin = std::max(along, 0.0F), end = std::min(along + dash, length);
+    if (end > begin) list_.AddLine(at(begin), at(end), colour, width);
+  }
+  phase = std::fmod(phase + length, period);
+}
+
+void PlotPaint::line(const PlotSeries& series, const std::vector<PlotSample>& samples) const {
+  const ImU32 colour = to_u32(series.colour);
+  const float width = series.width_px * frame_.scale;
+  const auto drawable = [this](const PlotSample& sample) { return !std::isnan(y.to_pixel(sample.y)); };
+  float phase = 0.0F;
+  for (std::size_t i = 0; i < samples.size();) {
+    if (!drawable(samples[i])) {
+      ++i;
+      continue;
+    }
+    std::vector<ImVec2> run;
+    for (; i < samples.size() && drawable(samples[i]); ++i) {
+      const ImVec2 here = place(samples[i].x, samples[i].y);
+      if (series.style == SeriesStyle::kSteps && !run.empty()) run.push_back({here.x, run.back().y});
+      run.push_back(here);
+    }
+    if (run.size() == 1) {
+      list_.AddCircleFilled(run[0], std::max(1.5F, width), colour);
+    } else if (series.style == SeriesStyle::kDashed) {
+      for (std::size_t k = 1; k < run.size(); ++k) dashed(run[k - 1], run[k], colour, width, phase);
+    } else {
+      list_.AddPolyline(run.data(), static_cast<int>(run.size()), colour, ImDrawFlags_None, width);
+    }
+  }
+}
+
+void PlotPaint::series(const PlotSeries& series) const {
+  const ImU32 colour = to_u32(series.colour);
+  if (series.style == SeriesStyle::kBars) {
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      if (!std::isfinite(series.y[i]) || std::isnan(y.to_pixel(series.y[i]))) continue;
+      // A bar reaches to the next value; the last is as wide as the one before.
+      const double width = i + 1 < series.x.size() ? series.x[i + 1] - series.x[i]
+                           : i > 0                 ? series.x[i] - series.x[i - 1]
+                                                   : 1.0;
+      const ImVec2 top = place(series.x[i], series.y[i]);
+      const float right = std::max(place(series.x[i] + width, series.y[i]).x, top.x + 1.0F);
+      list_.AddRectFilled({top.x, top.y}, {right, high.y}, colour);
+    }
+    return;
+  }
+  const int columns = std::max(1, static_cast<int>(high.x - low.x));
+  const std::vector<PlotSample> samples = decimate(series.x, series.y, x.range, columns);
+  if (series.style != SeriesStyle::kDots) {
+    line(series, samples);
+    return;
+  }
+  for (const PlotSample& sample : samples) {
+    if (!std::isnan(y.to_pixel(sample.y))) {
+      list_.AddCircleFilled(place(sample.x, sample.y), series.width_px * 1.5F * frame_.scale, colour);
+    }
+  }
+}
+
+void PlotPaint::level(const PlotLevel& level) const {
+  if (std::isnan(y.to_pixel(level.value))) return;
+  const float at = std::round(place(x.range.low, level.value).y);
+  float phase = 0.0F;
+  dashed({low.x, at}, {high.x, at}, to_u32(level.colour, 0.9F), frame_.scale, phase);
+  const ImVec2 extent = text_size(level.name);
+  text({high.x - extent.x - 4.0F * frame_.scale, at - extent.y - 1.0F}, level.name, to_u32(level.colour));
+}
+
+void PlotPaint::mark(const PlotLevel& mark) const {
+  const float at = std::round(place(mark.value, y.range.low).x);
+  float phase = 0.0F;
+  dashed({at, low.y}, {at, high.y}, to_u32(mark.colour, 0.9F), 1.5F * frame_.scale, phase);
+  const ImVec2 extent = text_size(mark.name);
+  const bool to_the_left = at + extent.x + 8.0F * frame_.scale > high.x;
+  const float gap = 4.0F * frame_.scale;
+  text({to_the_left ? at - extent.x - gap : at + gap, low.y + gap}, mark.name, to_u32(mark.colour));
+}
+
+void PlotPaint::cursor(double at_x) const {
+  const float at = std::round(place(at_x, y.range.low).x);
+  const ImU32 colour = to_u32(role_colour(Role::kCursor, frame_.theme.name));
+  list_.AddLine({at, low.y}, {at, high.y}, colour, 1.5F * frame_.scale);
+  const float side = 5.0F * frame_.scale;
+  list_.AddTriangleFilled({at - side, low.y}, {at + side, low.y}, {at, low.y + 1.3F * side}, colour);
+}
+
+void PlotPaint::swatch(ImVec2 at, const PlotSeries& series) const {
+  const float length = kSwatchLength * frame_.scale, half = 4.0F * frame_.scale;
+  const ImU32 colour = to_u32(series.colour);
+  float phase = 0.0F;
+  if (series.style == SeriesStyle::kBars)
+    list_.AddRectFilled({at.x, at.y - half}, {at.x + length, at.y + half}, colour);
+  else if (series.style == SeriesStyle::kDots)
+    list_.AddCircleFilled({at.x + 0.5F * length, at.y}, 0.7F * half, colour);
+  else if (series.style == SeriesStyle::kDashed)
+    dashed(at, {at.x + length, at.y}, colour, 2.0F * frame_.scale, phase);
+  else
+    list_.AddLine(at, {at.x + length, at.y}, colour, 2.0F * frame_.scale);
+}
+
+void PlotPaint::heading(const Plot& plot, ImVec2 outer_low, ImVec2 outer_high) const {
+  const float gap = 6.0F * frame_.scale;
+  const std::string label = with_unit(plot.y_label, plot.y_unit);
+  const float label_width = text_size(label).x;
+  text({outer_low.x + 2.0F, outer_low.y}, label, to_u32(frame_.theme.text_dim));
+  if (!plot.legend) return;
+  float total = 0.0F;
+  const float step = (kSwatchLength + 6.0F) * frame_.scale;
+  for (const PlotSeries& series : plot.series) {
+    if (!series.name.empty()) total += step + text_size(series.name).x + 2.0F * gap;
+  }
+  float left = std::max(outer_high.x - total, outer_low.x + label_width + 2.0F * gap);
+  for (const PlotSeries& series : plot.series) {
+    if (series.name.empty()) continue;
+    const ImVec2 extent = text_size(series.name);
+    if (left + step + extent.x > outer_high.x) return;
+    swatch({left, std::round(outer_low.y + 0.5F * extent.y)}, series);
+    text({left + step, outer_low.y}, series.name, to_u32(frame_.theme.text));
+    left += step + extent.x + 2.0F * gap;
+  }
+}
+
+void PlotPaint::hover(const Plot& plot, double at_x) const {
+  const float at = std::round(place(at_x, y.range.low).x);
+  list_.AddLine({at, low.y}, {at, high.y}, to_u32(frame_.theme.text_dim, 0.6F));
+  ImGui::BeginTooltip();
+  ImGui::PushFont(frame_.fonts.small);
+  ImGui::TextDisabled("%s %s", plot.x_label.c_str(), format_value(at_x, plot.x_unit).c_str());
+  for (const PlotSeries& series : plot.series) {
+    const auto index = nearest_index(series.x, at_x);
+    if (!index) continue;
+    const double value = series.y[*index];
+    if (series.style != SeriesStyle::kBars && !std::isnan(y.to_pixel(value))) {
+      const ImVec2 dot = place(series.x[*index], value);
+      if (dot.y >= low.y && dot.y <= high.y) {
+        list_.AddCircleFilled(dot, 4.0F * frame_.scale, to_u32(frame_.theme.plot));
+        list_.AddCircleFilled(dot, 3.0F * frame_.scale, to_u32(series.colour));
+      }
+    }
+    ImGui::TextColored(to_vec4(series.colour), "■");
+    ImGui::SameLine();
+    ImGui::Text("%s  %s", series.name.c_str(), format_value(value, plot.y_unit).c_str());
+  }
+  ImGui::PopFont();
+  ImGui::EndTooltip();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <optional>
+#include <string>
+
+#include "ui/scene/scene_renderer.hpp"
+#include "ui/scene/scene_view.hpp"
+#include "ui/shell/canvas.hpp"
+
+namespace stillpoint {
+
+/// A pose of a path under the mouse.
+struct ScenePose {
+  std::size_t path = 0;   ///< index into SceneData::paths
+  std::size_t index = 0;  ///< … and into its positions
+};
+
+struct SceneResponse {
+  bool hovered = false;
+  std::optional<ScenePose> pose;  ///< under the mouse, of the paths that are pickable
+  bool clicked = false;           ///< left, in place
+  Viewport viewport;              ///< px
+  ImVec2 panel_min;               ///< px of the display: where the viewport's corner lies
+
+  /// Viewport pixels to the display's.
+  [[nodiscard]] ImVec2 to_screen(const Eigen::Vector2d& pixel) const {
+    return {panel_min.x + static_cast<float>(pixel.x()), panel_min.y + static_cast<float>(pixel.y())};
+  }
+};
+
+/// The trajectory view as a widget: left drag orbits, right or middle drag (or Shift and left) pans, the
+/// wheel zooms about the cursor, double click fits everything. With legend, error scale, scale bar and the
+/// axes' directions on it.
+class SceneWidget {
+ public:
+  explicit SceneWidget(const Gl& gl) : gl_(&gl), renderer_(gl) {}
+
+  /// Draws into the given size (0 takes what is left) at ImGui's cursor.
+  SceneResponse draw(const UiFrame& frame, const char* id, const SceneData& scene, SceneView& view,
+                     ImVec2 size = {0, 0});
+
+ private:
+  const Gl* gl_;
+  SceneRenderer renderer_;
+  std::optional<Framebuffer> framebuffer_;
+};
+
+/// A round length for a scale bar of at most `longest_px`: its metres, 1, 2 or 5 times a power of ten.
+[[nodiscard]] double scale_bar_length(double metres_per_pixel, double longest_px);
+
+/// A length as people say it: "20 cm", "1 m", "5 mm", "2 km".
+[[nodiscard]] std::string length_text(double metres);
+
+}  // namespace stillpoint

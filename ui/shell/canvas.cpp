@@ -1,0 +1,90 @@
+#include "ui/shell/canvas.hpp"
+
+#include <algorithm>
+
+namespace stillpoint {
+namespace {
+
+constexpr float kLeastScale = 0.5F, kMostScale = 4.0F;
+
+}  // namespace
+
+Canvas::Canvas(const GetProcAddress& get_proc_address, const Look& look)
+    : gl_(std::make_unique<Gl>(load_gl(get_proc_address))),
+      errors_(std::make_unique<GlErrorLog>(*gl_)),
+      imgui_(ImGui::CreateContext()),
+      look_(look) {
+  ImGui::SetCurrentContext(imgui_);
+  ImGuiIO& io = ImGui::GetIO();
+  // Layout and settings are the workbench's to keep, and images must not depend on a file that lies about.
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset | ImGuiBackendFlags_HasMouseCursors;
+  io.BackendRendererName = "stillpoint";
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  set_up_imgui_keys();
+  renderer_ = std::make_unique<ImGuiRenderer>(*gl_);
+}
+
+Canvas::~Canvas() {
+  renderer_.reset();
+  ImGui::DestroyContext(imgui_);
+}
+
+void Canvas::dress() {
+  const float scale = std::clamp(look_.scale * display_scale_, kLeastScale, kMostScale);
+  if (scale == dressed_scale_ && look_.theme == dressed_theme_) return;
+  if (scale != dressed_scale_) {
+    fonts_ = load_fonts(scale);
+    renderer_->upload_fonts();
+  }
+  apply_theme(theme(look_.theme), scale);
+  dressed_scale_ = scale;
+  dressed_theme_ = look_.theme;
+}
+
+std::vector<std::string> Canvas::take_input() {
+  std::vector<std::string> dropped;
+  for (const InputEvent& event : input_.next_frame()) {
+    apply_to_imgui(event);
+    if (const auto* files = std::get_if<FilesDropped>(&event)) {
+      dropped.insert(dropped.end(), files->paths.begin(), files->paths.end());
+    }
+  }
+  return dropped;
+}
+
+UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction& function,
+                      const std::function<void()>& bind_target, bool close_requested) {
+  ImGui::SetCurrentContext(imgui_);
+  dress();
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  io.DeltaTime = static_cast<float>(std::max(delta_s, 1e-6));
+  time_s_ += delta_s;
+  UiFrame frame{.gl = *gl_,
+                .fonts = fonts_,
+                .theme = theme(look_.theme),
+                .size = io.DisplaySize,
+                .scale = dressed_scale_,
+                .time_s = time_s_,
+                .dropped_files = take_input(),
+                .close_requested = close_requested,
+                .wanted_look = look_};
+  ImGui::NewFrame();
+  function(frame);
+  ImGui::Render();
+
+  bind_target();
+  const ImVec4 background = to_vec4(frame.theme.background);
+  gl_->Disable(GL_SCISSOR_TEST);
+  gl_->Viewport(0, 0, width, height);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl_->ClearColor(background.x, background.y, background.z, 1.0F);
+  gl_->Clear(GL_COLOR_BUFFER_BIT);
+  renderer_->draw(*ImGui::GetDrawData(), height);
+  look_ = frame.wanted_look;
+  return frame;
+}
+
+}  // namespace stillpoint

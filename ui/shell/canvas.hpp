@@ -1,0 +1,93 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ui/gl/framebuffer.hpp"
+#include "ui/gl/imgui_renderer.hpp"
+#include "ui/shell/graphics_context.hpp"
+#include "ui/shell/input.hpp"
+#include "ui/theme/fonts.hpp"
+#include "ui/theme/theme.hpp"
+
+namespace stillpoint {
+
+/// How the interface looks, in a window and in images alike.
+struct Look {
+  ThemeName theme = ThemeName::kDark;
+  float scale = 1.0F;  ///< times the design size of text and spacing, 0.5 to 4
+  bool operator==(const Look&) const = default;
+};
+
+/// What a frame function works with, and what it may ask of the shell in return.
+struct UiFrame {
+  const Gl& gl;
+  const Fonts& fonts;
+  const Theme& theme;
+  ImVec2 size;                               ///< px, of the whole
+  float scale = 1.0F;                        ///< px a design pixel: multiply lengths by it
+  double time_s = 0.0;                       ///< of the interface's own clock; offscreen it ticks by frames
+  std::vector<std::string> dropped_files{};  ///< since the frame before
+  bool close_requested = false;              ///< the person closes the window
+  Look wanted_look{};                        ///< from the next frame on
+  double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
+  bool quit = false;                                                ///< leave the shell's loop
+};
+
+/// Draws one frame of the interface through ImGui, whose context is current.
+using FrameFunction = std::function<void(UiFrame&)>;
+
+/// ImGui over one GL context: its state, fonts, theme and input. Window and Offscreen each have one, so that
+/// both draw by the same way.
+class Canvas {
+ public:
+  /// The GL context of `get_proc_address` must be current, here, in every call and in the destructor.
+  Canvas(const GetProcAddress& get_proc_address, const Look& look);
+  ~Canvas();
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+
+  /// Builds a frame of width x height px and draws it into the framebuffer bound for drawing by
+  /// `bind_target`, which is called after `function`, since that may draw into framebuffers of its own.
+  /// @returns the frame with what `function` asked for.
+  UiFrame frame(int width, int height, double delta_s, const FrameFunction& function,
+                const std::function<void()>& bind_target, bool close_requested = false);
+
+  void send(InputEvent event) { input_.push(std::move(event)); }
+  [[nodiscard]] bool has_pending_input() const { return !input_.empty(); }
+
+  /// Factor the display itself asks for, over Look::scale.
+  void set_display_scale(float scale) { display_scale_ = scale; }
+
+  [[nodiscard]] const Look& look() const { return look_; }
+  void set_look(const Look& look) { look_ = look; }
+
+  [[nodiscard]] const Gl& gl() const { return *gl_; }
+  [[nodiscard]] ImGuiContext& imgui() const { return *imgui_; }
+
+  /// What GL complained about since the last call.
+  [[nodiscard]] std::vector<std::string> take_gl_errors() { return errors_->take(); }
+
+ private:
+  void dress();
+  std::vector<std::string> take_input();
+
+  std::unique_ptr<Gl> gl_;
+  std::unique_ptr<GlErrorLog> errors_;
+  ImGuiContext* imgui_ = nullptr;
+  std::unique_ptr<ImGuiRenderer> renderer_;
+  InputQueue input_;
+  Fonts fonts_;
+  Look look_;
+  float display_scale_ = 1.0F;
+  float dressed_scale_ = 0.0F;
+  ThemeName dressed_theme_ = ThemeName::kDark;
+  double time_s_ = 0.0;
+};
+
+}  // namespace stillpoint

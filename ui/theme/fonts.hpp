@@ -1,0 +1,19 @@
+#pragma once
+
+#include <imgui.h>
+
+namespace stillpoint {
+
+/// The faces of the interface, at the current scale. They belong to ImGui's font atlas.
+struct Fonts {
+  ImFont* text = nullptr;     ///< Inter, with the icons of icons.hpp: what most is written in
+  ImFont* strong = nullptr;   ///< Inter SemiBold, with icons: names of panels, what matters
+  ImFont* heading = nullptr;  ///< Inter SemiBold, larger: the start page, dialogs
+  ImFont* small = nullptr;    ///< Inter, smaller: axes, legends, captions
+  ImFont* mono = nullptr;     ///< JetBrains Mono: numbers in columns, paths, keys
+};
+
+/// Fills the current ImGui context's atlas anew with the embedded fonts, `scale` times their design size.
+[[nodiscard]] Fonts load_fonts(float scale);
+
+}  // namespace stillpoint

@@ -1,0 +1,219 @@
+#include "ui/view/image_widget.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kNumbersFromScale = 32.0;  // panel px an image px, design px
+constexpr double kWheelFactor = 1.2;
+constexpr float kClickSlack = 4.0F;  // px the mouse may move in a click
+
+Eigen::Vector2d to_vector(ImVec2 v) { return {static_cast<double>(v.x), static_cast<double>(v.y)}; }
+
+ImVec2 to_imvec(const Eigen::Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
+
+std::string number_text(double value, int depth) {
+  if (depth == CV_32F || depth == CV_64F) return fmt::format("{:.3g}", value);
+  return fmt::format("{:.0f}", value);
+}
+
+double channel_value(const cv::Mat& image, int x, int y, int channel) {
+  const auto value = [&](auto type) {
+    using T = decltype(type);
+    return static_cast<double>(image.ptr<T>(y)[x * image.channels() + channel]);
+  };
+  switch (image.depth()) {
+    case CV_8U:
+      return value(std::uint8_t{});
+    case CV_8S:
+      return value(std::int8_t{});
+    case CV_16U:
+      return value(std::uint16_t{});
+    case CV_16S:
+      return value(std::int16_t{});
+    case CV_32S:
+      return value(std::int32_t{});
+    case CV_32F:
+      return value(float{});
+    case CV_64F:
+      return value(double{});
+    default:
+      return std::nan("");
+  }
+}
+
+/// Whether a pixel is so bright that dark letters read better on it; unknown where numbers are no grey
+/// levels.
+std::optional<bool> is_bright(const cv::Mat& image, int x, int y) {
+  if (image.depth() != CV_8U) return std::nullopt;
+  if (image.channels() < 3) return channel_value(image, x, y, 0) > 140.0;
+  return 0.114 * channel_value(image, x, y, 0) + 0.587 * channel_value(image, x, y, 1) +
+             0.299 * channel_value(image, x, y, 2) >
+         140.0;
+}
+
+/// Hairlines between the pixels x0..x1, y0..y1.
+void draw_pixel_grid(const ImageResponse& response, int x0, int y0, int x1, int y1) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 ink = IM_COL32(128, 128, 128, 70);
+  const auto place = [&response](int x, int y) { return response.to_screen(Eigen::Vector2d(x, y)); };
+  for (int x = x0; x <= x1 + 1; ++x) list.AddLine(place(x, y0), place(x, y1 + 1), ink);
+  for (int y = y0; y <= y1 + 1; ++y) list.AddLine(place(x0, y), place(x1 + 1, y), ink);
+}
+
+/// Writes each visible pixel's numbers onto it, light or dark as its ground asks.
+void draw_numbers(const UiFrame& frame, const ImageResponse& response, const cv::Mat& values) {
+  const Eigen::Vector2d size = to_vector(response.panel_max) - to_vector(response.panel_min);
+  const Eigen::Vector2d first = response.map.to_image({0.0, 0.0}), last = response.map.to_image(size);
+  const int x0 = std::max(0, static_cast<int>(std::floor(first.x())));
+  const int y0 = std::max(0, static_cast<int>(std::floor(first.y())));
+  const int x1 = std::min(values.cols - 1, static_cast<int>(std::floor(last.x())));
+  const int y1 = std::min(values.rows - 1, static_cast<int>(std::floor(last.y())));
+  draw_pixel_grid(response, x0, y0, x1, y1);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImFont* font = frame.fonts.mono;
+  const float lines = values.channels() >= 3 ? 3.0F : 1.0F;
+  const float room = static_cast<float>(response.map.scale());
+  // Three digits must fit the width, all lines the height.
+  const float font_size = std::floor(std::min({font->FontSize, room / (lines + 0.6F), room / 2.2F}));
+  constexpr ImU32 kLight = IM_COL32(255, 255, 255, 235), kDark = IM_COL32(0, 0, 0, 225);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const std::string text = pixel_text(values, x, y);
+      const ImVec2 extent = font->CalcTextSizeA(font_size, 1e6F, 0.0F, text.c_str());
+      const ImVec2 centre = response.to_screen({x + 0.5, y + 0.5});
+      const ImVec2 corner{std::round(centre.x - 0.5F * extent.x), std::round(centre.y - 0.5F * extent.y)};
+      const std::optional<bool> bright = is_bright(values, x, y);
+      if (!bright) list.AddText(font, font_size, {corner.x + 1.0F, corner.y + 1.0F}, kDark, text.c_str());
+      list.AddText(font, font_size, corner, bright.value_or(false) ? kDark : kLight, text.c_str());
+    }
+  }
+}
+
+void draw_absent(const UiFrame& frame, const ImageResponse& response, const std::string& text) {
+  const float wrap = 0.8F * (response.panel_max.x - response.panel_min.x);
+  const ImVec2 extent = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  const ImVec2 corner{0.5F * (response.panel_min.x + response.panel_max.x - extent.x),
+                      0.5F * (response.panel_min.y + response.panel_max.y - extent.y)};
+  ImGui::GetWindowDrawList()->AddText(frame.fonts.text, frame.fonts.text->FontSize, corner,
+                                      to_u32(frame.theme.text_dim), text.c_str(), nullptr, wrap);
+}
+
+void draw_pictures(const ImageContent& content, const ImageResponse& response,
+                   const Eigen::Vector2d& image_size) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  // An image pixel's edge that falls on the centre of a display pixel would go either way, by rounding that differs
+  // from driver to driver; a hundredth of a pixel decides.
+  constexpr float kDecide = 0.01F;
+  ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  for (float* coordinate : {&low.x, &low.y, &high.x, &high.y}) *coordinate += kDecide;
+  if (content.wiped_to != nullptr) {
+    list.AddImage(content.wiped_to->imgui_id(), low, high);
+    const float edge = low.x + (high.x - low.x) * content.wipe;
+    list.AddImage(content.texture->imgui_id(), low, {edge, high.y}, {0, 0}, {content.wipe, 1});
+    list.AddLine({edge, low.y}, {edge, high.y}, IM_COL32(255, 255, 255, 200), 2.0F);
+  } else {
+    list.AddImage(content.texture->imgui_id(), low, high);
+  }
+  for (const ImageOverlay& overlay : content.overlays) {
+    if (overlay.texture == nullptr || overlay.texture->empty()) continue;
+    list.AddImage(overlay.texture->imgui_id(), low, high, {0, 0}, {1, 1},
+                  IM_COL32(255, 255, 255, static_cast<int>(255.0F * overlay.opacity)));
+  }
+}
+
+void handle_mouse(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
+                  ImVec2 panel_min, bool& clicked) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const Eigen::Vector2d cursor = to_vector(io.MousePos) - to_vector(panel_min);
+  if (ImGui::IsItemHovered()) {
+    if (io.MouseWheel != 0.0F) {
+      zoom_about(view, image_size, panel_size, cursor, std::pow(kWheelFactor, io.MouseWheel));
+    }
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) view = ImageView{};
+    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+    clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(moved.x, moved.y) < kClickSlack;
+  }
+  if (!ImGui::IsItemActive()) return;
+  for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right, ImGuiMouseButton_Middle}) {
+    if (!ImGui::IsMouseDragging(button, kClickSlack)) continue;
+    pan_by(view, image_size, panel_size, to_vector(io.MouseDelta));
+    return;
+  }
+}
+
+}  // namespace
+
+ImVec2 ImageResponse::to_screen(const Eigen::Vector2d& image) const {
+  return to_imvec(to_vector(panel_min) + map.to_panel(image));
+}
+
+ImVec2 ImageResponse::keypoint_to_screen(const cv::Point2f& keypoint) const {
+  return to_screen({static_cast<double>(keypoint.x) + 0.5, static_cast<double>(keypoint.y) + 0.5});
+}
+
+ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageContent& content, ImageView& view,
+                         ImVec2 size) {
+  const ImVec2 available = ImGui::GetContentRegionAvail();
+  if (size.x <= 0.0F) size.x = available.x;
+  if (size.y <= 0.0F) size.y = available.y;
+  size = {std::max(size.x, 16.0F), std::max(size.y, 16.0F)};
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const ImVec2 high{low.x + size.x, low.y + size.y};
+  const bool present = content.texture != nullptr && !content.texture->empty();
+  const Eigen::Vector2d image_size =
+      present ? Eigen::Vector2d(content.texture->width(), content.texture->height())
+              : Eigen::Vector2d(4.0, 3.0);
+  const Eigen::Vector2d panel_size = to_vector(size);
+
+  ImGui::InvisibleButton(id, size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  bool clicked = false;
+  if (present) handle_mouse(view, image_size, panel_size, low, clicked);
+  ImageResponse response;
+  response.map = ImageMap(view, image_size, panel_size);
+  response.panel_min = low;
+  response.panel_max = high;
+  response.hovered = ImGui::IsItemHovered();
+  response.clicked = clicked;
+
+  push_clip(response);
+  ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(frame.theme.background));
+  if (present) {
+    draw_pictures(content, response, image_size);
+    if (content.values != nullptr && !content.values->empty() &&
+        response.map.scale() >= kNumbersFromScale * static_cast<double>(frame.scale)) {
+      draw_numbers(frame, response, *content.values);
+    }
+  } else {
+    draw_absent(frame, response, content.absent);
+  }
+  pop_clip();
+  if (present && response.hovered) {
+    const Eigen::Vector2d cursor = to_vector(ImGui::GetIO().MousePos) - to_vector(low);
+    response.pixel = response.map.pixel_at(cursor);
+    if (response.pixel) response.image_point = response.map.to_image(cursor);
+  }
+  return response;
+}
+
+void push_clip(const ImageResponse& response) {
+  ImGui::GetWindowDrawList()->PushClipRect(response.panel_min, response.panel_max, true);
+}
+
+void pop_clip() { ImGui::GetWindowDrawList()->PopClipRect(); }
+
+std::string pixel_text(const cv::Mat& image, int x, int y) {
+  if (image.channels() < 3) return number_text(channel_value(image, x, y, 0), image.depth());
+  // OpenCV stores blue first; people read red, green, blue.
+  return number_text(channel_value(image, x, y, 2), image.depth()) + "\n" +
+         number_text(channel_value(image, x, y, 1), image.depth()) + "\n" +
+         number_text(channel_value(image, x, y, 0), image.depth());
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "ui/gl/texture.hpp"
+#include "ui/shell/canvas.hpp"
+#include "ui/view/image_view.hpp"
+
+namespace stillpoint {
+
+/// An image laid over another.
+struct ImageOverlay {
+  const Texture* texture = nullptr;
+  float opacity = 0.5F;
+};
+
+/// What an image panel shows.
+struct ImageContent {
+  const Texture* texture = nullptr;    ///< null or empty: `absent` is written instead
+  std::vector<ImageOverlay> overlays{};  ///< same extent as the image, drawn in order
+  const cv::Mat* values =
+      nullptr;  ///< whose numbers stand on the pixels when zoomed in; any depth, 1 or 3 channels
+  std::string absent = "No image";    ///< says what is missing
+  float wipe = 1.0F;                  ///< share of the width, from the left, that `texture` covers …
+  const Texture* wiped_to = nullptr;  ///< … over this one
+};
+
+/// Where things are in a drawn image panel, for drawing on it, and what the mouse points at.
+struct ImageResponse {
+  ImageMap map{{}, {1.0, 1.0}, {1.0, 1.0}};
+  ImVec2 panel_min, panel_max;  ///< px, of the display
+  bool hovered = false;
+  std::optional<Eigen::Vector2d> image_point;  ///< under the mouse, image coordinates
+  std::optional<Eigen::Vector2i> pixel;        ///< under the mouse
+  bool clicked = false;                        ///< left, pressed and released in place
+
+  /// Image coordinates to the display's.
+  [[nodiscard]] ImVec2 to_screen(const Eigen::Vector2d& image) const;
+  /// The same for an OpenCV keypoint, whose pixels have their centre at whole numbers.
+  [[nodiscard]] ImVec2 keypoint_to_screen(const cv::Point2f& keypoint) const;
+};
+
+/// Draws an image into the given size (0 takes what is left) at ImGui's cursor; wheel zooms about the cursor,
+/// drag with any button pans, double click fits. Afterwards, draw on it between push_clip and pop_clip.
+ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageContent& content, ImageView& view,
+                         ImVec2 size = {0, 0});
+
+/// Confines ImGui's current draw list to an image panel, and lifts that again.
+void push_clip(const ImageResponse& response);
+void pop_clip();
+
+/// The numbers of a pixel as text, one a line and channel: "128", "12\n80\n255" (R, G, B), "0.52".
+[[nodiscard]] std::string pixel_text(const cv::Mat& image, int x, int y);
+
+}  // namespace stillpoint
