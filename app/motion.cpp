@@ -8,16 +8,17 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/motion_figures.hpp"
 #include "app/motion_pictures.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/motion/detect_motion.hpp"
+#include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/source.hpp"
 
@@ -30,9 +31,8 @@ struct MotionOptions {
   std::string first;   ///< the previous image, or a sequence
   std::string second;  ///< the next image; empty for a sequence
   std::string out;
-  std::string config = "";
-  std::vector<std::string> assignments;  ///< `motion.key=value`
-  std::string frames;                    ///< A:B:STEP
+  ConfigArguments config;
+  std::string frames;  ///< A:B:STEP
   bool all_rounds = false;
   bool force = false;
 };
@@ -71,26 +71,12 @@ FrameRange parse_range(const std::string& text, int size) {
   return range;
 }
 
-Config config_of(const MotionOptions& options) {
-  Config config = options.config.empty() ? Config{} : load_config(options.config);
-  for (const std::string& assignment : options.assignments) set_parameter(config, assignment);
-  return config;
-}
-
 /// The out folder with its two lists; pictures go beside them.
 class MotionOutput {
  public:
   MotionOutput(const fs::path& folder, bool force, bool all_rounds)
       : folder_(folder), all_rounds_(all_rounds), pairs_(nlohmann::json::array()) {
-    std::error_code failed;
-    if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
-      throw InputError(
-          fmt::format("{}: is a file, where a folder for the results is wanted", folder.string()));
-    for (const char* name : {"motion.csv", "motion.json"})
-      if (!force && fs::exists(folder / name, failed))
-        throw InputError(
-            fmt::format("{}: holds earlier results ({}); --force overwrites them", folder.string(), name));
-    make_folder(folder);
+    prepare_out_folder(folder, {"motion.csv", "motion.json"}, force);
     csv_.open(folder / "motion.csv");
     csv_ << motion_csv_heading() << '\n' << std::flush;
     if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder / "motion.csv").string()));
@@ -100,11 +86,11 @@ class MotionOutput {
   void add(const std::string& subfolder, const std::string& reference_name, const std::string& target_name,
            const MotionTrace& trace, const cv::Mat& reference, const cv::Mat& target) {
     const fs::path folder = folder_ / subfolder;
-    make_folder(folder);
+    prepare_out_folder(folder, {}, true);
     if (all_rounds_) {
       for (std::size_t i = 0; i < trace.rounds.size(); ++i) {
         const fs::path round_folder = folder / fmt::format("round_{}", i + 1);
-        make_folder(round_folder);
+        prepare_out_folder(round_folder, {}, true);
         write_round_pictures(round_folder, trace.rounds[i], reference, target);
       }
     } else if (!trace.rounds.empty()) {
@@ -122,22 +108,12 @@ class MotionOutput {
   }
 
   void finish(const Config& config) {
-    std::ofstream json(folder_ / "motion.json");
-    json << nlohmann::json{{"reference_gap", config.motion.reference_gap}, {"pairs", pairs_}}.dump(1) << '\n';
-    std::ofstream toml(folder_ / "config.toml");
-    toml << to_toml(config);
-    if (!json.flush() || !toml.flush())
-      throw InputError(fmt::format("{}: cannot be written", folder_.string()));
+    const nlohmann::json figures = {{"reference_gap", config.motion.reference_gap}, {"pairs", pairs_}};
+    write_text_file(folder_ / "motion.json", figures.dump(1) + '\n');
+    write_text_file(folder_ / "config.toml", to_toml(config));
   }
 
  private:
-  static void make_folder(const fs::path& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed || !fs::is_directory(folder))
-      throw InputError(fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
-  }
-
   fs::path folder_;
   bool all_rounds_;
   std::ofstream csv_;
@@ -196,7 +172,10 @@ std::string problem_of(const Frame& reference, const Frame& target) {
 }
 
 void run_sequence(const MotionOptions& options, const Config& config) {
-  const std::unique_ptr<FrameSource> source = open_sequence(options.first);
+  // Its warnings are about cameras and times, which images alone do without.
+  OpenOptions open;
+  open.seed = static_cast<unsigned>(config.run.seed);
+  const std::unique_ptr<FrameSource> source = open_sequence(options.first, open);
   const int gap = config.motion.reference_gap;
   FrameRange range = parse_range(options.frames, source->size());
   while (range.begin < gap && range.begin < range.end) range.begin += range.step;
@@ -238,9 +217,7 @@ void add_motion_command(CLI::App& app) {
       ->required();
   command->add_option("next", options->second, "The next image, of the same size");
   command->add_option("--out", options->out, "Folder for the results, made if missing")->required();
-  command->add_option("--config", options->config, "A preset's name or a TOML file");
-  command->add_option("--set", options->assignments,
-                      "One parameter, as motion.key=value; may be given again");
+  options->config.add_to(*command, false);
   command->add_option(
       "--frames", options->frames,
       "Target frames A:B:STEP of a sequence, B not among them; references lie motion.reference_gap "
@@ -248,7 +225,7 @@ void add_motion_command(CLI::App& app) {
   command->add_flag("--all-rounds", options->all_rounds, "Pictures of every round, not of the last alone");
   command->add_flag("--force", options->force, "Overwrite earlier results");
   command->callback([options] {
-    const Config config = config_of(*options);
+    const Config config = options->config.config();
     if (options->second.empty()) {
       run_sequence(*options, config);
     } else {

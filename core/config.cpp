@@ -71,8 +71,8 @@ std::vector<Parameter> parameters(Config& c) {
     all.push_back({key, value, min, max, {}, unit, help});
   };
 
-  all.push_back({"run.method", &c.run.method, 0, 0, {"none", "paper", "oracle"}, "",
-                 "what is removed: nothing, what the paper finds moving, or what the true masks say (a reference)"});
+  all.push_back({"run.method", &c.run.method, 0, 0, {"stillpoint", "paper", "none", "oracle"}, "",
+                 "what is removed: what depth and memory show moving, what the paper finds, nothing, or what the true masks say (a reference)"});
   number("run.threads", &c.run.threads, 1, 64, "threads", "worker threads; any number gives the same bytes");
   number("run.seed", &c.run.seed, 0, 1e9, "", "of generated sequences");
 
@@ -96,6 +96,21 @@ std::vector<Parameter> parameters(Config& c) {
   number("motion.converged_shift_px", &m.converged_shift_px, 0, 10, "px", "rounds stop when no image corner moves more than this under the new homography");
   number("motion.min_tracks", &m.min_tracks, 4, 10000, "tracks", "fewer static tracks than this and the last homography is kept");
   number("motion.reference_gap", &m.reference_gap, 1, 100, "frames", "frames between the reference and the target");
+
+  DepthMotionConfig& d = c.depth_motion;
+  number("depth_motion.factor", &d.factor, 1, 16, "px", "side of the block of pixels in which motion is judged");
+  number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames", "how far back the nearer reference lies");
+  number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames", "how far back the farther reference lies");
+  number("depth_motion.depth_sigmas", &d.depth_sigmas, 1, 50, "sigma", "depth residual beyond which a pixel counts as moved");
+  number("depth_motion.intensity_sigmas", &d.intensity_sigmas, 1, 50, "sigma", "brightness residual beyond which a pixel counts as moved");
+  number("depth_motion.gradient_share", &d.gradient_share, 0, 5, "", "share of the local gradient a brightness residual may reach");
+  number("depth_motion.memory", &d.memory, 0, 1, "", "share of the log-odds carried to the next frame");
+  number("depth_motion.max_log_odds", &d.max_log_odds, 0.5, 100, "", "where evidence saturates");
+  number("depth_motion.segment_px", &d.segment_px, 4, 100, "px", "side of a surface patch, in blocks");
+  number("depth_motion.smoothing", &d.smoothing, 0, 100, "", "weight of neighbours on the same surface against a patch's own evidence");
+  number("depth_motion.moving_log_odds", &d.moving_log_odds, 0.01, 10, "", "log-odds above which a patch moves");
+  number("depth_motion.min_area_share", &d.min_area_share, 0, 0.5, "", "share of the image below which a region is noise");
+  number("depth_motion.margin_px", &d.margin_px, 0, 50, "px", "added about the mask at the end");
 
   FeatureConfig& f = c.features;
   number("features.count", &f.count, 50, 20000, "features", "ORB features wanted a frame");

@@ -31,6 +31,23 @@ struct MotionConfig {
   int reference_gap = 1;                ///< frames between the reference and the target; 1 as in the paper
 };
 
+/// Method `stillpoint`: what moves where there is depth.
+struct DepthMotionConfig {
+  int factor = 4;                       ///< full-size pixels a side of a pixel in which motion is judged
+  int near_reference = 2;               ///< frames back to the nearer reference
+  int far_reference = 10;               ///< frames back to the farther one: for slow movers
+  double depth_sigmas = 4.0;            ///< depth residual beyond which a pixel counts as moved, standard deviations
+  double intensity_sigmas = 4.0;        ///< the same of brightness
+  double gradient_share = 0.75;         ///< of the local gradient that a brightness residual may reach for want of exact pixels
+  double memory = 0.9;                  ///< share of the log-odds carried to the next frame
+  double max_log_odds = 4.0;            ///< evidence saturates here, so that a change of mind stays possible
+  int segment_px = 10;                  ///< side of a surface patch, small pixels
+  double smoothing = 0.6;               ///< weight of neighbours on the same surface against a patch's own evidence
+  double moving_log_odds = 0.35;        ///< above it a patch moves
+  double min_area_share = 0.0015;       ///< smaller regions are noise, share of the image
+  int margin_px = 2;                    ///< added about the mask at the end
+};
+
 /// ORB features spread over the image.
 struct FeatureConfig {
   int count = 1000;                 ///< features wanted a frame
@@ -88,6 +105,7 @@ struct RunConfig {
 struct Config {
   RunConfig run;
   MotionConfig motion;
+  DepthMotionConfig depth_motion;
   FeatureConfig features;
   TrackingConfig tracking;
   MapConfig map;

@@ -39,12 +39,17 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
     const auto [found, feature_ms] = features.get();
     record.ms.features = feature_ms;
 
-    Current current = remove_moving(frame, found, result.mask, record);
-    if (last_)
-      track(frame, current, record);
-    else
-      initialise(frame, current, record);
-    record.features = std::move(current.records);
+    if (config_.run.method == "stillpoint") {
+      track_and_detect(frame, found, result);
+    } else {
+      Current current = remove_moving(frame, found, result.mask, record);
+      if (last_) current.camera_from_world = predicted_camera_from_world();
+      if (last_)
+        track(frame, current, record);
+      else
+        initialise(frame, current, record);
+      record.features = std::move(current.records);
+    }
   }
   record.map_points = static_cast<int>(map_.point_count());
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
@@ -75,7 +80,7 @@ void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
 }
 
 void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
-  if (config_.run.method == "none") return;
+  if (config_.run.method == "none" || config_.run.method == "stillpoint") return;
   if (config_.run.method == "oracle") {
     if (known_mask.size() != frame.gray.size()) return;
     result.mask = known_mask;
@@ -148,13 +153,15 @@ void Odometry::initialise(const Frame& frame, Current& current, FrameRecord& rec
   remember(current, record);
 }
 
+bool Odometry::estimate(Current& current, FrameRecord& record) {
+  // After being lost the prediction is stale: the local map is searched everywhere at once.
+  if (lost_frames_ == 0 && estimate_from_last(current, record)) return true;
+  return estimate_by_epnp(current, record);
+}
+
 void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
   const bool was_lost = lost_frames_ > 0;
-  current.camera_from_world = predicted_camera_from_world();
-  // After being lost the prediction is stale: the local map is searched everywhere at once.
-  bool found = !was_lost && estimate_from_last(current, record);
-  if (!found) found = estimate_by_epnp(current, record);
-  if (!found) {
+  if (!estimate(current, record)) {
     mark_lost(record, FrameStatus::lost,
               fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
                           record.features_kept, config_.tracking.min_initial_matches));

@@ -8,6 +8,7 @@
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/motion/depth_motion.hpp"
 #include "core/motion/detect_motion.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/frame_record.hpp"
@@ -23,6 +24,7 @@ namespace stillpoint {
 struct FrameResult {
   FrameRecord record;
   MotionTrace motion;  ///< what the method's motion stage saw; without rounds where it has none
+  DepthMotionTrace depth_motion;  ///< the same of method `stillpoint`; without references where it has none
   cv::Mat mask;        ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
@@ -52,6 +54,8 @@ class Odometry {
     Pose camera_from_world = Pose::Identity();
     std::vector<FeatureRecord> records;          // of all features, removed ones too
     std::vector<int> record_of;                  // feature -> index into records
+    bool seek_consensus = false;                 // movers may be among the features: least squares alone is not to be trusted
+    std::uint32_t seed = 0;                      // of the samples consensus is sought with
   };
   /// The frame before, as the next one needs it.
   struct Last {
@@ -59,6 +63,12 @@ class Odometry {
     std::vector<int> points;
     int reference_keyframe = kNone;
     Pose camera_from_reference = Pose::Identity();
+  };
+  /// A small frame that was tracked, and from where.
+  struct PastView {
+    int frame_index = 0;
+    std::shared_ptr<const RgbdView> view;
+    Pose camera_from_world = Pose::Identity();
   };
   struct PendingBundle {
     std::shared_future<BundleSolution> solution;
@@ -70,10 +80,16 @@ class Odometry {
   void detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
   [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
                                       FrameRecord& record) const;
+  void track_and_detect(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] cv::Mat remembered_mask(const RgbdView& view, const Pose& predicted, const cv::Size& size) const;
+  [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index, const Pose& camera_from_world) const;
+  void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   void initialise(const Frame& frame, Current& current, FrameRecord& record);
   void track(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] bool estimate(Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record);
+  [[nodiscard]] std::vector<PoseObservation> observations_of(const Current& current, const std::vector<Match>& matches) const;
   [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record);
   [[nodiscard]] std::vector<int> local_points(const Current& current) const;
@@ -95,6 +111,8 @@ class Odometry {
   int last_keyframe_frame_ = 0;               // frame index of the newest keyframe
   std::deque<std::shared_ptr<const MotionFrame>> references_;  // newest last, as far back as motion detection looks
   std::optional<PendingBundle> pending_;
+  std::deque<PastView> past_views_;           // newest last: what method `stillpoint` compares with
+  std::optional<MotionMemory> memory_;        // of the newest past view
 };
 
 }  // namespace stillpoint

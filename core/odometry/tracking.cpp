@@ -1,18 +1,19 @@
 // Finding the pose of one frame: the part of Odometry between removal and the map's upkeep.
 #include <algorithm>
 
+#include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
 
+constexpr int kConsensusSamples = 200;
 constexpr int kMinModelInliers = 10;  // matches that must agree before the motion model's pose is believed
 
 }  // namespace
 
-PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const {
-  const Stopwatch watch;
+std::vector<PoseObservation> Odometry::observations_of(const Current& current, const std::vector<Match>& matches) const {
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const Match& match : matches) {
@@ -23,7 +24,13 @@ PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matc
                             current.features->depth[f],
                             scales_[static_cast<std::size_t>(current.features->keypoints[f].octave)]});
   }
-  PoseRefinement refined = refine_pose(camera_, observations, current.camera_from_world, config_.tracking);
+  return observations;
+}
+
+PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const {
+  const Stopwatch watch;
+  PoseRefinement refined =
+      refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking);
   record.refine_iterations += refined.iterations;
   record.ms.pose += watch.milliseconds();
   return refined;
@@ -59,8 +66,15 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
     if (record.matches < tracking.min_initial_matches) continue;
 
     current.camera_from_world = predicted;
-    const PoseRefinement refined = refine(current, matches, record);
+    PoseRefinement refined = refine(current, matches, record);
     if (refined.inliers < kMinModelInliers) continue;
+    if (current.seek_consensus) {
+      const Consensus agreed = consensus_pose(camera_, observations_of(current, matches),
+                                              {predicted, refined.camera_from_world}, kConsensusSamples, current.seed);
+      refined.camera_from_world = agreed.camera_from_world;
+      refined.inlier = agreed.inlier;
+      record.ms.pose += watch.lap();
+    }
     current.camera_from_world = refined.camera_from_world;
     for (std::size_t i = 0; i < matches.size(); ++i)
       if (refined.inlier[i]) current.points[static_cast<std::size_t>(matches[i].feature)] = matches[i].point;
@@ -86,14 +100,7 @@ bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) {
   record.ms.matching += watch.lap();
   record.matches = static_cast<int>(matches.size());
 
-  std::vector<PoseObservation> observations;
-  for (const Match& match : matches) {
-    const auto f = static_cast<std::size_t>(match.feature);
-    const cv::Point2f pixel = current.features->undistorted[f];
-    observations.push_back({map_.point(match.point).position, {pixel.x, pixel.y}, current.features->depth[f],
-                            scales_[static_cast<std::size_t>(current.features->keypoints[f].octave)]});
-  }
-  const auto initial = initial_pose(camera_, observations, config_.tracking);
+  const auto initial = initial_pose(camera_, observations_of(current, matches), config_.tracking);
   record.ms.pose += watch.lap();
   if (!initial) return false;
   std::vector<Match> agreeing;

@@ -10,11 +10,11 @@
 #include <fstream>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/out_folder.hpp"
 
 namespace stillpoint {
 namespace {
@@ -34,8 +34,6 @@ void write_bytes(const fs::path& path, const void* bytes, std::size_t size) {
     throw InputError(fmt::format("{} cannot be written: {}", path.string(),
                                  errno != 0 ? std::strerror(errno) : "unknown reason"));
 }
-
-void write_text(const fs::path& path, std::string_view text) { write_bytes(path, text.data(), text.size()); }
 
 void write_png(const fs::path& path, const cv::Mat& image) {
   // Noise hardly packs better at higher levels, and packing must keep up with rendering.
@@ -146,9 +144,9 @@ void write_lists(const FrameSource& source, const fs::path& folder) {
     for (int i = 0; i < source.size(); ++i)
       if (fs::exists(folder / name / image_name(source, i)))
         text += fmt::format("{:.6f} {}/{}\n", source.timestamp(i), name, image_name(source, i));
-    write_text(folder / (std::string(name) + ".txt"), text);
+    write_text_file(folder / (std::string(name) + ".txt"), text);
   };
-  write_text(folder / "camera.toml", camera_text(source.camera()));
+  write_text_file(folder / "camera.toml", camera_text(source.camera()));
   if (!source.ground_truth().empty())
     write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
   if (source.has_masks()) list("mask");
@@ -160,7 +158,7 @@ void write_lists(const FrameSource& source, const fs::path& folder) {
       if (fs::exists(folder / "depth" / name))
         pairs += fmt::format("{0:.6f} rgb/{1} {0:.6f} depth/{1}\n", source.timestamp(i), name);
     }
-    write_text(folder / "associations.txt", pairs);
+    write_text_file(folder / "associations.txt", pairs);
   }
   list("rgb");
 }

@@ -100,13 +100,13 @@ class Body {
 
   void add_torso(const Vector3d& spine, const Vector3d& front, const Vector3d& side) {
     chest_ = pelvis_ + spine * m(0.50);
-    ellipsoid(pelvis_ + spine * m(0.03), Vector3d(0.158, 0.11, 0.098) * look_.girth, front, spine,
+    ellipsoid(pelvis_ + spine * m(0.02), Vector3d(0.158, 0.11, 0.115) * look_.girth, front, spine,
               look_.trousers);
-    cone(pelvis_ + spine * m(0.06), 0.156, pelvis_ + spine * m(0.385), 0.178, look_.shirt, front, 0.70);
+    cone(pelvis_ + spine * m(0.14), 0.15, pelvis_ + spine * m(0.385), 0.178, look_.shirt, front, 0.70);
     cone(chest_ - spine * m(0.06) + side * m(0.135), 0.066, chest_ - spine * m(0.06) - side * m(0.135), 0.066,
          look_.shirt, front);
-    cone(chest_ - spine * m(0.16), 0.13, chest_ + spine * m(0.0), 0.06, look_.shirt, front, 0.75);
-    ellipsoid(pelvis_ + spine * m(0.055), Vector3d(0.163, 0.122, 0.03) * look_.girth, front, spine,
+    cone(chest_ - spine * m(0.16), 0.13, chest_, 0.06, look_.shirt, front, 0.75);
+    ellipsoid(pelvis_ + spine * m(0.075), Vector3d(0.156, 0.114, 0.03) * look_.girth, front, spine,
               look_.belt);
   }
 

@@ -194,7 +194,7 @@ Player desk_worker(const FigureLook& look, const Vector2d& seat, Furnisher& f, u
 }
 
 Player cart_pusher(const FigureLook& look, Furnisher& f, unsigned seed) {
-  const std::uint16_t carton = f.surface(Picture::kCardboard), poster = f.surface(Picture::kPosterC);
+  const std::uint16_t carton = f.surface(Picture::kCardboard), poster = f.surface(Picture::kPosterH);
   const std::uint16_t steel = f.surface(Picture::kMetal, 2, {0.6f, 0.6f, 0.65f}),
                       rubber = f.plain(35, 35, 38);
   Dice dice(hash(seed, 0xCA27u));

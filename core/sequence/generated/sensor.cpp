@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace stillpoint::generated {
 namespace {
 
+constexpr double kLensBlur = 0.6;                     // px, deviation: the lens and the colour mosaic
 constexpr float kBase = 0.075f;                       // m between projector and depth camera
 constexpr float kSteps = 8.0f;                        // disparity steps a pixel
 constexpr float kMinDepth = 0.45f, kMaxDepth = 6.0f;  // m
@@ -41,8 +43,9 @@ Sensor::Sensor(unsigned seed) : seed_(hash(seed, 0x5E45u)) {
   exposure_ = Wander(dice, 0.02, 0.05, 0.4, 3);
 }
 
-cv::Mat Sensor::colour(const cv::Mat& ideal, int frame, double seconds) const {
-  cv::Mat image(ideal.size(), CV_8UC3);
+cv::Mat Sensor::colour(const cv::Mat& perfect, int frame, double seconds) const {
+  cv::Mat ideal, image(perfect.size(), CV_8UC3);
+  cv::GaussianBlur(perfect, ideal, {3, 3}, kLensBlur);
   const float flicker = 0.006f * gaussian(hash(seed_, u32(frame), 1u));
   const float gain = 1.0f + static_cast<float>(exposure_.at(seconds)) + flicker;
   const float middle_x = 0.5f * static_cast<float>(ideal.cols),

@@ -21,8 +21,8 @@ class Sensor {
  public:
   explicit Sensor(unsigned seed);
 
-  /// CV_8UC3 with vignetting, exposure flicker and noise.
-  [[nodiscard]] cv::Mat colour(const cv::Mat& ideal, int frame, double seconds) const;
+  /// CV_8UC3 with a lens's softness, vignetting, exposure flicker and noise.
+  [[nodiscard]] cv::Mat colour(const cv::Mat& perfect, int frame, double seconds) const;
 
   /// CV_16UC1 in camera.depth_scale units a metre, 0 = no measurement.
   /// @param dropout by id: the share of a thing that is not measured.

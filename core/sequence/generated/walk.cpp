@@ -9,6 +9,7 @@ namespace {
 constexpr double kPairOfSteps = 1.38;  // m, at full stride
 constexpr double kFullSpeed = 1.15;    // m/s at which steps are longest
 constexpr double kTurnRate = 2.6;      // rad/s
+constexpr double kStroll = 0.75;       // people in a room are in no hurry
 constexpr double kElbowRoom = 0.75;    // m people keep from each other
 
 double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
@@ -37,7 +38,7 @@ struct Person {
       const double bearing = std::atan2(way.y(), way.x()), off = std::abs(wrapped(bearing - heading));
       const double slow = stop.pause > 0 ? std::clamp(distance / 0.6, 0.25, 1.0) : 1.0;
       wanted_heading = bearing;
-      const double speed = stop.speed * slow * std::max(0.1, std::cos(std::min(off, M_PI / 2)));
+      const double speed = kStroll * stop.speed * slow * std::max(0.1, std::cos(std::min(off, M_PI / 2)));
       wanted = speed * Vector2d(std::cos(heading), std::sin(heading));
       if (distance < (stop.pause > 0 ? 0.08 : 0.35)) {
         waiting = stop.pause > 0;

@@ -9,7 +9,7 @@ namespace stillpoint::generated {
 /// A place someone walks to, and what happens there.
 struct Stop {
   Vector2d position;   ///< m
-  double speed = 1.1;  ///< on the way there, m/s
+  double speed = 1.1;  ///< on the way there at a brisk pace, m/s; people stroll at three quarters of it
   double pause = 0;    ///< seconds spent there; 0 = passes through
   double heading = 0;  ///< while pausing
   bool sits = false;   ///< on a chair, while pausing

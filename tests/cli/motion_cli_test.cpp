@@ -1,16 +1,16 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
+#include "tests/cli/run_cli.hpp"
 #include "tests/unit/motion_scene.hpp"
-#include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
 namespace {
@@ -18,23 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using motion_test::plane_and_patch;
 using motion_test::PlaneAndPatch;
-
-struct Ended {
-  int status = -1;
-  std::string output;  ///< both streams
-};
-
-Ended run_motion(const std::string& arguments) {
-  Ended ended;
-  FILE* pipe = ::popen((std::string(STILLPOINT_PROGRAM) + " motion " + arguments + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return ended;
-  std::array<char, 4096> part{};
-  for (std::size_t got = 0; (got = std::fread(part.data(), 1, part.size(), pipe)) > 0;)
-    ended.output.append(part.data(), got);
-  const int raw = ::pclose(pipe);
-  ended.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
-  return ended;
-}
 
 std::ptrdiff_t lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
@@ -55,17 +38,15 @@ class MotionCommand : public ::testing::Test {
     folder_.write("a_colour.png", in_colour(scene.reference));
     folder_.write("b_colour.jpg", in_colour(scene.target));
   }
-  /// Arguments for two of the folder's files.
-  [[nodiscard]] std::string pair(const std::string& a, const std::string& b,
-                                 const std::string& more = "") const {
-    return folder_.path(a) + " " + folder_.path(b) + " --out " + folder_.path("out") + " " + more;
+  [[nodiscard]] static CliResult motion(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "motion");
+    return run_cli(arguments);
   }
-  /// One sentence on one line, a status that is not 0, and no results.
-  void expect_refused(const std::string& arguments, const std::string& said) const {
-    const Ended ended = run_motion(arguments);
-    EXPECT_EQ(ended.status, 1) << ended.output;
-    EXPECT_EQ(lines_of(ended.output), 1) << ended.output;
-    EXPECT_NE(ended.output.find(said), std::string::npos) << ended.output;
+  /// The command on two of the folder's files.
+  [[nodiscard]] CliResult pair(const std::string& a, const std::string& b,
+                               std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {folder_.path(a), folder_.path(b), "--out", folder_.path("out")});
+    return motion(more);
   }
   /// A sequence of `count` colour frames alone.
   void write_sequence(int count) const {
@@ -82,8 +63,8 @@ class MotionCommand : public ::testing::Test {
 };
 
 TEST_F(MotionCommand, TwoGreyImagesLeaveEveryPicture) {
-  const Ended ended = run_motion(pair("a.png", "b.png"));
-  ASSERT_EQ(ended.status, 0) << ended.output;
+  const CliResult ended = pair("a.png", "b.png");
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
   for (const char* name : {"compensated_forward", "compensated_backward", "difference_forward",
                            "difference_backward", "raw_mask_forward", "raw_mask_backward", "mask_forward",
                            "mask_backward", "mask_backward_in_target", "mask_union"}) {
@@ -102,25 +83,25 @@ TEST_F(MotionCommand, TwoGreyImagesLeaveEveryPicture) {
 }
 
 TEST_F(MotionCommand, CsvRowsHaveAsManyFieldsAsTheirHeading) {
-  ASSERT_EQ(run_motion(pair("a.png", "b.png")).status, 0);
+  ASSERT_EQ(pair("a.png", "b.png").exit_code, 0);
   const std::string csv = folder_.read("out/motion.csv");
   const std::string heading = csv.substr(0, csv.find('\n')), row = csv.substr(csv.find('\n') + 1);
   EXPECT_EQ(std::count(heading.begin(), heading.end(), ','), std::count(row.begin(), row.end(), ','));
 }
 
 TEST_F(MotionCommand, ColourImagesAndOtherFormatsWork) {
-  const Ended ended = run_motion(pair("a_colour.png", "b_colour.jpg", "--all-rounds"));
-  ASSERT_EQ(ended.status, 0) << ended.output;
+  const CliResult ended = pair("a_colour.png", "b_colour.jpg", {"--all-rounds"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_TRUE(fs::exists(folder_.path("out/round_1/mask_union.png")));
   EXPECT_FALSE(fs::exists(folder_.path("out/mask_union.png")));
 }
 
 TEST_F(MotionCommand, EarlierResultsAreKeptWithoutForce) {
-  ASSERT_EQ(run_motion(pair("a.png", "b.png")).status, 0);
+  ASSERT_EQ(pair("a.png", "b.png").exit_code, 0);
   const std::string before = folder_.read("out/motion.csv");
-  expect_refused(pair("b.png", "a.png"), "--force");
+  expect_one_sentence(pair("b.png", "a.png"), "--force");
   EXPECT_EQ(folder_.read("out/motion.csv"), before);
-  EXPECT_EQ(run_motion(pair("b.png", "a.png", "--force")).status, 0);
+  EXPECT_EQ(pair("b.png", "a.png", {"--force"}).exit_code, 0);
   EXPECT_NE(folder_.read("out/motion.csv"), before);
 }
 
@@ -130,56 +111,58 @@ TEST_F(MotionCommand, BadInputIsToldInOneSentence) {
   folder_.write("large.png", motion_test::textured_image({400, 300}, 1));
   folder_.write("file", "");
   folder_.write("bare/readme", "no rgb.txt here");
-  expect_refused(pair("a.png", "missing.png"), "missing.png");
-  expect_refused(pair("empty.png", "b.png"), "empty.png");
-  expect_refused(pair("a.png", "words.png"), "words.png");
-  expect_refused(pair("a.png", "large.png"), "400x300");
-  expect_refused(pair("a.png", "b.png", "--set motion.nothing=1"), "motion.nothing");
-  expect_refused(pair("a.png", "b.png", "--set motion.max_rounds=0"), "motion.max_rounds");
-  expect_refused(pair("a.png", "b.png", "--config nosuchpreset"), "nosuchpreset");
-  expect_refused(pair("a.png", "b.png", "--frames 1:2"), "--frames");
+  expect_one_sentence(pair("a.png", "missing.png"), "missing.png");
+  expect_one_sentence(pair("empty.png", "b.png"), "empty.png");
+  expect_one_sentence(pair("a.png", "words.png"), "words.png");
+  expect_one_sentence(pair("a.png", "large.png"), "400x300");
+  expect_one_sentence(pair("a.png", "b.png", {"--set", "motion.nothing=1"}), "motion.nothing");
+  expect_one_sentence(pair("a.png", "b.png", {"--set", "motion.max_rounds=0"}), "motion.max_rounds");
+  expect_one_sentence(pair("a.png", "b.png", {"--config", "nosuchpreset"}), "nosuchpreset");
+  expect_one_sentence(pair("a.png", "b.png", {"--frames", "1:2"}), "--frames");
   EXPECT_FALSE(fs::exists(folder_.path("out")));
-  expect_refused(folder_.path("a.png") + " " + folder_.path("b.png") + " --out " + folder_.path("file"),
-                 "file");
-  expect_refused(folder_.path("a.png") + " " + folder_.path("b.png") + " --out " + folder_.path("file/below"),
-                 "file");
-  expect_refused(folder_.path("bare") + " --out " + folder_.path("out"), "rgb.txt");
-  expect_refused(folder_.path("a.png") + " --out " + folder_.path("out"), "a.png");
+  for (const char* out : {"file", "file/below"})
+    expect_one_sentence(motion({folder_.path("a.png"), folder_.path("b.png"), "--out", folder_.path(out)}),
+                        "file");
+  expect_one_sentence(motion({folder_.path("bare"), "--out", folder_.path("out")}), "rgb.txt");
+  expect_one_sentence(motion({folder_.path("a.png"), "--out", folder_.path("out")}), "a.png");
 }
 
 TEST_F(MotionCommand, ImagesWithoutTextureEndWellWithANote) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(200, 100)}) {
     folder_.write("blank.png", cv::Mat(cv::Mat::zeros(size, CV_8UC3)));
-    const Ended ended = run_motion(pair("blank.png", "blank.png", "--force"));
-    EXPECT_EQ(ended.status, 0) << ended.output;
-    EXPECT_NE(ended.output.find("no mask"), std::string::npos) << ended.output;
+    const CliResult ended = pair("blank.png", "blank.png", {"--force"});
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_THAT(ended.out, testing::HasSubstr("no mask"));
     EXPECT_FALSE(fs::exists(folder_.path("out/mask_union.png")));
   }
 }
 
 TEST_F(MotionCommand, SequencesOfColourFramesAlone) {
   write_sequence(6);
-  const std::string sequence = folder_.path("frames") + " --out " + folder_.path("out");
-  ASSERT_EQ(run_motion(sequence).status, 0);
+  const auto sequence = [this](const std::string& out, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {folder_.path("frames"), "--out", folder_.path(out)});
+    return motion(more);
+  };
+  ASSERT_EQ(sequence("out").exit_code, 0);
   EXPECT_EQ(lines_of(folder_.read("out/motion.csv")), 1 + 5);
   EXPECT_FALSE(fs::exists(folder_.path("out/000000")));
   EXPECT_TRUE(fs::exists(folder_.path("out/000005/overlay.png")));
 
-  ASSERT_EQ(run_motion(sequence + "2 --frames 0:6:2 --set motion.reference_gap=2").status, 0);
+  ASSERT_EQ(sequence("out2", {"--frames", "0:6:2", "--set", "motion.reference_gap=2"}).exit_code, 0);
   const auto figures = nlohmann::json::parse(folder_.read("out2/motion.json"));
   ASSERT_EQ(figures["pairs"].size(), 2U);  // targets 2 and 4: frame 0 has nothing two frames back
   EXPECT_EQ(figures["pairs"][1]["reference"], "2");
   EXPECT_EQ(figures["pairs"][1]["target"], "4");
-  for (const char* wrong : {"x", "3:2", "1:2:0", "-1:2", "1:2:3:4", "9:12"})
-    expect_refused(sequence + "3 --frames " + wrong, "--frames");
-  expect_refused(sequence + "3 --set motion.reference_gap=6", "6 frames back");
+  for (const char* wrong : {"x", "3:2", "1:2:0", "1:2:3:4", "9:12"})
+    expect_one_sentence(sequence("out3", {"--frames", wrong}), "--frames");
+  expect_one_sentence(sequence("out3", {"--set", "motion.reference_gap=6"}), "6 frames back");
 }
 
 TEST_F(MotionCommand, ADamagedFrameIsMarkedAndTheRestGoesOn) {
   write_sequence(5);
   folder_.truncate("frames/rgb/2.png", 0.5);
-  const Ended ended = run_motion(folder_.path("frames") + " --out " + folder_.path("out"));
-  ASSERT_EQ(ended.status, 0) << ended.output;
+  const CliResult ended = motion({folder_.path("frames"), "--out", folder_.path("out")});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
   const auto figures = nlohmann::json::parse(folder_.read("out/motion.json"));
   ASSERT_EQ(figures["pairs"].size(), 4U);
   EXPECT_EQ(figures["pairs"][0]["note"], "");

@@ -1,0 +1,107 @@
+#include "core/motion/depth_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/motion/depth_evidence.hpp"
+#include "core/motion/regions.hpp"
+#include "core/motion/segments.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// The pixels of moving patches.
+cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
+  cv::Mat mask = cv::Mat::zeros(labels.size(), CV_8UC1);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int label = labels.at<int>(y, x); label >= 0 && segments[static_cast<std::size_t>(label)].moving)
+        mask.at<uchar>(y, x) = 255;
+  return mask;
+}
+
+void drop_small_regions(cv::Mat& mask, double min_area_share) {
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
+  const double least = min_area_share * static_cast<double>(mask.total());
+  std::vector<std::uint8_t> keep(static_cast<std::size_t>(count), 0);
+  for (int i = 1; i < count; ++i) keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
+}
+
+/// The small mask at full size, its outline fitted to the depth image: about an edge a pixel goes with the small
+/// neighbour whose depth is most like its own.
+cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
+  cv::Mat edge, low, high;
+  cv::erode(small_mask, low, cv::Mat());
+  cv::dilate(small_mask, high, cv::Mat());
+  edge = low != high;
+  cv::Mat mask = cv::Mat::zeros(full_depth.size(), CV_8UC1);
+  const int f = view.factor;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x) {
+      const int sx = std::min(x / f, small_mask.cols - 1), sy = std::min(y / f, small_mask.rows - 1);
+      uchar value = small_mask.at<uchar>(sy, sx);
+      const float z = full_depth.at<float>(y, x);
+      if (edge.at<uchar>(sy, sx)) {
+        if (z > 0) {
+          float best = std::numeric_limits<float>::max();
+          for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
+            for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
+              const float other = view.depth.at<float>(v, u);
+              const float difference = std::abs(other - z);
+              if (other > 0 && difference < best) best = difference, value = small_mask.at<uchar>(v, u);
+            }
+        } else {
+          value = high.at<uchar>(sy, sx);  // the sensor's shadow beside a mover moves with it
+        }
+      }
+      mask.at<uchar>(y, x) = value;
+    }
+  return mask;
+}
+
+}  // namespace
+
+DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& full_depth,
+                                     const std::vector<ReferenceView>& references, const MotionMemory* memory,
+                                     const Pose& previous_from_current, const DepthMotionConfig& config) {
+  DepthMotionTrace trace;
+  trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
+                       : cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  trace.log_odds = trace.prior.clone();
+  for (const ReferenceView& reference : references) {
+    trace.references.push_back(compare_with_reference(current, reference, config));
+    trace.log_odds += trace.references.back().log_odds;
+  }
+  const double limit = config.max_log_odds;
+  cv::min(trace.log_odds, limit, trace.log_odds);
+  cv::max(trace.log_odds, -limit, trace.log_odds);
+
+  trace.segments = segment_surfaces(current, config, trace.labels);
+  judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
+  trace.small_mask = paint_moving(trace.labels, trace.segments);
+  drop_small_regions(trace.small_mask, config.min_area_share);
+  trace.mask = fit_to_depth(trace.small_mask, current, full_depth);
+  if (config.margin_px > 0) {
+    const int side = 2 * config.margin_px + 1;
+    cv::dilate(trace.mask, trace.mask, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  }
+  trace.mask_share = static_cast<double>(cv::countNonZero(trace.mask)) / static_cast<double>(trace.mask.total());
+  if (references.empty()) trace.note = "no earlier frame with depth to compare with";
+
+  // What a patch was found to be is what its pixels are remembered as.
+  for (int y = 0; y < trace.labels.rows; ++y)
+    for (int x = 0; x < trace.labels.cols; ++x) {
+      const int label = trace.labels.at<int>(y, x);
+      if (label < 0) continue;
+      float& odds = trace.log_odds.at<float>(y, x);
+      odds = 0.5F * (odds + trace.segments[static_cast<std::size_t>(label)].log_odds);
+    }
+  return trace;
+}
+
+}  // namespace stillpoint
