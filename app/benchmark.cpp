@@ -19,7 +19,7 @@ namespace stillpoint {
 namespace {
 
 struct BenchmarkArguments {
-  std::vector<std::string> sequences, methods = {"none", "paper"};
+  std::vector<std::string> sequences, methods = {"none", "paper", "stillpoint"};
   std::string out;
   bool force = false;
   ConfigArguments config;

@@ -89,7 +89,8 @@ TEST_P(MidSequence, MarksTheFrameAndGoesOn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, MidSequence,
-                         testing::Combine(testing::Values("none", "paper"), testing::ValuesIn(kFaults)),
+                         testing::Combine(testing::Values("none", "paper", "stillpoint"),
+                                          testing::ValuesIn(kFaults)),
                          [](const auto& tested) {
                            return std::string(std::get<1>(tested.param).name) + "_" +
                                   std::get<0>(tested.param);

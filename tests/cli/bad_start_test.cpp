@@ -139,9 +139,9 @@ class BadStart : public testing::Test {
 
 TEST_F(BadStart, Methods) {
   expect_one_sentence(run_cli({"run", sequence.path(), "--method", "magic"}),
-                      "run.method takes one of: none, paper");
+                      "run.method takes one of: stillpoint, paper, none");
   expect_one_sentence(run_cli({"benchmark", sequence.path(), "--methods", "none,magic"}),
-                      "run.method takes one of: none, paper");
+                      "run.method takes one of: stillpoint, paper, none");
   expect_one_sentence(run_cli({"benchmark", sequence.path(), "--methods", "none,none"}),
                       "--methods names none twice");
   expect_one_sentence(run_cli({"run", sequence.path(), "--method", "oracle"}), "there is no mask.txt");

@@ -97,7 +97,7 @@ TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
   EXPECT_GT(line_count(folder.read("one/trajectory.txt")), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values("none", "paper"),
+INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values("none", "paper", "stillpoint"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(Determinism, AnotherSeedIsAnotherFilm) {
