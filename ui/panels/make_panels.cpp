@@ -1,0 +1,16 @@
+#include "ui/panels/all_panels.hpp"
+
+namespace stillpoint {
+
+std::vector<std::unique_ptr<Panel>> make_panels() {
+  const auto shared = std::make_shared<PanelsShared>();
+  std::vector<std::unique_ptr<Panel>> panels;
+  panels.push_back(make_input_panel(shared));
+  panels.push_back(make_mask_panel(MaskKind::kForward, shared));
+  panels.push_back(make_mask_panel(MaskKind::kBackward, shared));
+  panels.push_back(make_mask_panel(MaskKind::kUnion, shared));
+  panels.push_back(make_errors_panel(shared));
+  return panels;
+}
+
+}  // namespace stillpoint
