@@ -24,16 +24,19 @@ std::optional<int> next_frame(const SessionView& session, Wanted wanted) {
 }  // namespace
 
 void Actions::add(Action action) {
-  if (find(action.name) != nullptr) throw std::logic_error(fmt::format("two actions are named {}", action.name));
+  if (find(action.name) != nullptr)
+    throw std::logic_error(fmt::format("two actions are named {}", action.name));
   for (const KeyChord& chord : action.keys)
     for (const Action& other : actions_)
       if (std::find(other.keys.begin(), other.keys.end(), chord) != other.keys.end())
-        throw std::logic_error(fmt::format("{} and {} have the key {}", action.name, other.name, to_string(chord)));
+        throw std::logic_error(
+            fmt::format("{} and {} have the key {}", action.name, other.name, to_string(chord)));
   actions_.push_back(std::move(action));
 }
 
 const Action* Actions::find(std::string_view name) const {
-  const auto it = std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.name == name; });
+  const auto it =
+      std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.name == name; });
   return it == actions_.end() ? nullptr : &*it;
 }
 
@@ -77,7 +80,8 @@ std::vector<const Action*> Actions::matching(std::string_view query) const {
     if (!is_enabled(action)) continue;
     if (const auto score = match_score(action.title, query)) scored.emplace_back(*score, &action);
   }
-  std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(scored.begin(), scored.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<const Action*> actions;
   for (const auto& [score, action] : scored) actions.push_back(action);
   return actions;
@@ -85,7 +89,9 @@ std::vector<const Action*> Actions::matching(std::string_view query) const {
 
 bool is_enabled(const Action& action) { return !action.enabled || action.enabled(); }
 
-std::string key_text(const Action& action) { return action.keys.empty() ? "" : to_string(action.keys.front()); }
+std::string key_text(const Action& action) {
+  return action.keys.empty() ? "" : to_string(action.keys.front());
+}
 
 std::optional<int> match_score(std::string_view title, std::string_view query) {
   constexpr int kWordStart = 8, kFollows = 4;

@@ -17,10 +17,10 @@ struct Action {
   std::string title;  ///< "Step back"
   std::string group;  ///< the menu it stands in
   std::string icon{};
-  std::vector<KeyChord> keys{};      ///< the first is printed
-  bool repeats = false;              ///< while its key is held
-  std::function<bool()> enabled{};   ///< always, when empty
-  std::function<bool()> checked{};   ///< whether it is on, for what is switched
+  std::vector<KeyChord> keys{};     ///< the first is printed
+  bool repeats = false;             ///< while its key is held
+  std::function<bool()> enabled{};  ///< always, when empty
+  std::function<bool()> checked{};  ///< whether it is on, for what is switched
   std::function<void()> run;
 };
 

@@ -36,7 +36,8 @@ void RunTrack::keep_checkpoint() {
   checkpoints_.emplace(processed(), odometry_);
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
-  std::erase_if(checkpoints_, [this](const auto& kept) { return kept.first % options_.checkpoint_every != 0; });
+  std::erase_if(checkpoints_,
+                [this](const auto& kept) { return kept.first % options_.checkpoint_every != 0; });
 }
 
 FrameResult RunTrack::replay(int index, const ReadFrame& read) const {

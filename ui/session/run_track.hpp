@@ -55,7 +55,7 @@ class RunTrack {
   Odometry odometry_;
   std::vector<FrameRecord> records_;                  // without features
   std::vector<std::vector<FeatureRecord>> features_;  // … which are here, where they are kept
-  std::map<int, Odometry> checkpoints_;  // by the frame they process next
+  std::map<int, Odometry> checkpoints_;               // by the frame they process next
 };
 
 }  // namespace stillpoint

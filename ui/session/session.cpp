@@ -17,7 +17,8 @@ constexpr auto kProgressInterval = std::chrono::milliseconds(150);
 
 }  // namespace
 
-Session::Session(std::shared_ptr<const FrameSource> source, const Config& config, const SessionOptions& options)
+Session::Session(std::shared_ptr<const FrameSource> source, const Config& config,
+                 const SessionOptions& options)
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
   show(0);
@@ -73,7 +74,8 @@ void Session::keep(Extras extras) {
 
 Session::Extras Session::extras_of(int index) {
   if (index >= run_->processed()) return {.index = index};
-  const auto kept = std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
+  const auto kept =
+      std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
   if (kept != extras_.end()) return *kept;
   const std::string& method = run_->config().run.method;
   if (method == "none" || method == "paper") return {.index = index};  // all there is, frame_view computes
@@ -244,7 +246,8 @@ void Session::work(const std::stop_token& stop) {
       }
       if (playing_ && at_rest && Clock::now() < due) {
         std::unique_lock lock(mutex_);
-        asked_.wait_until(lock, stop, due, [this] { return requests_.frame || requests_.play || requests_.config; });
+        asked_.wait_until(lock, stop, due,
+                          [this] { return requests_.frame || requests_.play || requests_.config; });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(

@@ -32,7 +32,8 @@ struct SessionOptions {
 class Session {
  public:
   /// Shows the first frame, not yet processed.
-  Session(std::shared_ptr<const FrameSource> source, const Config& config, const SessionOptions& options = {});
+  Session(std::shared_ptr<const FrameSource> source, const Config& config,
+          const SessionOptions& options = {});
   /// Waits for the frame at hand.
   ~Session();
   Session(const Session&) = delete;

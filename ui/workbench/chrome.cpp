@@ -22,13 +22,15 @@ StatusLook status_look(const SessionView& session, const Theme& theme) {
   const FrameRecord* record = session.current->record;
   if (record == nullptr) return {"not processed yet", theme.text_dim};
   const bool lost = record->status == FrameStatus::lost || record->status == FrameStatus::unreadable;
-  return {std::string(to_string(record->status)), role_colour(lost ? Role::kRemoved : Role::kKept, theme.name)};
+  return {std::string(to_string(record->status)),
+          role_colour(lost ? Role::kRemoved : Role::kKept, theme.name)};
 }
 
 void tooltip(const Action& action) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   const std::string key = key_text(action);
-  ImGui::SetTooltip("%s%s%s%s", action.title.c_str(), key.empty() ? "" : "  (", key.c_str(), key.empty() ? "" : ")");
+  ImGui::SetTooltip("%s%s%s%s", action.title.c_str(), key.empty() ? "" : "  (", key.c_str(),
+                    key.empty() ? "" : ")");
 }
 
 }  // namespace
@@ -55,7 +57,8 @@ void Workbench::draw_menu_row() {
     for (const Action& action : actions_.all()) {
       if (action.group != group) continue;
       const bool checked = action.checked && action.checked();
-      const std::string title = group == "Panels" ? action.title.substr(action.title.find(':') + 2) : action.title;
+      const std::string title =
+          group == "Panels" ? action.title.substr(action.title.find(':') + 2) : action.title;
       if (ImGui::MenuItem(title.c_str(), key_text(action).c_str(), checked, is_enabled(action))) action.run();
     }
     if (group == "File" && host_.open && !recent_.empty() && ImGui::BeginMenu("Recent")) {
@@ -71,7 +74,8 @@ void Workbench::draw_menu_row() {
   const float width = ImGui::CalcTextSize(title.c_str()).x;
   const float left = ImGui::GetCursorScreenPos().x, right = frame_->size.x - 14.0F * frame_->scale;
   const float x = std::max(left + 20.0F * frame_->scale, right - width);
-  draw_clipped_text({x, ImGui::GetCursorScreenPos().y + 4.0F * frame_->scale}, title, right - x, to_u32(frame_->theme.text_dim));
+  draw_clipped_text({x, ImGui::GetCursorScreenPos().y + 4.0F * frame_->scale}, title, right - x,
+                    to_u32(frame_->theme.text_dim));
   ImGui::PopFont();
 }
 
@@ -82,7 +86,8 @@ bool Workbench::action_button(const char* name) {
   const bool enabled = is_enabled(action);
   // Images are not for pressing: there, buttons look as they do when they can be pressed.
   ImGui::BeginDisabled(!enabled && static_cast<bool>(host_.go_to_frame));
-  const bool pressed = ImGui::Button(playing ? icons::kPause : action.icon.c_str(), {side * 1.15F, side}) && enabled;
+  const bool pressed =
+      ImGui::Button(playing ? icons::kPause : action.icon.c_str(), {side * 1.15F, side}) && enabled;
   ImGui::EndDisabled();
   tooltip(action);
   if (pressed) action.run();
@@ -129,10 +134,14 @@ void Workbench::draw_frame_slider(float width) {
   const ImVec2 low = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("frames", {std::max(width, 10.0F), height});
   const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
-  const float most = static_cast<float>(std::max(1, session_->frame_count - 1)), radius = 6.0F * frame_->scale;
-  const float left = low.x + radius, span = std::max(1.0F, width - 2.0F * radius), middle = low.y + 0.5F * height;
+  const float most = static_cast<float>(std::max(1, session_->frame_count - 1)),
+              radius = 6.0F * frame_->scale;
+  const float left = low.x + radius, span = std::max(1.0F, width - 2.0F * radius),
+              middle = low.y + 0.5F * height;
   const auto x_of = [&](int frame) { return left + span * static_cast<float>(frame) / most; };
-  const auto frame_at = [&](float x) { return static_cast<int>(std::lround(std::clamp((x - left) / span, 0.0F, 1.0F) * most)); };
+  const auto frame_at = [&](float x) {
+    return static_cast<int>(std::lround(std::clamp((x - left) / span, 0.0F, 1.0F) * most));
+  };
 
   const Theme& theme = frame_->theme;
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -141,10 +150,12 @@ void Workbench::draw_frame_slider(float width) {
   if (session_->processed > 0)
     list.AddRectFilled({left, middle - half}, {x_of(session_->processed - 1), middle + half},
                        to_u32(mix(theme.raised, theme.accent, 0.45F)), half);
-  const ImU32 keyframe = to_u32(mix(theme.accent, theme.text, 0.3F)), lost = to_u32(role_colour(Role::kRemoved, theme.name));
+  const ImU32 keyframe = to_u32(mix(theme.accent, theme.text, 0.3F)),
+              lost = to_u32(role_colour(Role::kRemoved, theme.name));
   for (const FrameRecord& record : session_->run->records) {
     const float x = x_of(record.index);
-    if (record.keyframe) list.AddLine({x, middle - 2.6F * half}, {x, middle - 1.3F * half}, keyframe, frame_->scale);
+    if (record.keyframe)
+      list.AddLine({x, middle - 2.6F * half}, {x, middle - 1.3F * half}, keyframe, frame_->scale);
     if (record.status == FrameStatus::lost || record.status == FrameStatus::unreadable)
       list.AddRectFilled({x - frame_->scale, middle - half}, {x + frame_->scale, middle + 2.4F * half}, lost);
   }
@@ -187,10 +198,12 @@ void Workbench::draw_status_bar(float height) {
     put(fmt::format("frame {}  {}", session_->current->index, status.text), theme.text);
     put(fmt::format("method {}", session_->config.run.method), theme.text_dim);
     if (const FrameRecord* record = session_->current->record)
-      put(fmt::format("{} of {} features kept, {} inliers", record->features_kept, record->features_found, record->inliers),
+      put(fmt::format("{} of {} features kept, {} inliers", record->features_kept, record->features_found,
+                      record->inliers),
           theme.text_dim);
     put(fmt::format("{} of {} frames processed", session_->processed, session_->frame_count), theme.text_dim);
-    if (session_->playing && shown_interval_s_ > 0.0) put(fmt::format("{:.1f} fps", 1.0 / shown_interval_s_), theme.text_dim);
+    if (session_->playing && shown_interval_s_ > 0.0)
+      put(fmt::format("{:.1f} fps", 1.0 / shown_interval_s_), theme.text_dim);
     if (session_->busy && !session_->playing) put("working…", theme.accent);
   }
   const bool session_speaks = session_ != nullptr && !session_->message.empty();
@@ -199,7 +212,8 @@ void Workbench::draw_status_bar(float height) {
   if (!message.empty()) {
     const float right = frame_->size.x - 12.0F * scale;
     const float from = std::max(x, right - ImGui::CalcTextSize(message.c_str()).x);
-    draw_clipped_text({from, y}, message, right - from, to_u32(error ? role_colour(Role::kWarning, theme.name) : theme.text));
+    draw_clipped_text({from, y}, message, right - from,
+                      to_u32(error ? role_colour(Role::kWarning, theme.name) : theme.text));
   }
   ImGui::PopFont();
 }

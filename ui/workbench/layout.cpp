@@ -104,7 +104,8 @@ void drag(LayoutNode& root, const PlacedSplitter& splitter, float delta, float l
   if (splitter.extent <= 0.0F) return;
   const double both = first.share + second.share;
   const double minimum = std::min(static_cast<double>(least) / splitter.extent, both / 2.0);
-  first.share = std::clamp(first.share + static_cast<double>(delta) / splitter.extent, minimum, both - minimum);
+  first.share =
+      std::clamp(first.share + static_cast<double>(delta) / splitter.extent, minimum, both - minimum);
   second.share = both - first.share;
 }
 
@@ -138,10 +139,10 @@ void replace_panel(LayoutNode& root, std::string_view panel, const std::string& 
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area) {
   if (contains(root, panel)) return;
   const PlacedLayout placed = arrange(root, area, 0.0F);
-  const auto largest = std::max_element(
-      placed.panels.begin(), placed.panels.end(), [](const PlacedPanel& a, const PlacedPanel& b) {
-        return a.rect.width * a.rect.height < b.rect.width * b.rect.height;
-      });
+  const auto largest = std::max_element(placed.panels.begin(), placed.panels.end(),
+                                        [](const PlacedPanel& a, const PlacedPanel& b) {
+                                          return a.rect.width * a.rect.height < b.rect.width * b.rect.height;
+                                        });
   LayoutNode& place = *find(root, largest->panel);
   const Division division =
       largest->rect.width >= largest->rect.height ? Division::kColumns : Division::kRows;
@@ -150,13 +151,16 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
 
 LayoutNode default_layout() {
   using enum Division;
-  return divide(1.0, kColumns,
-                {divide(0.74, kRows,
-                        {divide(0.36, kColumns, {tile(1.0 / 3, "input"), tile(1.0 / 3, "compensated"), tile(1.0 / 3, "union_mask")}),
-                         divide(0.42, kColumns, {divide(0.42, kRows, {tile(0.5, "forward_mask"), tile(0.5, "backward_mask")}),
-                                                 tile(0.58, "trajectory")}),
-                         tile(0.22, "error")}),
-                 divide(0.26, kRows, {tile(0.4, "features"), tile(0.6, "inspector")})});
+  return divide(
+      1.0, kColumns,
+      {divide(0.74, kRows,
+              {divide(0.36, kColumns,
+                      {tile(1.0 / 3, "input"), tile(1.0 / 3, "compensated"), tile(1.0 / 3, "union_mask")}),
+               divide(0.42, kColumns,
+                      {divide(0.42, kRows, {tile(0.5, "forward_mask"), tile(0.5, "backward_mask")}),
+                       tile(0.58, "trajectory")}),
+               tile(0.22, "errors")}),
+       divide(0.26, kRows, {tile(0.4, "features"), tile(0.6, "inspector")})});
 }
 
 }  // namespace stillpoint

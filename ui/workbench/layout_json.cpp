@@ -35,7 +35,8 @@ class LayoutReader {
     constexpr int kDeepest = 32;
     if (depth > kDeepest) refuse(fmt::format("tiles are divided more than {} times over", kDeepest));
     if (!json.is_object()) refuse("a tile must be an object with \"panel\", \"columns\" or \"rows\"");
-    const auto keys = std::count_if(kContents.begin(), kContents.end(), [&](const char* key) { return json.contains(key); });
+    const auto keys = std::count_if(kContents.begin(), kContents.end(),
+                                    [&](const char* key) { return json.contains(key); });
     if (keys != 1) refuse("a tile must have one of \"panel\", \"columns\" and \"rows\"");
     LayoutNode node;
     if (json.contains("panel")) {
@@ -90,7 +91,8 @@ class LayoutReader {
 
 std::string to_json(const LayoutNode& root) { return node_to_json(root).dump(1) + '\n'; }
 
-LayoutNode parse_layout(const std::string& text, const std::string& name, const std::vector<std::string>& known) {
+LayoutNode parse_layout(const std::string& text, const std::string& name,
+                        const std::vector<std::string>& known) {
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) throw InputError(fmt::format("{}: is no layout: not JSON", name));
   return LayoutReader(name, known).read(json);

@@ -11,8 +11,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr ImGuiWindowFlags kOverlayFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                           ImGuiWindowFlags_NoSavedSettings;
+constexpr ImGuiWindowFlags kOverlayFlags =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
 
 /// An overlay centred in x, its top at a share of the height.
 bool begin_overlay(const UiFrame& frame, const char* name, ImVec2 size, float top_share) {
@@ -37,7 +37,8 @@ std::optional<int> as_frame(const char* query, int frame_count) {
 }
 
 /// A row of the palette: icon, title, key at the right. @returns whether it was clicked
-bool palette_row(const UiFrame& frame, const char* icon, const std::string& title, const std::string& key, bool chosen) {
+bool palette_row(const UiFrame& frame, const char* icon, const std::string& title, const std::string& key,
+                 bool chosen) {
   ImGui::PushID(title.c_str());
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
@@ -47,8 +48,8 @@ bool palette_row(const UiFrame& frame, const char* icon, const std::string& titl
   list.AddText({at.x + 4.0F * frame.scale, y}, to_u32(frame.theme.text_dim), icon);
   list.AddText({at.x + 30.0F * frame.scale, y}, to_u32(frame.theme.text), title.c_str());
   ImGui::PushFont(frame.fonts.mono);
-  list.AddText({at.x + width - ImGui::CalcTextSize(key.c_str()).x - 4.0F * frame.scale, y}, to_u32(frame.theme.text_dim),
-               key.c_str());
+  list.AddText({at.x + width - ImGui::CalcTextSize(key.c_str()).x - 4.0F * frame.scale, y},
+               to_u32(frame.theme.text_dim), key.c_str());
   ImGui::PopFont();
   if (chosen) ImGui::SetScrollHereY();
   ImGui::PopID();
@@ -64,7 +65,8 @@ void Workbench::draw_palette() {
   if (begin_overlay(*frame_, "##palette", {620.0F * scale, height}, 0.12F)) {
     if (palette_.opened_now) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::InputTextWithHint("##query", "What to do, or a frame's number", palette_.query, sizeof palette_.query))
+    if (ImGui::InputTextWithHint("##query", "What to do, or a frame's number", palette_.query,
+                                 sizeof palette_.query))
       palette_.chosen = 0;
     draw_palette_list(height);
   }
@@ -76,7 +78,8 @@ void Workbench::draw_palette() {
 
 void Workbench::draw_palette_list(float height) {
   const auto actions = actions_.matching(palette_.query);
-  const auto frame = session_ != nullptr && can_go() ? as_frame(palette_.query, session_->frame_count) : std::nullopt;
+  const auto frame =
+      session_ != nullptr && can_go() ? as_frame(palette_.query, session_->frame_count) : std::nullopt;
   const int rows = static_cast<int>(actions.size()) + (frame ? 1 : 0);
   if (is_key_pressed(Key::kDown, true)) ++palette_.chosen;
   if (is_key_pressed(Key::kUp, true)) --palette_.chosen;
@@ -87,12 +90,14 @@ void Workbench::draw_palette_list(float height) {
   int row = 0;
   if (frame) {
     const bool chosen = palette_.chosen == row++;
-    if (palette_row(*frame_, icons::kChevronRight, fmt::format("Go to frame {}", *frame), "", chosen) || (chosen && entered))
+    if (palette_row(*frame_, icons::kChevronRight, fmt::format("Go to frame {}", *frame), "", chosen) ||
+        (chosen && entered))
       run = [this, to = *frame] { go_to(to); };
   }
   for (const Action* action : actions) {
     const bool chosen = palette_.chosen == row++;
-    if (palette_row(*frame_, action->icon.c_str(), action->title, key_text(*action), chosen) || (chosen && entered))
+    if (palette_row(*frame_, action->icon.c_str(), action->title, key_text(*action), chosen) ||
+        (chosen && entered))
       run = action->run;
   }
   if (rows == 0) ImGui::TextDisabled("Nothing has such a name.");
@@ -125,7 +130,8 @@ void Workbench::draw_shortcuts() {
         ImGui::Unindent();
       }
     }
-    ImGui::TextDisabled("On images: wheel zooms, drag pans, double click fits; on plots click goes to a frame.");
+    ImGui::TextDisabled(
+        "On images: wheel zooms, drag pans, double click fits; on plots click goes to a frame.");
   }
   ImGui::End();
   if (is_key_pressed(Key::kEscape) || ImGui::IsMouseClicked(0)) shortcuts_open_ = false;
@@ -143,7 +149,8 @@ void Workbench::draw_open_dialog() {
     ImGui::TextDisabled("A folder in the TUM RGB-D layout, a folder of colour frames, or generated:KIND");
     if (open_dialog_.opened_now) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0F);
-    wanted = ImGui::InputText("##path", open_dialog_.path, sizeof open_dialog_.path, ImGuiInputTextFlags_EnterReturnsTrue);
+    wanted = ImGui::InputText("##path", open_dialog_.path, sizeof open_dialog_.path,
+                              ImGuiInputTextFlags_EnterReturnsTrue);
     wanted = ImGui::Button("Open") || wanted;
     ImGui::SameLine();
     if (ImGui::Button("Cancel") || is_key_pressed(Key::kEscape)) open_dialog_.open = false;

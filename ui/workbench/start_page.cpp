@@ -35,17 +35,21 @@ void Workbench::draw_start_page(const LayoutRect& area) {
   ImGui::SameLine();
   ImGui::TextUnformatted("Stillpoint");
   ImGui::PopFont();
-  ImGui::TextWrapped("See what a camera takes for moving, why, and what that does to the path it believes it took.");
+  ImGui::TextWrapped(
+      "See what a camera takes for moving, why, and what that does to the path it believes it took.");
   ImGui::Dummy({0, 12.0F * scale});
 
   paragraph(*frame_, icons::kFolderOpen, "Open a sequence",
-            "Drop a folder on this window. A folder in the TUM RGB-D layout gives everything; a folder of colour frames "
+            "Drop a folder on this window. A folder in the TUM RGB-D layout gives everything; a folder of "
+            "colour frames "
             "shows motion alone.");
   paragraph(*frame_, icons::kPlay, "Press Space",
-            "Frames are processed in the background: what moves is masked, its features are removed, the pose is estimated "
+            "Frames are processed in the background: what moves is masked, its features are removed, the "
+            "pose is estimated "
             "from what stands still.");
   paragraph(*frame_, icons::kSearch, "Look closer",
-            "Step with the arrow keys, jump to lost frames with L, zoom into any picture with the wheel. Ctrl+Shift+P finds "
+            "Step with the arrow keys, jump to lost frames with L, zoom into any picture with the wheel. "
+            "Ctrl+Shift+P finds "
             "every action, ? lists the keys.");
   ImGui::Dummy({0, 8.0F * scale});
   ImGui::PushStyleColor(ImGuiCol_Button, to_vec4(mix(frame_->theme.raised, frame_->theme.accent, 0.45F)));

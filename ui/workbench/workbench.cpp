@@ -35,10 +35,12 @@ void draw_card(const UiFrame& frame, const LayoutRect& rect, float heading, bool
   const float rounding = 6.0F * frame.scale;
   const ImVec2 low{rect.x, rect.y}, high{rect.x + rect.width, rect.y + rect.height};
   list.AddRectFilled(low, high, to_u32(frame.theme.panel), rounding);
-  list.AddRectFilled(low, {high.x, low.y + heading}, to_u32(mix(frame.theme.panel, frame.theme.raised, 0.55F)), rounding,
+  list.AddRectFilled(low, {high.x, low.y + heading},
+                     to_u32(mix(frame.theme.panel, frame.theme.raised, 0.55F)), rounding,
                      ImDrawFlags_RoundCornersTop);
   list.AddLine({low.x, low.y + heading}, {high.x, low.y + heading}, to_u32(frame.theme.border));
-  list.AddRect(low, high, to_u32(hovered ? mix(frame.theme.border, frame.theme.accent, 0.45F) : frame.theme.border),
+  list.AddRect(low, high,
+               to_u32(hovered ? mix(frame.theme.border, frame.theme.accent, 0.45F) : frame.theme.border),
                rounding);
 }
 
@@ -48,8 +50,9 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
   ImGui::SetCursorScreenPos({rect.x, rect.y});
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImVec4{0, 0, 0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0F * frame.scale, 6.0F * frame.scale});
-  const bool visible = ImGui::BeginChild(panel.name().c_str(), {rect.width, rect.height}, false,
-                                         ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
+  const bool visible =
+      ImGui::BeginChild(panel.name().c_str(), {rect.width, rect.height}, false,
+                        ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   if (visible) panel.draw(frame, session, wanted);
@@ -75,7 +78,8 @@ std::vector<std::string> Workbench::panel_names() const {
 }
 
 Panel* Workbench::find_panel(const std::string& name) const {
-  const auto it = std::find_if(panels_.begin(), panels_.end(), [&](const auto& panel) { return panel->name() == name; });
+  const auto it =
+      std::find_if(panels_.begin(), panels_.end(), [&](const auto& panel) { return panel->name() == name; });
   return it == panels_.end() ? nullptr : it->get();
 }
 
@@ -96,7 +100,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   session_ = session;
   if (session != nullptr && session->current->index != last_shown_) {
     const double interval = frame.time_s - last_shown_s_;
-    shown_interval_s_ = shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
+    shown_interval_s_ =
+        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
     last_shown_ = session->current->index;
     last_shown_s_ = frame.time_s;
   }
@@ -131,16 +136,18 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
   draw_card(frame, rect, heading, false);
   const float text_y = rect.y + 0.5F * (heading - ImGui::GetFontSize()), margin = 10.0F * frame.scale;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddText(frame.fonts.strong, frame.fonts.strong->FontSize, {rect.x + margin, text_y}, to_u32(frame.theme.text),
-               panel.title().c_str());
+  list.AddText(frame.fonts.strong, frame.fonts.strong->FontSize, {rect.x + margin, text_y},
+               to_u32(frame.theme.text), panel.title().c_str());
   const float title_width =
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
-  const std::string where = fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
-                                        session.frame_count, session.current->frame.timestamp, session.config.run.method);
+  const std::string where =
+      fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
+                  session.frame_count, session.current->frame.timestamp, session.config.run.method);
   ImGui::PushFont(frame.fonts.small);
-  const float width = std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
-  draw_clipped_text({rect.x + rect.width - margin - width, rect.y + 0.5F * (heading - ImGui::GetFontSize())}, where, width,
-                    to_u32(frame.theme.text_dim));
+  const float width =
+      std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
+  draw_clipped_text({rect.x + rect.width - margin - width, rect.y + 0.5F * (heading - ImGui::GetFontSize())},
+                    where, width, to_u32(frame.theme.text_dim));
   ImGui::PopFont();
   PanelActions ignored;
   draw_panel_body(frame, session, panel, below_heading(rect, heading), ignored);
@@ -163,7 +170,8 @@ void Workbench::draw_splitters(const PlacedLayout& placed) {
   for (std::size_t i = 0; i < placed.splitters.size(); ++i) {
     const PlacedSplitter& splitter = placed.splitters[i];
     const LayoutRect& rect = splitter.rect;
-    ImGui::SetCursorScreenPos({rect.x - (splitter.upright ? grip : 0.0F), rect.y - (splitter.upright ? 0.0F : grip)});
+    ImGui::SetCursorScreenPos(
+        {rect.x - (splitter.upright ? grip : 0.0F), rect.y - (splitter.upright ? 0.0F : grip)});
     ImGui::PushID(static_cast<int>(i));
     const ImVec2 size{rect.width + (splitter.upright ? 2.0F * grip : 0.0F),
                       rect.height + (splitter.upright ? 0.0F : 2.0F * grip)};
@@ -178,7 +186,9 @@ void Workbench::draw_splitters(const PlacedLayout& placed) {
     const ImVec2 moved = ImGui::GetIO().MouseDelta;
     const float delta = splitter.upright ? moved.x : moved.y;
     if (active && delta != 0.0F)
-      after_frame_ = [this, splitter, delta, least = kLeastTile * frame_->scale] { drag(layout_, splitter, delta, least); };
+      after_frame_ = [this, splitter, delta, least = kLeastTile * frame_->scale] {
+        drag(layout_, splitter, delta, least);
+      };
   }
 }
 
@@ -213,7 +223,8 @@ void Workbench::draw_tile_heading(Panel& panel, const LayoutRect& rect, float he
   const bool maximised = maximised_ == panel.name();
   if (ImGui::Button(maximised ? icons::kRestore : icons::kMaximise, {button, button}))
     after_frame_ = [this, name = maximised ? std::string() : panel.name()] { maximised_ = name; };
-  ImGui::SetCursorScreenPos({rect.x + rect.width - buttons + button + 2.0F * frame_->scale, rect.y + 2.0F * frame_->scale});
+  ImGui::SetCursorScreenPos(
+      {rect.x + rect.width - buttons + button + 2.0F * frame_->scale, rect.y + 2.0F * frame_->scale});
   if (ImGui::Button(icons::kBars, {button, button})) ImGui::OpenPopup("tile menu");
   ImGui::PopStyleVar();
   ImGui::PopStyleColor(2);
@@ -230,7 +241,8 @@ void Workbench::draw_tile_menu(const std::string& name) {
   ImGui::Separator();
   if (ImGui::BeginMenu("Show here", maximised_.empty())) {
     for (const auto& panel : panels_)
-      if (ImGui::MenuItem(panel->title().c_str(), contains(layout_, panel->name()) ? "swap" : "", panel->name() == name))
+      if (ImGui::MenuItem(panel->title().c_str(), contains(layout_, panel->name()) ? "swap" : "",
+                          panel->name() == name))
         after_frame_ = [this, name, wanted = panel->name()] { replace_panel(layout_, name, wanted); };
     ImGui::EndMenu();
   }

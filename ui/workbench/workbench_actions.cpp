@@ -27,11 +27,7 @@ void Workbench::add_actions() {
                 .icon = icons::kFilm,
                 .enabled = [this] { return static_cast<bool>(host_.open); },
                 .run = [this] { after_frame_ = [this] { host_.open("generated:walking_static"); }; }});
-  actions_.add({.name = "quit",
-                .title = "Quit",
-                .group = "File",
-                .keys = {{Key::kQ, kCtrl}},
-                .run = [this] {
+  actions_.add({.name = "quit", .title = "Quit", .group = "File", .keys = {{Key::kQ, kCtrl}}, .run = [this] {
                   if (frame_ != nullptr) frame_->quit = true;
                 }});
   add_playback_actions();
@@ -81,9 +77,8 @@ void Workbench::add_playback_actions() {
     return session_->current->index - 1;
   });
   add("first", "First frame", icons::kFastBack, {Key::kHome, {}}, false, []() -> Target { return 0; });
-  add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false, [this]() -> Target {
-    return std::max(0, session_->processed - 1);
-  });
+  add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false,
+      [this]() -> Target { return std::max(0, session_->processed - 1); });
   add("last", "Last frame of the sequence", icons::kFlag, {Key::kEnd, kCtrl}, false,
       [this]() -> Target { return session_->frame_count - 1; });
   add("next_keyframe", "Next keyframe", icons::kChevronRight, {Key::kRightBracket, {}}, true,
@@ -121,21 +116,20 @@ void Workbench::add_view_actions() {
                 .group = "View",
                 .keys = {{Key::k0, kCtrl}},
                 .run = [this] { scale_by(0.0F); }});
-  actions_.add({.name = "maximise",
-                .title = "Maximise the panel under the mouse, or restore",
-                .group = "View",
-                .icon = icons::kMaximise,
-                .keys = {{Key::kM, {}}},
-                .enabled = [this] { return session_ != nullptr && (!maximised_.empty() || !hovered_panel_.empty()); },
-                .run = [this] { maximised_ = maximised_.empty() ? hovered_panel_ : ""; }});
+  actions_.add(
+      {.name = "maximise",
+       .title = "Maximise the panel under the mouse, or restore",
+       .group = "View",
+       .icon = icons::kMaximise,
+       .keys = {{Key::kM, {}}},
+       .enabled = [this] { return session_ != nullptr && (!maximised_.empty() || !hovered_panel_.empty()); },
+       .run = [this] { maximised_ = maximised_.empty() ? hovered_panel_ : ""; }});
   actions_.add({.name = "reset_layout",
                 .title = "Reset layout",
                 .group = "View",
                 .icon = icons::kLayout,
                 .keys = {{Key::kR, kCtrlShift}},
-                .run = [this] {
-                  after_frame_ = [this] { set_layout(default_layout()); };
-                }});
+                .run = [this] { after_frame_ = [this] { set_layout(default_layout()); }; }});
 }
 
 void Workbench::add_panel_actions() {
