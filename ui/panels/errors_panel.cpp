@@ -59,7 +59,7 @@ class ErrorsPanel final : public NamedPanel {
     const ThemeName theme = frame.theme.name;
     Plot plot{.x_label = "time", .x_unit = "s"};
     const bool per_second = id == std::string("second");
-    plot.y_label = per_second ? "RPE over 1 s" : "RPE per frame";
+    plot.y_label = per_second ? "RPE over " + session.run->evaluation.rpe_time.delta : "RPE per frame";
     plot.y_unit = of_ == kRotation ? "°" : "mm";
     if (!baseline.x.empty()) {
       plot.series.push_back({session.baseline->name, baseline.x, baseline.y,

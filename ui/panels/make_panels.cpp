@@ -6,9 +6,14 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   const auto shared = std::make_shared<PanelsShared>();
   std::vector<std::unique_ptr<Panel>> panels;
   panels.push_back(make_input_panel(shared));
+  panels.push_back(make_compensated_panel(shared));
+  panels.push_back(make_difference_panel(shared));
   panels.push_back(make_mask_panel(MaskKind::kForward, shared));
   panels.push_back(make_mask_panel(MaskKind::kBackward, shared));
   panels.push_back(make_mask_panel(MaskKind::kUnion, shared));
+  panels.push_back(make_flow_tracks_panel(shared));
+  panels.push_back(make_features_panel(FeatureMoment::kBefore, shared));
+  panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
   panels.push_back(make_errors_panel(shared));
   return panels;
 }
