@@ -63,7 +63,6 @@ void Session::process_one() {
   if (baseline_) beside = std::async(std::launch::async, [&] { return baseline_->process_next(read); });
   FrameResult result = run_->process_next(read);
   if (beside.valid()) beside.get();
-  if (!frame.problem.empty()) message_ = frame.problem;
   keep({frame.index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)});
 }
 

@@ -26,6 +26,13 @@ StatusLook status_look(const SessionView& session, const Theme& theme) {
           role_colour(lost ? Role::kRemoved : Role::kKept, theme.name)};
 }
 
+/// What is wrong with the session or the frame shown; empty when all is well.
+std::string trouble_of(const SessionView& session) {
+  if (!session.message.empty()) return session.message;
+  const FrameRecord* record = session.current->record;
+  return record != nullptr ? record->note : session.current->frame.problem;
+}
+
 void tooltip(const Action& action) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   const std::string key = key_text(action);
@@ -206,9 +213,9 @@ void Workbench::draw_status_bar(float height) {
       put(fmt::format("{:.1f} fps", 1.0 / shown_interval_s_), theme.text_dim);
     if (session_->busy && !session_->playing) put("working…", theme.accent);
   }
-  const bool session_speaks = session_ != nullptr && !session_->message.empty();
-  const std::string message = session_speaks ? session_->message : message_;
-  const bool error = session_speaks || message_is_error_;
+  const std::string trouble = session_ == nullptr ? "" : trouble_of(*session_);
+  const std::string message = trouble.empty() ? message_ : trouble;
+  const bool error = !trouble.empty() || message_is_error_;
   if (!message.empty()) {
     const float right = frame_->size.x - 12.0F * scale;
     const float from = std::max(x, right - ImGui::CalcTextSize(message.c_str()).x);

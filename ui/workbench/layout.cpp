@@ -151,16 +151,15 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
 
 LayoutNode default_layout() {
   using enum Division;
-  return divide(
-      1.0, kColumns,
-      {divide(0.74, kRows,
-              {divide(0.36, kColumns,
-                      {tile(1.0 / 3, "input"), tile(1.0 / 3, "compensated"), tile(1.0 / 3, "union_mask")}),
-               divide(0.42, kColumns,
-                      {divide(0.42, kRows, {tile(0.5, "forward_mask"), tile(0.5, "backward_mask")}),
-                       tile(0.58, "trajectory")}),
-               tile(0.22, "errors")}),
-       divide(0.26, kRows, {tile(0.4, "features"), tile(0.6, "inspector")})});
+  // Above, how what moves is found, from left to right; below, what comes of it.
+  return divide(1.0, kRows,
+                {divide(0.47, kColumns,
+                        {tile(0.25, "features_after"), tile(0.25, "forward_mask"),
+                         tile(0.25, "backward_mask"), tile(0.25, "union_mask")}),
+                 divide(0.53, kColumns,
+                        {divide(0.25, kRows, {tile(0.66, "compensated"), tile(0.34, "inspector")}),
+                         tile(0.39, "trajectory"),
+                         divide(0.36, kRows, {tile(0.68, "errors"), tile(0.32, "timeline")})})});
 }
 
 }  // namespace stillpoint

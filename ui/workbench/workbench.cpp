@@ -142,7 +142,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
   const std::string where =
       fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
-                  session.frame_count, session.current->frame.timestamp, session.config.run.method);
+                  session.frame_count, seconds, session.config.run.method);
   ImGui::PushFont(frame.fonts.small);
   const float width =
       std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
