@@ -140,6 +140,9 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
                to_u32(frame.theme.text), panel.title().c_str());
   const float title_width =
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
+  const auto& records = session.run->records;
+  const double seconds =
+      records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
   const std::string where =
       fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
                   session.frame_count, seconds, session.config.run.method);
