@@ -94,7 +94,7 @@ void Workbench::add_view_actions() {
                 .title = "Light or dark theme",
                 .group = "View",
                 .icon = icons::kContrast,
-                .keys = {{Key::kT, {}}},
+                .keys = {{Key::kT, kCtrl}},
                 .run = [this] {
                   if (frame_ == nullptr) return;
                   ThemeName& wanted = frame_->wanted_look.theme;
