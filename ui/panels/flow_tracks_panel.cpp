@@ -24,9 +24,8 @@ class FlowTracksPanel final : public NamedPanel {
     const int rounds = static_cast<int>(view.motion.rounds.size());
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
-    int shown = round_ < 0 ? rounds : std::min(round_ + 1, rounds);
-    if (rounds > 1 && controls.slider("Round", shown, 1, rounds, "%d"))
-      round_ = shown == rounds ? -1 : shown - 1;
+    controls.round(rounds, round_);
+    const int shown = round_ < 0 ? rounds : std::min(round_ + 1, rounds);
     controls.slider("Length", length_, 1.0F, 8.0F, "x%.0f");
     const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(shown - 1)];
     const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;

@@ -98,11 +98,7 @@ class MaskPanel final : public NamedPanel {
                     "Raw is what is above the threshold; erosion and dilation clean it");
     controls.choice("look", {"Overlay", "Alone"}, look_);
     if (look_ == kOverlay) controls.slider("Opacity", opacity_, 0.0F, 1.0F, "%.2f");
-    const int rounds = static_cast<int>(view.motion.rounds.size());
-    if (rounds > 1) {
-      int shown = round_of(view) + 1;
-      if (controls.slider("Round", shown, 1, rounds, "%d")) round_ = shown == rounds ? -1 : shown - 1;
-    }
+    controls.round(static_cast<int>(view.motion.rounds.size()), round_);
     if (!has_truth) return;
     bool beside = shows_truth(frame);
     if (controls.toggle("Against truth", beside, "Shows what truly moves beside it")) beside_ = beside;
@@ -158,8 +154,11 @@ class MaskPanel final : public NamedPanel {
       const ImVec2 low = response.to_screen(Eigen::Vector2d(box.x, box.y));
       const ImVec2 high = response.to_screen(Eigen::Vector2d(box.x + box.width, box.y + box.height));
       list.AddRect(low, high, ink, 0.0F, ImDrawFlags_None, frame.scale);
-      draw_label(frame, {low.x + 2.0F * frame.scale, low.y + 2.0F * frame.scale}, fmt::format("{}", i + 1),
-                 frame.theme.text);
+      // A number inside a small region would cover it.
+      const bool inside = high.y - low.y > 36.0F * frame.scale && high.x - low.x > 30.0F * frame.scale;
+      const float above = inside ? -2.0F * frame.scale : frame.fonts.small->FontSize + 3.0F * frame.scale;
+      draw_label(frame, {low.x + (inside ? 2.0F * frame.scale : 0.0F), low.y - above},
+                 fmt::format("{}", i + 1), frame.theme.text);
     }
   }
 

@@ -82,10 +82,13 @@ bool Controls::slider(const char* label, float& value, float low, float high, co
   return ImGui::SliderFloat(label, &value, low, high, format);
 }
 
-bool Controls::slider(const char* label, int& value, int low, int high, const char* format) {
-  place(kSliderWidth * frame_.scale + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
-  ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
-  return ImGui::SliderInt(label, &value, low, high, format);
+void Controls::round(int rounds, int& chosen) {
+  if (rounds < 2) return;
+  std::vector<std::string> names{"Round 1"};
+  for (int i = 2; i <= rounds; ++i) names.push_back(std::to_string(i));
+  int shown = chosen < 0 ? rounds - 1 : std::min(chosen, rounds - 1);
+  if (choice("round", names, shown, "Each round leaves out what the one before took for moving"))
+    chosen = shown == rounds - 1 ? -1 : shown;
 }
 
 bool Controls::button(const char* label, const char* tooltip, bool* held) {

@@ -47,7 +47,8 @@ class Controls {
               const char* tooltip = nullptr);
   bool toggle(const char* label, bool& on, const char* tooltip = nullptr);
   bool slider(const char* label, float& value, float low, float high, const char* format);
-  bool slider(const char* label, int& value, int low, int high, const char* format);
+  /// One of several rounds; `chosen` from 0, below 0 is the last.
+  void round(int rounds, int& chosen);
   /// @returns whether it was pressed; `held` tells whether it is down now.
   bool button(const char* label, const char* tooltip = nullptr, bool* held = nullptr);
 
