@@ -26,6 +26,15 @@ struct SavedKeyframe {
   StampedPose pose;
 };
 
+/// All keyframes of a map, those that left it included, in order of time.
+[[nodiscard]] std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map);
+
+/// All points of a map, by id.
+[[nodiscard]] std::vector<SavedPoint> saved_points(const LocalMap& map);
+
+/// The estimated poses among `records`, hung on their reference keyframes as these stand in the map now.
+[[nodiscard]] Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records);
+
 /// A whole sequence by one method.
 struct RunResult {
   Config config;

@@ -18,12 +18,16 @@ struct Viewport {
   double width = 1.0, height = 1.0;
 };
 
+// GCC takes a scoped enumerator for one that shadows the global kNone of the map.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
 /// How the view moves with the current camera.
 enum class Follow {
   kNone,
   kPosition,  ///< keeps its place beside the camera
   kPose,      ///< and turns with it
 };
+#pragma GCC diagnostic pop
 
 struct SceneView {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< m, world: what orbiting turns about

@@ -9,6 +9,9 @@
 
 namespace stillpoint {
 
+// GCC takes a scoped enumerator for one that shadows the global kNone of the map.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
 /// Keys by name, whatever the window system and ImGui's version. Letters and digits by what they type on a US
 /// layout.
 enum class Key {
@@ -90,6 +93,7 @@ enum class Key {
   kBackslash,
   kCount
 };
+#pragma GCC diagnostic pop
 
 /// Modifier keys held.
 struct Modifiers {

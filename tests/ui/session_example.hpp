@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/sequence/source.hpp"
+#include "ui/session/session_view.hpp"
+
+namespace stillpoint::testing {
+
+/// Everything panels show of some frames of a sequence that were truly run, without a session around it.
+struct SessionExample {
+  std::unique_ptr<FrameSource> source;
+  SessionView view;
+};
+
+/// Runs method `stillpoint`, and `none` as the baseline, over the first `frames` frames and shows the last one.
+/// @param rpe_delta_s span of the error over time: short sequences have no second
+[[nodiscard]] SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, double rpe_delta_s);
+
+/// 14 frames of generated:walking_static, run once a program.
+[[nodiscard]] const SessionView& generated_example();
+
+}  // namespace stillpoint::testing

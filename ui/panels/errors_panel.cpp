@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_series.hpp"
+#include "ui/plot/plot.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// The relative pose errors of run and baseline, METHOD.md's figure 6: over a second and from frame to frame.
+class ErrorsPanel final : public NamedPanel {
+ public:
+  explicit ErrorsPanel(Shared shared) : NamedPanel("errors", "Error over time", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    if (session.run->evaluation.matched.empty()) {
+      draw_absent(frame, session.ground_truth.empty()
+                             ? "This sequence has no ground truth to measure errors against."
+                             : "No frame with a pose lies near a ground-truth pose yet.");
+      return;
+    }
+    Controls controls(frame);
+    controls.choice("of", {"Translation", "Rotation"}, of_);
+    controls.toggle("Log scale", log_, "Errors on a logarithmic axis");
+    collect(session);
+
+    Footer footer;
+    footer.caption = caption(session);
+    const ImVec2 room = room_above(frame, footer);
+    const ImVec2 half{room.x, 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y)};
+    plot(frame, session, actions, "second", run_.second, baseline_.second, half);
+    plot(frame, session, actions, "frame", run_.frame, baseline_.frame, half);
+    footer.draw(frame);
+  }
+
+ private:
+  struct Curves {
+    Series second, frame;
+  };
+
+  void collect(const SessionView& session) {
+    const double start = series_start(session);
+    if (kept_ == Key{session.run.get(), session.baseline.get(), session.revision, of_}) return;
+    kept_ = {session.run.get(), session.baseline.get(), session.revision, of_};
+    run_ = curves(session.run->evaluation, start);
+    baseline_ = session.baseline ? curves(session.baseline->evaluation, start) : Curves{};
+  }
+
+  [[nodiscard]] Curves curves(const TrajectoryEvaluation& evaluation, double start) const {
+    return {error_series(evaluation.rpe_time, start, of_ == kRotation),
+            error_series(evaluation.rpe_frame, start, of_ == kRotation)};
+  }
+
+  void plot(const UiFrame& frame, const SessionView& session, PanelActions& actions, const char* id,
+            const Series& run, const Series& baseline, ImVec2 size) {
+    const ThemeName theme = frame.theme.name;
+    Plot plot{.x_label = "time", .x_unit = "s"};
+    const bool per_second = id == std::string("second");
+    plot.y_label = per_second ? "RPE over " + session.run->evaluation.rpe_time.delta : "RPE per frame";
+    plot.y_unit = of_ == kRotation ? "°" : "mm";
+    if (!baseline.x.empty()) {
+      plot.series.push_back({session.baseline->name, baseline.x, baseline.y,
+                             role_colour(Role::kBaseline, theme), SeriesStyle::kDashed});
+    }
+    plot.series.push_back(
+        {session.run->name, run.x, run.y, role_colour(Role::kEstimate, theme), SeriesStyle::kLine, 2.0F});
+    plot.x_limits = record_range(session);
+    plot.bands = lost_bands(session, role_colour(Role::kRemoved, theme));
+    plot.cursor_x = session.current->frame.timestamp - series_start(session);
+    view_[per_second].x = x_;
+    view_[per_second].log_y = log_;
+    const PlotResponse response = draw_plot(frame, id, plot, view_[per_second], size);
+    x_ = view_[per_second].x;
+    if (response.clicked_x) actions.go_to_frame = frame_at(session, *response.clicked_x);
+  }
+
+  [[nodiscard]] std::string caption(const SessionView& session) const {
+    const auto figures = [this](const RunView& run) {
+      const auto& evaluation = run.evaluation;
+      if (evaluation.matched.empty()) return fmt::format("{}: no figures", run.name);
+      if (of_ == kRotation) {
+        return fmt::format("{}: RMSE {:.3f} ° over {}, {:.3f} ° a frame", run.name,
+                           evaluation.rpe_time.rotation_deg.rmse, evaluation.rpe_time.delta,
+                           evaluation.rpe_frame.rotation_deg.rmse);
+      }
+      return fmt::format("{}: RMSE {:.1f} mm over {}, {:.2f} mm a frame, ATE {:.1f} mm", run.name,
+                         1000.0 * evaluation.rpe_time.translation_m.rmse, evaluation.rpe_time.delta,
+                         1000.0 * evaluation.rpe_frame.translation_m.rmse,
+                         1000.0 * evaluation.ate.translation_m.rmse);
+    };
+    std::string text = figures(*session.run);
+    if (session.baseline) text += ".  " + figures(*session.baseline);
+    return text + ". Each error stands at the end of its motion.";
+  }
+
+  enum Of { kTranslation, kRotation };
+  struct Key {
+    const void *run = nullptr, *baseline = nullptr;
+    std::uint64_t revision = 0;
+    int of = 0;
+    bool operator==(const Key&) const = default;
+  };
+
+  int of_ = kTranslation;
+  bool log_ = false;
+  Key kept_;
+  Curves run_, baseline_;
+  PlotView view_[2];
+  std::optional<AxisRange> x_;  // both plots show the same time
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_errors_panel(Shared shared) {
+  return std::make_unique<ErrorsPanel>(std::move(shared));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/frame_pictures.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// The ORB features: before removal kept and removed, after removal what tracking made of those kept.
+class FeaturesPanel final : public NamedPanel {
+ public:
+  FeaturesPanel(FeatureMoment moment, Shared shared)
+      : NamedPanel(moment == FeatureMoment::kBefore ? "features_before" : "features_after",
+                   moment == FeatureMoment::kBefore ? "Features before removal" : "Features after removal",
+                   std::move(shared)),
+        moment_(moment) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+    const FrameView& view = *session.current;
+    if (view.record == nullptr) {
+      draw_absent(frame, fmt::format("Frame {} has not been processed yet.", view.index));
+      return;
+    }
+    if (!view.frame.readable()) {
+      draw_absent(frame, missing_motion(session));
+      return;
+    }
+    Controls controls(frame);
+    if (moment_ == FeatureMoment::kBefore) {
+      controls.toggle("Mask", mask_, "Lays the mask under the features it removes");
+    } else {
+      controls.toggle("Unmatched", unmatched_, "Shows features for which no map point was found");
+      controls.toggle("By scale", by_scale_, "Draws each feature as large as its pyramid level");
+    }
+    const Footer footer = footer_of(frame, session, *view.record);
+    ImageContent content;
+    content.texture = &ground_.get(frame, session.current, 0, [&] { return view.frame.gray; });
+    content.values = &view.frame.gray;
+    if (moment_ == FeatureMoment::kBefore && mask_ && !view.mask.empty()) {
+      const Texture& tint = tint_.get(frame, session.current, 0, [&] {
+        return tinted_mask(view.mask, role_colour(Role::kUnion, frame.theme.name));
+      });
+      content.overlays.push_back({&tint, 0.35F});
+    }
+    const ImageResponse response =
+        draw_frame_image(frame, "features", content, *shared_, room_above(frame, footer));
+    push_clip(response);
+    for (const FeatureRecord& feature : view.record->features) draw_feature(frame, response, feature);
+    pop_clip();
+    footer.draw(frame);
+  }
+
+ private:
+  [[nodiscard]] LegendEntry look_of(FeatureFate fate, ThemeName theme) const {
+    if (fate == FeatureFate::removed) return {"removed", role_colour(Role::kRemoved, theme), Sign::kCross};
+    if (moment_ == FeatureMoment::kBefore) return {"kept", role_colour(Role::kKept, theme), Sign::kCircle};
+    if (fate == FeatureFate::inlier) return {"inlier", role_colour(Role::kInlier, theme), Sign::kCircle};
+    if (fate == FeatureFate::outlier) return {"outlier", role_colour(Role::kOutlier, theme), Sign::kTriangle};
+    return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
+  }
+
+  void draw_feature(const UiFrame& frame, const ImageResponse& response, const FeatureRecord& feature) const {
+    if (moment_ == FeatureMoment::kAfter) {
+      if (feature.fate == FeatureFate::removed) return;
+      if (feature.fate == FeatureFate::unmatched && !unmatched_) return;
+    }
+    const LegendEntry look = look_of(feature.fate, frame.theme.name);
+    float radius = (look.sign == Sign::kCircle ? 2.6F : 3.2F) * frame.scale;
+    if (by_scale_ && moment_ == FeatureMoment::kAfter)
+      radius = std::max(radius, static_cast<float>(response.map.scale()) * 2.0F *
+                                    std::pow(1.2F, static_cast<float>(feature.octave)));
+    draw_sign(frame, *ImGui::GetWindowDrawList(), response.keypoint_to_screen(feature.pixel), radius,
+              look.sign, to_u32(look.colour));
+  }
+
+  [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
+                                 const FrameRecord& record) const {
+    Footer footer;
+    const auto add = [&](FeatureFate fate, int count) {
+      LegendEntry entry = look_of(fate, frame.theme.name);
+      entry.name = fmt::format("{} {}", count, entry.name);
+      footer.legend.push_back(std::move(entry));
+    };
+    std::array<int, 4> counts{};
+    for (const FeatureRecord& feature : record.features) ++counts[static_cast<std::size_t>(feature.fate)];
+    const std::string where = frame_text(session, session.current->frame);
+    if (moment_ == FeatureMoment::kBefore) {
+      add(FeatureFate::unmatched, record.features_kept);
+      add(FeatureFate::removed, record.features_removed);
+      footer.caption =
+          fmt::format("{}: {} features found; method {} removes those in its mask, {:.1f} % of the image.",
+                      where, record.features_found, session.config.run.method, 100.0 * record.mask_share);
+      return footer;
+    }
+    for (const FeatureFate fate : {FeatureFate::inlier, FeatureFate::outlier, FeatureFate::unmatched})
+      add(fate, counts[static_cast<std::size_t>(fate)]);
+    footer.caption =
+        fmt::format("{}: {} features kept, {} matched to map points; inliers' residual {:.2f} px RMS.", where,
+                    record.features_kept, record.matches, record.rms_px);
+    return footer;
+  }
+
+  FeatureMoment moment_;
+  bool mask_ = true, unmatched_ = true, by_scale_ = false;
+  FrameTexture ground_, tint_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_features_panel(FeatureMoment moment, Shared shared) {
+  return std::make_unique<FeaturesPanel>(moment, std::move(shared));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ui/gl/texture.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/view/image_widget.hpp"
+
+namespace stillpoint {
+
+// Pictures made of a frame's images, and textures that hold them as long as the frame stays.
+
+/// A picture on the graphics card, made anew only when the frame, the theme or the variant changes.
+class FrameTexture {
+ public:
+  explicit FrameTexture(Sampling sampling = Sampling::kPixels) : sampling_(sampling) {}
+
+  const Texture& get(const UiFrame& frame, const std::shared_ptr<const FrameView>& view, int variant,
+                     const std::function<cv::Mat()>& make);
+  /// What the texture was made of.
+  [[nodiscard]] const cv::Mat& image() const { return image_; }
+
+ private:
+  Sampling sampling_;
+  std::optional<Texture> texture_;
+  cv::Mat image_;
+  std::weak_ptr<const FrameView> view_;
+  int variant_ = -1;
+  ThemeName theme_ = ThemeName::kDark;
+};
+
+/// The frame as it is looked at: colour where there is colour.
+[[nodiscard]] const cv::Mat& picture_of(const Frame& frame);
+
+/// CV_8UC4: `colour` where the mask is set, transparent elsewhere.
+[[nodiscard]] cv::Mat tinted_mask(const cv::Mat& mask, Rgb colour);
+
+/// CV_8UC3: `colour` where the mask is set, `ground` elsewhere.
+[[nodiscard]] cv::Mat plain_mask(const cv::Mat& mask, Rgb colour, Rgb ground);
+
+/// CV_8UC3 of CV_32FC1 or CV_8UC1 values by colour; NaN (and, where asked, 0) gets `none`.
+[[nodiscard]] cv::Mat coloured(const cv::Mat& values, const ColourScale& scale, bool zero_is_none = false);
+
+/// CV_8UC4: where mask and truth agree, what the mask missed (hatched /), what it took wrongly (hatched \).
+[[nodiscard]] cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth);
+struct ComparisonColours {
+  Rgb agreed = okabe_ito::kGreen, missed = okabe_ito::kVermillion, wrong = okabe_ito::kYellow;
+};
+
+/// The outlines of a mask, image coordinates.
+using Outlines = std::vector<std::vector<Eigen::Vector2d>>;
+[[nodiscard]] Outlines outlines_of(const cv::Mat& mask);
+void draw_outlines(const UiFrame& frame, const ImageResponse& response, const Outlines& outlines, Rgb colour);
+
+/// Draws an image of a frame with the views all such images share, and tells the inspector the pixel.
+/// @param heading written into the picture's upper left corner
+ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                               PanelsShared& shared, ImVec2 size, const std::string& heading = {});
+
+/// Why the paper's stages are not there for this frame, one sentence; empty when they are.
+[[nodiscard]] std::string missing_motion(const SessionView& session);
+
+/// "Frame 42, 1.400 s": place and time since the sequence's first frame.
+[[nodiscard]] std::string frame_text(const SessionView& session, const Frame& frame);
+
+}  // namespace stillpoint

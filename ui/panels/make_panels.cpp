@@ -1,0 +1,27 @@
+#include "ui/panels/all_panels.hpp"
+
+namespace stillpoint {
+
+std::vector<std::unique_ptr<Panel>> make_panels() {
+  const auto shared = std::make_shared<PanelsShared>();
+  std::vector<std::unique_ptr<Panel>> panels;
+  panels.push_back(make_input_panel(shared));
+  panels.push_back(make_compensated_panel(shared));
+  panels.push_back(make_difference_panel(shared));
+  panels.push_back(make_mask_panel(MaskKind::kForward, shared));
+  panels.push_back(make_mask_panel(MaskKind::kBackward, shared));
+  panels.push_back(make_mask_panel(MaskKind::kUnion, shared));
+  panels.push_back(make_flow_tracks_panel(shared));
+  panels.push_back(make_features_panel(FeatureMoment::kBefore, shared));
+  panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
+  panels.push_back(make_depth_motion_panel(shared));
+  panels.push_back(make_trajectory_panel(shared));
+  panels.push_back(make_errors_panel(shared));
+  panels.push_back(make_timeline_panel(shared));
+  panels.push_back(make_timings_panel(shared));
+  panels.push_back(make_parameters_panel(shared));
+  panels.push_back(make_inspector_panel(shared));
+  return panels;
+}
+
+}  // namespace stillpoint

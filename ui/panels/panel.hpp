@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ui/session/session_view.hpp"
+#include "ui/shell/canvas.hpp"
+
+namespace stillpoint {
+
+/// What a person asks for in a panel; the session carries it out.
+struct PanelActions {
+  std::optional<int> go_to_frame;                                   ///< 0 to frame_count - 1
+  std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
+};
+
+/// One view of the session. What it draws is the same in a window and in an image file.
+///
+/// It draws its controls, captions, legends and scales; its title is left to whoever gives it a place. It
+/// keeps textures of the GL context it was first drawn in, which must be current whenever it is drawn, and
+/// when it goes.
+class Panel {
+ public:
+  Panel() = default;
+  virtual ~Panel() = default;
+  Panel(const Panel&) = delete;
+  Panel& operator=(const Panel&) = delete;
+
+  /// For layouts, the command line and file names: "forward_mask".
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  /// For people: "Forward mask".
+  [[nodiscard]] virtual const std::string& title() const = 0;
+  /// Draws into the current ImGui window or child, filling what is left of it.
+  virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
+};
+
+/// All of them, in the order one reads them. Image panels among them zoom and pan together, and tell the
+/// inspector which pixel the mouse is on.
+[[nodiscard]] std::vector<std::unique_ptr<Panel>> make_panels();
+
+}  // namespace stillpoint

@@ -1,0 +1,297 @@
+#include "ui/panels/panel_kit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/plot/plot_axis.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr float kSliderWidth = 96.0F;  // design px
+constexpr float kBarWidth = 12.0F;
+
+ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
+  const ImFont* font = frame.fonts.small;
+  return font->CalcTextSizeA(font->FontSize, 1e6F, wrap, text.c_str());
+}
+
+void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour, float wrap = 0.0F) {
+  ImGui::GetWindowDrawList()->AddText(frame.fonts.small, frame.fonts.small->FontSize,
+                                      {std::round(at.x), std::round(at.y)}, to_u32(colour), text.c_str(),
+                                      nullptr, wrap);
+}
+
+void tooltip_of_last(const char* tooltip) {
+  if (tooltip != nullptr && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
+}
+
+}  // namespace
+
+// Controls
+// --------------------------------------------------------------------------------------------------------
+
+void Controls::place(float width) {
+  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  if (right_ > 0.0F && right_ + gap + width <= edge) ImGui::SameLine();
+  right_ = ImGui::GetCursorScreenPos().x + width;
+}
+
+float Controls::text_width(const char* label) const { return ImGui::CalcTextSize(label, nullptr, true).x; }
+
+bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
+                      const char* tooltip) {
+  const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
+  float width = 0.0F;
+  for (const std::string& name : names) width += text_width(name.c_str()) + 2.0F * padding + gap;
+  place(width - gap);
+  bool changed = false;
+  ImGui::PushID(id);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
+  for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+    if (i > 0) ImGui::SameLine();
+    const bool on = i == chosen;
+    if (on) {
+      const Rgb ground = mix(frame_.theme.raised, frame_.theme.accent, 0.45F);
+      ImGui::PushStyleColor(ImGuiCol_Button, to_vec4(ground));
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, to_vec4(ground));
+    }
+    if (ImGui::Button(names[static_cast<std::size_t>(i)].c_str()) && !on) {
+      chosen = i;
+      changed = true;
+    }
+    if (on) ImGui::PopStyleColor(2);
+    tooltip_of_last(tooltip);
+  }
+  ImGui::PopStyleVar();
+  ImGui::PopID();
+  return changed;
+}
+
+bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
+  place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
+  const bool changed = ImGui::Checkbox(label, &on);
+  tooltip_of_last(tooltip);
+  return changed;
+}
+
+bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
+  place(kSliderWidth * frame_.scale + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
+  ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
+  return ImGui::SliderFloat(label, &value, low, high, format);
+}
+
+void Controls::round(int rounds, int& chosen) {
+  if (rounds < 2) return;
+  std::vector<std::string> names{"Round 1"};
+  for (int i = 2; i <= rounds; ++i) names.push_back(std::to_string(i));
+  int shown = chosen < 0 ? rounds - 1 : std::min(chosen, rounds - 1);
+  if (choice("round", names, shown, "Each round leaves out what the one before took for moving"))
+    chosen = shown == rounds - 1 ? -1 : shown;
+}
+
+bool Controls::button(const char* label, const char* tooltip, bool* held) {
+  place(text_width(label) + 2.0F * ImGui::GetStyle().FramePadding.x);
+  const bool pressed = ImGui::Button(label);
+  if (held != nullptr) *held = ImGui::IsItemActive();
+  tooltip_of_last(tooltip);
+  return pressed;
+}
+
+// Legends and captions
+// --------------------------------------------------------------------------------------------
+
+void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radius, Sign sign, ImU32 colour) {
+  const float r = radius, thin = 1.5F * frame.scale;
+  const ImVec2 low{centre.x - r, centre.y - r}, high{centre.x + r, centre.y + r};
+  const ImU32 faint = (colour & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 90);
+  switch (sign) {
+    case Sign::kSquare:
+      list.AddRectFilled(low, high, colour, frame.scale);
+      return;
+    case Sign::kHatch:
+      list.AddRectFilled(low, high, faint);
+      list.AddLine({low.x, high.y}, {high.x, low.y}, colour, 2.0F * thin);
+      return;
+    case Sign::kBackHatch:
+      list.AddRectFilled(low, high, faint);
+      list.AddLine(low, high, colour, 2.0F * thin);
+      return;
+    case Sign::kCircle:
+      list.AddCircleFilled(centre, r, colour);
+      return;
+    case Sign::kRing:
+      list.AddCircle(centre, r, colour, 0, thin);
+      return;
+    case Sign::kCross:
+      list.AddLine(low, high, colour, thin);
+      list.AddLine({low.x, high.y}, {high.x, low.y}, colour, thin);
+      return;
+    case Sign::kHollowSquare:
+      list.AddRect(low, high, colour, 0.0F, ImDrawFlags_None, thin);
+      return;
+    case Sign::kTriangle:
+      list.AddTriangleFilled({centre.x - r, high.y}, {high.x, high.y}, {centre.x, low.y}, colour);
+      return;
+    case Sign::kLine:
+      list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
+      return;
+    case Sign::kDashed:
+      list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x - 0.4F * r, centre.y}, colour, 1.4F * thin);
+      list.AddLine({centre.x + 0.4F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
+      return;
+  }
+}
+
+float Footer::lay_out(const UiFrame& frame, bool draw) const {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
+  const float line = frame.fonts.small->FontSize + 4.0F * frame.scale;
+  const float sign_room = 22.0F * frame.scale, gap = 16.0F * frame.scale;
+  float x = 0.0F, y = 0.0F;
+  for (const LegendEntry& entry : legend) {
+    const float needed = sign_room + small_extent(frame, entry.name).x;
+    if (x > 0.0F && x + needed > width) {
+      x = 0.0F;
+      y += line;
+    }
+    if (draw) {
+      const ImVec2 at{corner.x + x, corner.y + y};
+      draw_sign(frame, *ImGui::GetWindowDrawList(),
+                {std::round(at.x + 0.36F * sign_room), std::round(at.y + 0.5F * frame.fonts.small->FontSize)},
+                4.0F * frame.scale, entry.sign, to_u32(entry.colour));
+      small_text(frame, {at.x + sign_room, at.y}, entry.name, frame.theme.text);
+    }
+    x += needed + gap;
+  }
+  if (!legend.empty()) y += line;
+  if (!caption.empty()) {
+    if (draw) small_text(frame, {corner.x, corner.y + y}, caption, frame.theme.text_dim, width);
+    y += small_extent(frame, caption, width).y;
+  }
+  return y;
+}
+
+float Footer::height(const UiFrame& frame) const { return lay_out(frame, false); }
+
+void Footer::draw(const UiFrame& frame) const {
+  const float used = lay_out(frame, true);
+  ImGui::Dummy({1.0F, used});
+}
+
+ImVec2 room_above(const UiFrame& frame, const Footer& footer) {
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float below = footer.height(frame) + ImGui::GetStyle().ItemSpacing.y;
+  return {room.x, std::max(room.y - below, 40.0F * frame.scale)};
+}
+
+ImVec2 Tiling::corner(ImVec2 start, int index) const {
+  return {start.x + step.x * static_cast<float>(index % columns),
+          start.y + step.y * static_cast<float>(index / columns)};
+}
+
+Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& picture) {
+  const float gap = 4.0F * frame.scale;
+  const float aspect = picture.height > 0
+                           ? static_cast<float>(picture.width) / static_cast<float>(picture.height)
+                           : 4.0F / 3.0F;
+  Tiling best;
+  float best_width = -1.0F;
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const ImVec2 size{
+        std::floor((room.x - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns)),
+        std::floor((room.y - gap * static_cast<float>(rows - 1)) / static_cast<float>(rows))};
+    const float width = std::min(size.x, size.y * aspect);
+    if (width <= best_width) continue;
+    best_width = width;
+    best = {size, {size.x + gap, size.y + gap}, columns};
+  }
+  return best;
+}
+
+void draw_absent(const UiFrame& frame, const std::string& sentence) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  const float wrap = std::max(0.8F * room.x, 60.0F);
+  const ImVec2 extent = ImGui::CalcTextSize(sentence.c_str(), nullptr, false, wrap);
+  const ImVec2 at{std::round(corner.x + 0.5F * (room.x - extent.x)),
+                  std::round(corner.y + 0.5F * std::max(room.y - extent.y, 0.0F))};
+  ImGui::GetWindowDrawList()->AddText(frame.fonts.text, frame.fonts.text->FontSize, at,
+                                      to_u32(frame.theme.text_dim), sentence.c_str(), nullptr, wrap);
+  ImGui::Dummy({std::max(room.x, 1.0F), std::max(room.y, extent.y)});
+}
+
+void small_heading(const UiFrame& frame, const std::string& text) {
+  ImGui::PushFont(frame.fonts.small);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+}
+
+// Scales
+// ----------------------------------------------------------------------------------------------------------
+
+float colour_scale_width(const UiFrame& frame) { return 62.0F * frame.scale; }
+
+void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float height) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float line = frame.fonts.small->FontSize + 4.0F * frame.scale;
+  const float none_room = scale.none.empty() ? 0.0F : 2.0F * line;
+  const float top = corner.y + line,
+              bottom = corner.y + std::max(height - none_room - 0.5F * line, 2.0F * line);
+  const float width = kBarWidth * frame.scale;
+  small_text(frame, corner, scale.unit, frame.theme.text_dim);
+  constexpr int kSteps = 64;
+  for (int i = 0; i < kSteps; ++i) {
+    const double share = 1.0 - (i + 0.5) / kSteps;
+    const float from = top + (bottom - top) * static_cast<float>(i) / kSteps;
+    const float to = top + (bottom - top) * static_cast<float>(i + 1) / kSteps;
+    list.AddRectFilled({corner.x, from}, {corner.x + width, to + 0.5F},
+                       to_u32(scale.colour(scale.low + share * (scale.high - scale.low))));
+  }
+  const AxisMap map{
+      {scale.low, scale.high}, AxisScale::kLinear, static_cast<double>(bottom), static_cast<double>(top)};
+  const int most = std::max(2, static_cast<int>((bottom - top) / (30.0F * frame.scale)));
+  for (const AxisTick& tick : linear_ticks(map.range, most)) {
+    if (!tick.major) continue;
+    const auto y = static_cast<float>(map.to_pixel(tick.value));
+    list.AddLine({corner.x + width, y}, {corner.x + width + 4.0F * frame.scale, y},
+                 to_u32(frame.theme.text_dim));
+    small_text(frame, {corner.x + width + 7.0F * frame.scale, y - 0.5F * frame.fonts.small->FontSize},
+               tick.label, frame.theme.text);
+  }
+  if (!scale.none.empty()) {
+    const float y = corner.y + height - line;
+    list.AddRectFilled({corner.x, y}, {corner.x + width, y + width}, to_u32(scale.none_colour));
+    list.AddRect({corner.x, y}, {corner.x + width, y + width}, to_u32(frame.theme.border));
+    small_text(frame, {corner.x + width + 7.0F * frame.scale, y}, scale.none, frame.theme.text);
+  }
+  ImGui::Dummy({colour_scale_width(frame), height});
+}
+
+Rgb diverging_colour(const Theme& theme, double value) {
+  const bool dark = theme.name == ThemeName::kDark;
+  const Rgb middle = dark ? Rgb{0x1E, 0x21, 0x27} : Rgb{0xF4, 0xF5, 0xF7};
+  const Rgb low = dark ? okabe_ito::kSkyBlue : okabe_ito::kBlue;
+  const Rgb high = dark ? okabe_ito::kOrange : okabe_ito::kVermillion;
+  const auto share = static_cast<float>(std::clamp(std::abs(value), 0.0, 1.0));
+  return mix(middle, value < 0.0 ? low : high, share);
+}
+
+Rgb no_value_colour(const Theme& theme) {
+  return theme.name == ThemeName::kDark ? Rgb{0x3A, 0x3F, 0x48} : Rgb{0xD2, 0xD6, 0xDC};
+}
+
+ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour) {
+  const ImVec2 extent = small_extent(frame, text);
+  const float pad = 4.0F * frame.scale;
+  const ImVec2 size{extent.x + 2.0F * pad, extent.y + 0.5F * pad};
+  at = {std::round(at.x), std::round(at.y)};
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
+                                            to_u32(frame.theme.background, 0.82F), 3.0F * frame.scale);
+  small_text(frame, {at.x + pad, at.y + 0.25F * pad}, text, colour);
+  return size;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+#include "ui/theme/theme.hpp"
+#include "ui/view/image_view.hpp"
+
+namespace stillpoint {
+
+// What panels draw with: rows of controls, legends, captions, scales. Lengths in design px are times
+// frame.scale.
+
+/// What the panels of one set share.
+struct PanelsShared {
+  LinkedViews views;                     ///< zoom and pan by name; all images of frames use "frame"
+  std::optional<Eigen::Vector2i> pixel;  ///< the one the mouse was on last, of a full-size image
+};
+
+/// A panel that has its names and what the set shares.
+class NamedPanel : public Panel {
+ public:
+  NamedPanel(std::string name, std::string title, std::shared_ptr<PanelsShared> shared)
+      : shared_(std::move(shared)), name_(std::move(name)), title_(std::move(title)) {}
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const std::string& title() const override { return title_; }
+
+ protected:
+  std::shared_ptr<PanelsShared> shared_;
+
+ private:
+  std::string name_, title_;
+};
+
+/// Controls side by side, on as many lines as they need.
+class Controls {
+ public:
+  explicit Controls(const UiFrame& frame) : frame_(frame) {}
+
+  /// One of several, as joined buttons. @returns whether it was changed.
+  bool choice(const char* id, const std::vector<std::string>& names, int& chosen,
+              const char* tooltip = nullptr);
+  bool toggle(const char* label, bool& on, const char* tooltip = nullptr);
+  bool slider(const char* label, float& value, float low, float high, const char* format);
+  /// One of several rounds; `chosen` from 0, below 0 is the last.
+  void round(int rounds, int& chosen);
+  /// @returns whether it was pressed; `held` tells whether it is down now.
+  bool button(const char* label, const char* tooltip = nullptr, bool* held = nullptr);
+
+ private:
+  void place(float width);
+  [[nodiscard]] float text_width(const char* label) const;
+
+  const UiFrame& frame_;
+  float right_ = 0.0F;  // px, of what was placed last; 0 before anything was
+};
+
+/// The sign beside a name in a legend: shapes tell apart what colours may not.
+enum class Sign {
+  kSquare,
+  kHatch,
+  kBackHatch,
+  kCircle,
+  kRing,
+  kCross,
+  kHollowSquare,
+  kTriangle,
+  kLine,
+  kDashed
+};
+
+struct LegendEntry {
+  std::string name;
+  Rgb colour;
+  Sign sign = Sign::kSquare;
+};
+
+void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radius, Sign sign, ImU32 colour);
+
+/// What stands below a picture: its legend, then a sentence or figures in small type.
+class Footer {
+ public:
+  std::vector<LegendEntry> legend;
+  std::string caption;
+
+  /// px, at the current content region's width.
+  [[nodiscard]] float height(const UiFrame& frame) const;
+  /// Draws it at ImGui's cursor.
+  void draw(const UiFrame& frame) const;
+
+ private:
+  float lay_out(const UiFrame& frame, bool draw) const;
+};
+
+/// What is left of the content region above a footer, px.
+[[nodiscard]] ImVec2 room_above(const UiFrame& frame, const Footer& footer);
+
+/// Pictures of one size, laid out in rows and columns so that they become as large as they can.
+struct Tiling {
+  ImVec2 size;  ///< px, of each
+  ImVec2 step;  ///< px, from one to the next
+  int columns = 1;
+  /// Where the i-th goes when the first is at `start`.
+  [[nodiscard]] ImVec2 corner(ImVec2 start, int index) const;
+};
+[[nodiscard]] Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& picture);
+
+/// Says in the middle of what is left what is missing.
+void draw_absent(const UiFrame& frame, const std::string& sentence);
+
+/// A small heading above a picture or a plot.
+void small_heading(const UiFrame& frame, const std::string& text);
+
+/// A scale of colour beside a picture.
+struct ColourScale {
+  double low = 0.0, high = 1.0;
+  std::string unit;                   ///< "m"
+  std::function<Rgb(double)> colour;  ///< of a value between low and high
+  std::string none;                   ///< name of what has no value; empty = there is none
+  Rgb none_colour;
+};
+
+/// The width a scale takes, px.
+[[nodiscard]] float colour_scale_width(const UiFrame& frame);
+/// Draws it upright at ImGui's cursor, `height` px high.
+void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float height);
+
+/// From one colour over the theme's ground to another, for values about zero: -1 to 1.
+[[nodiscard]] Rgb diverging_colour(const Theme& theme, double value);
+
+/// For what has no value, apart from every colour of a scale.
+[[nodiscard]] Rgb no_value_colour(const Theme& theme);
+
+/// Text on a ground of its own that reads on any picture, its upper left corner at `at`. @returns its size.
+ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour);
+
+}  // namespace stillpoint

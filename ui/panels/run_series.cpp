@@ -1,0 +1,75 @@
+#include "ui/panels/run_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stillpoint {
+
+double series_start(const SessionView& session) {
+  const auto& records = session.run->records;
+  return records.empty() ? session.current->frame.timestamp : records.front().timestamp;
+}
+
+Series error_series(const RelativePoseError& error, double start, bool rotation) {
+  Series series;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < error.errors.size(); ++i)
+    steps.push_back(error.errors[i].to_timestamp - error.errors[i - 1].to_timestamp);
+  double usual = std::numeric_limits<double>::infinity();
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    usual = *middle;
+  }
+  for (const RelativeError& one : error.errors) {
+    const double x = one.to_timestamp - start;
+    // Two motions may end at one pose, and their order there is of no account; a plot's x must not decrease.
+    if (!series.x.empty() && x < series.x.back()) continue;
+    if (!series.x.empty() && x - series.x.back() > 4.0 * usual) {
+      series.x.push_back(0.5 * (x + series.x.back()));
+      series.y.push_back(std::nan(""));
+    }
+    series.x.push_back(x);
+    series.y.push_back(rotation ? one.rotation_deg : 1000.0 * one.translation_m);
+  }
+  return series;
+}
+
+AxisRange record_range(const SessionView& session) {
+  const auto& records = session.run->records;
+  if (records.size() < 2) return {0.0, 1.0};
+  return {0.0, records.back().timestamp - records.front().timestamp};
+}
+
+std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
+  const auto& records = session.run->records;
+  const double start = series_start(session);
+  std::vector<PlotBand> bands;
+  for (std::size_t i = 0; i < records.size();) {
+    if (!is_lost(records[i])) {
+      ++i;
+      continue;
+    }
+    const double from = records[i].timestamp - start;
+    while (i < records.size() && is_lost(records[i])) ++i;
+    const double to = (i < records.size() ? records[i] : records.back()).timestamp - start;
+    bands.push_back({{from, to}, colour});
+  }
+  return bands;
+}
+
+std::optional<int> frame_at(const SessionView& session, double seconds) {
+  const auto& records = session.run->records;
+  if (records.empty()) return std::nullopt;
+  const double time = seconds + series_start(session);
+  const auto after =
+      std::lower_bound(records.begin(), records.end(), time,
+                       [](const FrameRecord& record, double t) { return record.timestamp < t; });
+  if (after == records.end()) return records.back().index;
+  if (after == records.begin()) return after->index;
+  const auto before = after - 1;
+  return time - before->timestamp < after->timestamp - time ? before->index : after->index;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,141 @@
+#include "ui/panels/scene_of_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_series.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kMostErrorLines = 400;
+constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
+
+Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()); }
+
+/// The part of the ground truth the run has come by.
+ScenePath truth_path(const SessionView& session) {
+  ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
+  const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
+  double before = -1.0;
+  for (const StampedPose& pose : session.ground_truth) {
+    if (pose.timestamp < from - 0.05 || pose.timestamp > to + 0.05) continue;
+    if (before >= 0.0 && pose.timestamp - before > kTruthBreak) path.positions.push_back(broken());
+    path.positions.push_back(pose.world_from_camera.translation().cast<float>());
+    before = pose.timestamp;
+  }
+  return path;
+}
+
+/// A run's estimated poses, each a frame of its records; lost frames break the line.
+void add_run(const SessionView& session, const RunView& run, const Pose& world_from_estimate, ScenePath path,
+             SessionScene& scene) {
+  std::vector<PathFrame> frames;
+  const double start = series_start(session);
+  std::size_t error = 0;
+  const auto& errors = run.evaluation.ate.errors;
+  const FrameRecord* before = nullptr;
+  for (const FrameRecord& record : run.records) {
+    if (!record.estimated) continue;
+    if (before != nullptr && record.index != before->index + 1) {
+      path.positions.push_back(broken());
+      frames.push_back({before->index, before->timestamp - start, {}});
+    }
+    before = &record;
+    path.positions.push_back((world_from_estimate * record.world_from_camera.translation()).cast<float>());
+    PathFrame frame{record.index, record.timestamp - start, {}};
+    while (error < errors.size() && errors[error].timestamp < record.timestamp - 1e-6) ++error;
+    if (error < errors.size() && std::abs(errors[error].timestamp - record.timestamp) < 1e-6)
+      frame.error_m = errors[error].translation_m;
+    frames.push_back(frame);
+  }
+  scene.data.paths.push_back(std::move(path));
+  scene.frames_of_path.push_back(std::move(frames));
+}
+
+void add_errors(const TrajectoryEvaluation& evaluation, const Pose& world_from_estimate, SceneData& data) {
+  const std::size_t step = 1 + evaluation.matched.size() / kMostErrorLines;
+  std::vector<float> sizes;
+  for (std::size_t i = 0; i < evaluation.matched.size(); i += step) {
+    const MatchedPose& pair = evaluation.matched[i];
+    const Eigen::Vector3d estimate = world_from_estimate * pair.estimate.translation();
+    const auto size = static_cast<float>((estimate - pair.truth.translation()).norm());
+    data.errors.push_back({pair.truth.translation().cast<float>(), estimate.cast<float>(), size});
+    sizes.push_back(size);
+  }
+  if (sizes.empty()) return;
+  const float most = *std::max_element(sizes.begin(), sizes.end());
+  // The scale ends at a round number: 1, 2 or 5 times a power of ten.
+  float round = 0.001F;
+  for (const float factor : {2.0F, 2.5F, 2.0F, 2.0F, 2.5F, 2.0F, 2.0F, 2.5F, 2.0F, 2.0F, 2.5F, 2.0F}) {
+    if (round >= most) break;
+    round *= factor;
+  }
+  data.error_scale_m = round;
+}
+
+/// The features the current frame's mask removed, where depth says they are.
+void add_removed(const SessionView& session, const Pose& world_from_camera, SceneData& data) {
+  for (const FeatureRecord& feature : session.current->record->features) {
+    if (feature.fate != FeatureFate::removed || feature.depth <= 0.0F) continue;
+    const Eigen::Vector3d point = session.camera.back_project(
+        {static_cast<double>(feature.pixel.x), static_cast<double>(feature.pixel.y)},
+        static_cast<double>(feature.depth));
+    data.points.push_back({(world_from_camera * point).cast<float>(), true});
+  }
+}
+
+}  // namespace
+
+SessionScene scene_of_session(const SessionView& session, const SceneLayers& layers) {
+  SessionScene scene;
+  SceneData& data = scene.data;
+  const RunView& run = *session.run;
+  const bool aligned = !run.evaluation.matched.empty();
+  const Pose world = aligned ? session.alignment.truth_from_estimate : Pose::Identity();
+  data.up = aligned ? Eigen::Vector3d(0.0, 0.0, 1.0) : Eigen::Vector3d(0.0, -1.0, 0.0);
+  if (aligned) {
+    data.paths.push_back(truth_path(session));
+    scene.frames_of_path.emplace_back();
+  }
+  if (session.baseline && (!aligned || !session.baseline->evaluation.matched.empty())) {
+    const Pose other =
+        aligned ? session.baseline->evaluation.ate.alignment.truth_from_estimate : Pose::Identity();
+    add_run(session, *session.baseline, other,
+            {.name = "baseline: " + session.baseline->name,
+             .role = Role::kBaseline,
+             .width_px = 1.6F,
+             .pickable = true},
+            scene);
+  }
+  add_run(session, run, world,
+          {.name = "estimate: " + run.name, .role = Role::kEstimate, .width_px = 3.0F, .pickable = true},
+          scene);
+  if (layers.errors && aligned) add_errors(run.evaluation, world, data);
+  if (layers.keyframes)
+    for (const SavedKeyframe& keyframe : session.keyframes)
+      data.keyframes.push_back(world * keyframe.pose.world_from_camera);
+  if (layers.points)
+    for (const SavedPoint& point : session.map_points)
+      data.points.push_back({(world * point.position).cast<float>(), false});
+  const FrameRecord* record = session.current->record;
+  if (record != nullptr && record->estimated) {
+    data.current = world * record->world_from_camera;
+    data.current_image = picture_of(session.current->frame);
+    if (layers.points) add_removed(session, *data.current, data);
+  }
+  data.frustum.half_width = static_cast<float>(0.5 * session.camera.width / session.camera.fx);
+  data.frustum.half_height = static_cast<float>(0.5 * session.camera.height / session.camera.fy);
+  // Cameras are drawn in proportion to the way they went, so that neither hides the other.
+  const SceneBounds box = bounds(data);
+  const double extent = (box.high - box.low).norm();
+  data.frustum.current_depth_m = static_cast<float>(std::clamp(0.22 * extent, 0.05, 0.6));
+  data.frustum.keyframe_depth_m = 0.3F * data.frustum.current_depth_m;
+  data.ground_m = aligned ? 0.0 : -1.0;
+  return scene;
+}
+
+}  // namespace stillpoint

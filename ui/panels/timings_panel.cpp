@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_series.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct Stage {
+  const char* name;
+  double StageTimes::*value;
+};
+
+constexpr std::array<Stage, 6> kStages{{{"Motion", &StageTimes::motion},
+                                        {"Features", &StageTimes::features},
+                                        {"Matching", &StageTimes::matching},
+                                        {"Pose", &StageTimes::pose},
+                                        {"Mapping", &StageTimes::mapping},
+                                        {"Bundle", &StageTimes::bundle}}};
+constexpr double kFrameTime = 1000.0 / 30.0;  // ms, of a 30 Hz camera
+
+struct Figures {
+  double mean = 0.0, median = 0.0, p99 = 0.0;
+};
+
+Figures figures_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  Figures figures;
+  for (const double value : values) figures.mean += value / static_cast<double>(values.size());
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  figures.median = values[static_cast<std::size_t>(std::lround(0.5 * last))];
+  figures.p99 = values[static_cast<std::size_t>(std::lround(0.99 * last))];
+  return figures;
+}
+
+/// What each stage takes: stacked frame by frame, and in figures.
+class TimingsPanel final : public NamedPanel {
+ public:
+  explicit TimingsPanel(Shared shared) : NamedPanel("timings", "Timings", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    if (session.run->records.empty()) {
+      draw_absent(frame, "No frame has been processed yet.");
+      return;
+    }
+    collect(session);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const float row = frame.fonts.text->FontSize + 2.0F * ImGui::GetStyle().CellPadding.y;
+    const float table = row * static_cast<float>(kStages.size() + 2) + 2.0F * frame.scale;
+    Footer footer;
+    footer.caption =
+        "Wall time. Motion and features run beside each other where threads allow, so stages may add up to "
+        "more than the whole.";
+    const float below = table + footer.height(frame) + 2.0F * ImGui::GetStyle().ItemSpacing.y;
+    draw_plot_of(frame, session, actions, {room.x, std::max(room.y - below, 90.0F * frame.scale)});
+    draw_table(frame, session);
+    footer.draw(frame);
+  }
+
+ private:
+  [[nodiscard]] static Rgb colour_of(std::size_t stage) { return kSeriesColours[stage]; }
+
+  void collect(const SessionView& session) {
+    if (run_ == session.run.get() && revision_ == session.revision &&
+        index_.size() == session.run->records.size())
+      return;
+    run_ = session.run.get();
+    revision_ = session.revision;
+    index_.clear();
+    total_.clear();
+    for (auto& one : tops_) one.clear();
+    std::array<std::vector<double>, kStages.size()> values;
+    for (const FrameRecord& record : session.run->records) {
+      index_.push_back(record.index);
+      total_.push_back(record.ms.total);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < kStages.size(); ++i) {
+        const double one = record.ms.*kStages[i].value;
+        values[i].push_back(one);
+        sum += one;
+        tops_[i].push_back(sum);
+      }
+    }
+    for (std::size_t i = 0; i < kStages.size(); ++i) figures_[i] = figures_of(values[i]);
+    whole_ = figures_of(total_);
+  }
+
+  void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, ImVec2 size) {
+    Plot plot{.x_label = "frame", .y_label = "time a frame", .y_unit = "ms"};
+    // The highest stack first: each lower one is painted over it.
+    for (std::size_t i = kStages.size(); i-- > 0;)
+      plot.series.push_back({"", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
+    plot.series.push_back({"whole frame", index_, total_, frame.theme.text, SeriesStyle::kSteps, 1.5F});
+    plot.levels.push_back({kFrameTime, "30 Hz", role_colour(Role::kWarning, frame.theme.name)});
+    plot.cursor_x = session.current->index + 0.5;
+    const double first = index_.front(), last = index_.back();
+    plot.x_limits = AxisRange{first, last + 1.0};
+    const PlotResponse response = draw_plot(frame, "stack", plot, view_, size);
+    if (response.clicked_x)
+      actions.go_to_frame = static_cast<int>(std::floor(std::clamp(*response.clicked_x, first, last)));
+  }
+
+  void draw_table(const UiFrame& frame, const SessionView& session) const {
+    const FrameRecord* record = session.current->record;
+    if (!ImGui::BeginTable("figures", 5, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchSame))
+      return;
+    ImGui::TableSetupColumn("Stage, ms", ImGuiTableColumnFlags_WidthStretch, 1.6F);
+    for (const char* name : {"this frame", "mean", "median", "p99"}) ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    const auto cell = [&](double value) {
+      ImGui::TableNextColumn();
+      ImGui::PushFont(frame.fonts.mono);
+      ImGui::Text("%7.2f", value);
+      ImGui::PopFont();
+    };
+    const auto row = [&](const char* name, const Rgb& colour, Sign sign, double now, const Figures& figures) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      const float half = 0.5F * frame.fonts.text->FontSize;
+      draw_sign(frame, *ImGui::GetWindowDrawList(), {at.x + half, at.y + half}, 4.5F * frame.scale, sign,
+                to_u32(colour));
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 22.0F * frame.scale);
+      ImGui::TextUnformatted(name);
+      cell(now);
+      cell(figures.mean);
+      cell(figures.median);
+      cell(figures.p99);
+    };
+    for (std::size_t i = 0; i < kStages.size(); ++i) {
+      const double now = record != nullptr ? record->ms.*kStages[i].value : std::nan("");
+      row(kStages[i].name, colour_of(i), Sign::kSquare, now, figures_[i]);
+    }
+    row("Whole frame", frame.theme.text, Sign::kLine, record != nullptr ? record->ms.total : std::nan(""),
+        whole_);
+    ImGui::EndTable();
+  }
+
+  std::vector<double> index_, total_;
+  std::array<std::vector<double>, kStages.size()> tops_;  // ms, each stage added to those before
+  std::array<Figures, kStages.size()> figures_;
+  Figures whole_;
+  PlotView view_;
+  const void* run_ = nullptr;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_timings_panel(Shared shared) {
+  return std::make_unique<TimingsPanel>(std::move(shared));
+}
+
+}  // namespace stillpoint

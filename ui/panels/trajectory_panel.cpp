@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/scene_of_session.hpp"
+#include "ui/scene/scene_widget.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// Where the camera went, in three dimensions: estimate, baseline and truth, keyframes and map.
+class TrajectoryPanel final : public NamedPanel {
+ public:
+  explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    if (session.run->trajectory.empty()) {
+      draw_absent(frame, session.run->records.empty()
+                             ? "No frame has been processed yet."
+                             : "No frame has a pose yet, so there is no trajectory.");
+      return;
+    }
+    if (!widget_) widget_.emplace(frame.gl);
+    update_scene(session);
+    draw_controls(frame, session);
+    Footer footer;
+    footer.caption = alignment_text(session);
+    const ImVec2 room = room_above(frame, footer);
+    look(room);
+    const SceneView before = view_;
+    const SceneResponse response = widget_->draw(frame, "scene", scene_.data, view_, room);
+    // Once a person has taken hold of the view it is theirs; until then it keeps everything in sight.
+    if (!before.target.isApprox(view_.target) || before.distance != view_.distance ||
+        !before.world_from_view.isApprox(view_.world_from_view))
+      keeps_fitting_ = false;
+    footer.draw(frame);
+    if (response.pose) tell_pose(session, *response.pose, response.clicked, actions);
+  }
+
+ private:
+  void update_scene(const SessionView& session) {
+    const bool same_frame =
+        !view_shown_.owner_before(session.current) && !session.current.owner_before(view_shown_);
+    if (same_frame && revision_ == session.revision && run_ == session.run.get() && layers_ == layers_drawn_)
+      return;
+    const std::uint64_t revision = scene_.data.revision + 1;
+    scene_ = scene_of_session(session, layers_);
+    scene_.data.revision = scene_.data.image_revision = revision;
+    view_shown_ = session.current;
+    revision_ = session.revision;
+    run_ = session.run.get();
+    layers_drawn_ = layers_;
+    if (scene_.data.current) follow(view_, *scene_.data.current);
+  }
+
+  void draw_controls(const UiFrame& frame, const SessionView& session) {
+    Controls controls(frame);
+    const auto preset = [&](const char* label, ViewPreset kind, const char* tooltip) {
+      if (!controls.button(label, tooltip)) return;
+      look_from(view_, kind, scene_.data.up, scene_.data.current);
+      preset_ = kind;
+      keeps_fitting_ = kind != ViewPreset::kCamera;
+    };
+    preset("Oblique", ViewPreset::kOblique, "From above at a slant");
+    preset("Top", ViewPreset::kTop, "From straight above");
+    preset("Front", ViewPreset::kFront, "Level");
+    preset("Camera", ViewPreset::kCamera, "Through the current camera");
+    if (controls.button("Fit", "Everything in sight (double click)")) keeps_fitting_ = true;
+    bool follows = view_.follow != Follow::kNone;
+    if (controls.toggle("Follow", follows, "Moves with the current camera")) {
+      view_.follow = follows ? Follow::kPosition : Follow::kNone;
+      view_.followed = scene_.data.current;
+      if (follows) keeps_fitting_ = false;
+    }
+    controls.toggle("Map points", layers_.points);
+    controls.toggle("Keyframes", layers_.keyframes);
+    if (!session.run->evaluation.matched.empty())
+      controls.toggle("Errors", layers_.errors, "Lines from each pose to where it truly was");
+  }
+
+  /// Sets the view until a person does.
+  void look(ImVec2 room) {
+    if (!looked_) {
+      look_from(view_, preset_, scene_.data.up);
+      looked_ = true;
+    }
+    if (!keeps_fitting_) return;
+    const Viewport viewport{std::max(16.0, static_cast<double>(room.x)),
+                            std::max(16.0, static_cast<double>(room.y))};
+    fit(view_, viewport, bounds(scene_.data));
+  }
+
+  void tell_pose(const SessionView& session, const ScenePose& pose, bool clicked,
+                 PanelActions& actions) const {
+    const auto& frames = scene_.frames_of_path[pose.path];
+    if (pose.index >= frames.size()) return;
+    const ScenePath& path = scene_.data.paths[pose.path];
+    const Eigen::Vector3f& at = path.positions[pose.index];
+    const PathFrame& which = frames[pose.index];
+    std::string text = fmt::format("{}\nframe {}, {:.3f} s\nx {:.3f} m, y {:.3f} m, z {:.3f} m", path.name,
+                                   which.index, which.seconds, at.x(), at.y(), at.z());
+    if (which.error_m) text += fmt::format("\n{:.1f} mm from the truth", 1000.0 * *which.error_m);
+    ImGui::SetTooltip("%s\nclick to go there", text.c_str());
+    if (clicked && which.index < session.frame_count) actions.go_to_frame = which.index;
+  }
+
+  [[nodiscard]] static std::string alignment_text(const SessionView& session) {
+    const std::size_t poses = session.run->trajectory.size();
+    const auto& evaluation = session.run->evaluation;
+    if (evaluation.matched.empty()) {
+      return fmt::format("{} poses in the world of the first camera{}.", poses,
+                         session.ground_truth.empty() ? "; there is no ground truth" : "");
+    }
+    const double degrees =
+        rotation_angle(session.alignment.truth_from_estimate.linear()) * 180.0 / 3.14159265358979;
+    std::string text = fmt::format(
+        "{} poses, laid over the truth by a rigid motion without scale (Umeyama, {} pairs: {:.2f} m, {:.1f} "
+        "°). ATE {:.1f} mm RMSE",
+        poses, evaluation.matched.size(), session.alignment.truth_from_estimate.translation().norm(), degrees,
+        1000.0 * evaluation.ate.translation_m.rmse);
+    if (session.baseline && !session.baseline->evaluation.matched.empty())
+      text += fmt::format(", {} {:.1f} mm", session.baseline->name,
+                          1000.0 * session.baseline->evaluation.ate.translation_m.rmse);
+    if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
+    return text + ".";
+  }
+
+  std::optional<SceneWidget> widget_;
+  SessionScene scene_;
+  SceneLayers layers_, layers_drawn_;
+  SceneView view_;
+  ViewPreset preset_ = ViewPreset::kOblique;
+  bool looked_ = false, keeps_fitting_ = true;
+  std::weak_ptr<const FrameView> view_shown_;
+  std::uint64_t revision_ = 0;
+  const void* run_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_trajectory_panel(Shared shared) {
+  return std::make_unique<TrajectoryPanel>(std::move(shared));
+}
+
+}  // namespace stillpoint
