@@ -228,11 +228,10 @@ class DepthMotionPanel final : public NamedPanel {
     const auto moving = std::count_if(trace.segments.begin(), trace.segments.end(),
                                       [](const Segment& segment) { return segment.moving; });
     const ReferenceEvidence& reference = trace.references[static_cast<std::size_t>(reference_)];
-    footer.caption = fmt::format(
-        "{}: brightness noise {:.1f} grey levels; {} of {} patches move, {:.1f} % of the pixels in {} "
-        "region{}.",
-        frame_text(session, session.current->frame), reference.intensity_sigma, moving, trace.segments.size(),
-        100.0 * trace.mask_share);
+    footer.caption =
+        fmt::format("{}: brightness noise {:.1f} grey levels; {} of {} patches move, {:.1f} % of the pixels.",
+                    frame_text(session, session.current->frame), reference.intensity_sigma, moving,
+                    trace.segments.size(), 100.0 * trace.mask_share);
     if (!trace.note.empty()) footer.caption += " " + trace.note;
     return footer;
   }
