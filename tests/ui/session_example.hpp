@@ -14,7 +14,8 @@ struct SessionExample {
   SessionView view;
 };
 
-/// Runs method `stillpoint`, and `none` as the baseline, over the first `frames` frames and shows the last one.
+/// Runs method `stillpoint`, and `none` as the baseline, over the first `frames` frames and shows the last
+/// one.
 /// @param rpe_delta_s span of the error over time: short sequences have no second
 [[nodiscard]] SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, double rpe_delta_s);
 

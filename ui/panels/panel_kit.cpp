@@ -134,6 +134,10 @@ void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radi
     case Sign::kTriangle:
       list.AddTriangleFilled({centre.x - r, high.y}, {high.x, high.y}, {centre.x, low.y}, colour);
       return;
+    case Sign::kDiamond:
+      list.AddQuadFilled({low.x, centre.y}, {centre.x, low.y}, {high.x, centre.y}, {centre.x, high.y},
+                         colour);
+      return;
     case Sign::kLine:
       list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
       return;

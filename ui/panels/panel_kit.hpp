@@ -70,6 +70,7 @@ enum class Sign {
   kCross,
   kHollowSquare,
   kTriangle,
+  kDiamond,
   kLine,
   kDashed
 };

@@ -90,6 +90,20 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 
 }  // namespace
 
+SceneBounds sight_of(const SceneData& data) {
+  SceneBounds box = bounds(data);
+  if (data.points.size() < 20) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const ScenePoint& point : data.points) along.push_back(static_cast<double>(point.position[axis]));
+    std::sort(along.begin(), along.end());
+    const double low = along[along.size() / 10], high = along[along.size() - 1 - along.size() / 10];
+    box.low[axis] += 0.5 * std::min(0.0, low - box.low[axis]);
+    box.high[axis] += 0.5 * std::max(0.0, high - box.high[axis]);
+  }
+  return box;
+}
+
 SessionScene scene_of_session(const SessionView& session, const SceneLayers& layers) {
   SessionScene scene;
   SceneData& data = scene.data;
@@ -132,7 +146,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
   // Cameras are drawn in proportion to the way they went, so that neither hides the other.
   const SceneBounds box = bounds(data);
   const double extent = (box.high - box.low).norm();
-  data.frustum.current_depth_m = static_cast<float>(std::clamp(0.22 * extent, 0.05, 0.6));
+  data.frustum.current_depth_m = static_cast<float>(std::clamp(0.2 * extent, 0.05, 0.6));
   data.frustum.keyframe_depth_m = 0.3F * data.frustum.current_depth_m;
   data.ground_m = aligned ? 0.0 : -1.0;
   return scene;

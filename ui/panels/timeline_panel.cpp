@@ -291,7 +291,7 @@ class TimelinePanel final : public NamedPanel {
       entry.name = fmt::format("{} {}", counts[i], entry.name);
       footer.legend.push_back(std::move(entry));
     }
-    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, frame.theme.name), Sign::kTriangle});
+    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, frame.theme.name), Sign::kDiamond});
     footer.caption =
         fmt::format("Frame {} of {}; {} processed. Error: distance to the truth after alignment.",
                     session.current->index, session.frame_count, session.processed);

@@ -49,6 +49,7 @@ class TrajectoryPanel final : public NamedPanel {
     const std::uint64_t revision = scene_.data.revision + 1;
     scene_ = scene_of_session(session, layers_);
     scene_.data.revision = scene_.data.image_revision = revision;
+    sight_ = sight_of(scene_.data);
     view_shown_ = session.current;
     revision_ = session.revision;
     run_ = session.run.get();
@@ -90,7 +91,7 @@ class TrajectoryPanel final : public NamedPanel {
     if (!keeps_fitting_) return;
     const Viewport viewport{std::max(16.0, static_cast<double>(room.x)),
                             std::max(16.0, static_cast<double>(room.y))};
-    fit(view_, viewport, bounds(scene_.data));
+    fit(view_, viewport, sight_);
   }
 
   void tell_pose(const SessionView& session, const ScenePose& pose, bool clicked,
@@ -132,6 +133,7 @@ class TrajectoryPanel final : public NamedPanel {
   SessionScene scene_;
   SceneLayers layers_, layers_drawn_;
   SceneView view_;
+  SceneBounds sight_;
   ViewPreset preset_ = ViewPreset::kOblique;
   bool looked_ = false, keeps_fitting_ = true;
   std::weak_ptr<const FrameView> view_shown_;

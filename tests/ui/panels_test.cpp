@@ -1,0 +1,203 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/golden.hpp"
+#include "tests/ui/session_example.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/shell/offscreen.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::IsEmpty;
+
+/// One panel offscreen, filling the image, as `snapshot` draws it.
+class PanelStage {
+ public:
+  PanelStage(const std::string& name, const Look& look, int width = 520, int height = 420)
+      : offscreen_({.width = width, .height = height, .look = look}), panels_(make_panels()) {
+    for (const auto& panel : panels_)
+      if (panel->name() == name) panel_ = panel.get();
+  }
+  ~PanelStage() { EXPECT_THAT(offscreen_.take_gl_errors(), IsEmpty()) << panel_->name(); }
+
+  cv::Mat render(const SessionView& session) {
+    return offscreen_.render([&](UiFrame& frame) { draw(frame, session); });
+  }
+  /// What the panel asks for when it is clicked at a place of the image, as shares of its size.
+  PanelActions click(const SessionView& session, double x, double y) {
+    const auto place = [&](UiFrame& frame) { draw(frame, session); };
+    const cv::Mat image = render(session);
+    offscreen_.send(MouseMoved{static_cast<float>(x * image.cols), static_cast<float>(y * image.rows)});
+    offscreen_.render(place);
+    actions_ = {};
+    offscreen_.send(MouseButton{0, true, {}});
+    offscreen_.draw(place);
+    offscreen_.send(MouseButton{0, false, {}});
+    offscreen_.draw(place);
+    return actions_;
+  }
+  void send(const InputEvent& event) { offscreen_.send(event); }
+  [[nodiscard]] Panel& panel() { return *panel_; }
+
+ private:
+  void draw(UiFrame& frame, const SessionView& session) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(frame.size);
+    ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    panel_->draw(frame, session, actions_);
+    ImGui::End();
+  }
+
+  Offscreen offscreen_;
+  std::vector<std::unique_ptr<Panel>> panels_;
+  Panel* panel_ = nullptr;
+  PanelActions actions_;
+};
+
+std::vector<std::string> panel_names() {
+  std::vector<std::string> names;
+  for (const auto& panel : make_panels()) names.push_back(panel->name());
+  return names;
+}
+
+/// The example without depth: of the frame, and of what was made of it.
+SessionView without_depth() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->frame.depth = current->reference.depth = cv::Mat();
+  current->depth_motion = {};
+  view.current = current;
+  return view;
+}
+
+SessionView without_truth() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->truth = {};
+  view.current = current;
+  auto run = std::make_shared<RunView>(*view.run), baseline = std::make_shared<RunView>(*view.baseline);
+  run->evaluation = baseline->evaluation = {};
+  // The record belongs to the run shown.
+  current->record = &run->records.back();
+  view.run = run;
+  view.baseline = baseline;
+  view.ground_truth.clear();
+  view.alignment = {};
+  return view;
+}
+
+/// The first frame of a sequence just opened: read, not processed.
+SessionView not_processed() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>();
+  current->frame = view.current->frame;
+  view.current = current;
+  view.run = std::make_shared<RunView>();
+  view.baseline = nullptr;
+  view.keyframes.clear();
+  view.map_points.clear();
+  view.alignment = {};
+  view.processed = 0;
+  return view;
+}
+
+/// A frame whose image could not be read.
+SessionView unreadable() {
+  SessionView view = not_processed();
+  auto current = std::make_shared<FrameView>();
+  current->frame.problem = "rgb/12.png is cut short.";
+  view.current = current;
+  return view;
+}
+
+class EveryPanel : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryPanel, IsDrawnTwiceTheSame) {
+  for (const Look& look : {Look{ThemeName::kDark, 1.0F}, Look{ThemeName::kLight, 1.0F}}) {
+    PanelStage stage(GetParam(), look), again(GetParam(), look);
+    const cv::Mat image = stage.render(generated_example());
+    EXPECT_FALSE(is_blank(image, 40));
+    EXPECT_TRUE(images_agree(image, again.render(generated_example()), {0, 0.0, 0.0}));
+    EXPECT_TRUE(images_agree(image, stage.render(generated_example()), {0, 0.0, 0.0}));
+  }
+}
+
+TEST_P(EveryPanel, SaysWhatItLacks) {
+  PanelStage stage(GetParam(), {});
+  for (const auto& make : {without_depth, without_truth, not_processed, unreadable})
+    EXPECT_FALSE(is_blank(stage.render(make()), 8));
+}
+
+TEST_P(EveryPanel, SurvivesAPanelOfNoSize) {
+  PanelStage stage(GetParam(), {}, 40, 32);
+  stage.render(generated_example());
+}
+
+INSTANTIATE_TEST_SUITE_P(Panels, EveryPanel, ::testing::ValuesIn(panel_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST(Panels, HaveNamesOfTheirOwn) {
+  std::set<std::string> names, titles;
+  for (const auto& panel : make_panels()) {
+    names.insert(panel->name());
+    titles.insert(panel->title());
+  }
+  EXPECT_EQ(names.size(), make_panels().size());
+  EXPECT_EQ(titles.size(), names.size());
+  for (const char* name : {"input", "forward_mask", "backward_mask", "union_mask", "trajectory", "errors"})
+    EXPECT_EQ(names.count(name), 1U) << name;
+}
+
+TEST(Panels, AClickInErrorsGoesToTheFrameThere) {
+  PanelStage stage("errors", {});
+  const auto left = stage.click(generated_example(), 0.4, 0.3).go_to_frame;
+  ASSERT_TRUE(left);
+  const auto right = stage.click(generated_example(), 0.8, 0.7).go_to_frame;
+  ASSERT_TRUE(right);
+  EXPECT_GT(*left, 0);
+  EXPECT_LT(*left, *right);
+  EXPECT_LT(*right, 14);
+}
+
+TEST(Panels, AClickInTheTimelineGoesToTheFrameThere) {
+  PanelStage stage("timeline", {});
+  const auto frame = stage.click(generated_example(), 0.3, 0.4).go_to_frame;
+  ASSERT_TRUE(frame);
+  // The lanes show all 20 frames between names and values: this place is a little left of a quarter.
+  EXPECT_GE(*frame, 2);
+  EXPECT_LE(*frame, 5);
+  EXPECT_FALSE(stage.click(generated_example(), 0.05, 0.4).go_to_frame);
+}
+
+TEST(Panels, AClickInTimingsGoesToTheFrameThere) {
+  PanelStage stage("timings", {});
+  const auto frame = stage.click(generated_example(), 0.95, 0.2).go_to_frame;
+  ASSERT_TRUE(frame);
+  EXPECT_GE(*frame, 11);
+}
+
+TEST(Panels, ANewFrameIsShownAtOnce) {
+  PanelStage stage("input", {});
+  const cv::Mat before = stage.render(generated_example());
+  SessionView other = generated_example();
+  auto current = std::make_shared<FrameView>(*other.current);
+  current->frame.colour = cv::Mat(current->frame.colour.size(), CV_8UC3, cv::Scalar(200, 40, 90));
+  other.current = current;
+  EXPECT_FALSE(images_agree(stage.render(other), before, {}));
+}
+
+TEST(Panels, GoldenImages) {
+  for (const auto& [name, theme] : {std::pair{"union_mask", ThemeName::kDark},
+                                    {"features_before", ThemeName::kLight},
+                                    {"errors", ThemeName::kDark},
+                                    {"timeline", ThemeName::kLight}}) {
+    PanelStage stage(name, {theme, 1.0F});
+    EXPECT_TRUE(matches_golden(stage.render(generated_example()), std::string("panel_") + name));
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
