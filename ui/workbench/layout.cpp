@@ -159,7 +159,7 @@ LayoutNode default_layout() {
                  divide(0.55, kColumns,
                         {divide(0.25, kRows, {tile(0.6, "compensated"), tile(0.4, "inspector")}),
                          tile(0.39, "trajectory"),
-                         divide(0.36, kRows, {tile(0.54, "errors"), tile(0.46, "timeline")})})});
+                         divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
 }
 
 }  // namespace stillpoint
