@@ -64,6 +64,8 @@ std::string position_text(const Pose& pose) {
 }
 
 Rows record_rows(const SessionView& session, const FrameRecord& r) {
+  // Only methods that judge by homographies have rounds.
+  const bool rounds = r.motion_rounds > 0;
   Rows rows{
       {"Frame", fmt::format("{} of {}", r.index, session.frame_count)},
       {"Time", fmt::format("{:.3f} s", r.timestamp - series_start(session))},
@@ -80,9 +82,9 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
       {"Features removed", fmt::format("{}", r.features_removed)},
       {"Features kept", fmt::format("{}", r.features_kept)},
       {"Mask", fmt::format("{:.2f} % of the pixels", 100.0 * r.mask_share)},
-      {"Motion rounds", fmt::format("{}", r.motion_rounds)},
-      {"Static tracks", fmt::format("{}", r.static_tracks)},
-      {"Homography RMS", fmt::format("{:.3f} px", r.homography_rms_px)},
+      {"Motion rounds", rounds ? fmt::format("{}", r.motion_rounds) : "–"},
+      {"Static tracks", rounds ? fmt::format("{}", r.static_tracks) : "–"},
+      {"Homography RMS", rounds ? fmt::format("{:.3f} px", r.homography_rms_px) : "–"},
       {"Matches", fmt::format("{}", r.matches)},
       {"Inliers", fmt::format("{}", r.inliers)},
       {"Reprojection RMS", fmt::format("{:.3f} px", r.rms_px)},

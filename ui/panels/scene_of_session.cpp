@@ -12,6 +12,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
+constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
 Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()); }
@@ -98,8 +99,8 @@ SceneBounds sight_of(const SceneData& data) {
     for (const ScenePoint& point : data.points) along.push_back(static_cast<double>(point.position[axis]));
     std::sort(along.begin(), along.end());
     const double low = along[along.size() / 10], high = along[along.size() - 1 - along.size() / 10];
-    box.low[axis] += 0.5 * std::min(0.0, low - box.low[axis]);
-    box.high[axis] += 0.5 * std::max(0.0, high - box.high[axis]);
+    box.low[axis] += kRoomShare * std::min(0.0, low - box.low[axis]);
+    box.high[axis] += kRoomShare * std::max(0.0, high - box.high[axis]);
   }
   return box;
 }

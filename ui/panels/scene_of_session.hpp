@@ -27,7 +27,7 @@ struct SessionScene {
   std::vector<std::vector<PathFrame>> frames_of_path;
 };
 
-/// What to bring into sight at first: the paths, and half the way out to where most map points lie. Paths
+/// What to bring into sight at first: the paths, and a part of the way out to where most map points lie. Paths
 /// alone would hide the room the camera moves in, and points alone the way it went.
 [[nodiscard]] SceneBounds sight_of(const SceneData& data);
 
