@@ -82,6 +82,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     result.scores.push_back(score_frame(processed, oracle ? known : truth.get()));
     if (options.measure_orb_unit && frame.readable()) units.push_back(orb_unit_ms(frame.gray));
     if (options.on_frame) options.on_frame(processed);
+    if (!options.keep_features) processed.record.features = {};
     result.records.push_back(std::move(processed.record));
   }
   result.orb_unit_ms = median(std::move(units));
