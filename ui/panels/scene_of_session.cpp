@@ -20,6 +20,7 @@ Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<
 /// The part of the ground truth the run has come by.
 ScenePath truth_path(const SessionView& session) {
   ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
+  if (session.run->records.empty()) return path;
   const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
   double before = -1.0;
   for (const StampedPose& pose : session.ground_truth) {

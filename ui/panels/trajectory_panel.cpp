@@ -17,7 +17,7 @@ class TrajectoryPanel final : public NamedPanel {
   explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (session.run->trajectory.empty()) {
+    if (session.run->records.empty() || session.run->trajectory.empty()) {
       draw_absent(frame, session.run->records.empty()
                              ? "No frame has been processed yet."
                              : "No frame has a pose yet, so there is no trajectory.");
