@@ -8,6 +8,8 @@ void add_commands(CLI::App& app) {
   add_benchmark_command(app);
   add_generate_command(app);
   add_motion_command(app);
+  add_snapshot_command(app);
+  add_view_command(app);
   add_config_command(app);
 }
 

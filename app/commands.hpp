@@ -15,6 +15,11 @@ void add_evaluate_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
+void add_snapshot_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_config_command(CLI::App& app);
+
+/// Opens the window on the generated demo: what `stillpoint` alone does.
+void view_demo();
 
 }  // namespace stillpoint

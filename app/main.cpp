@@ -30,10 +30,11 @@ int main(int argc, char** argv) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move",
                "stillpoint"};
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   stillpoint::add_commands(app);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) stillpoint::view_demo();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? (output_arrived() ? 0 : 1) : 2;
   } catch (const stillpoint::Interrupted& interrupted) {

@@ -131,6 +131,7 @@ std::vector<Parameter> parameters(Config& c) {
   number("tracking.pnp_threshold_px", &t.pnp_threshold_px, 0.5, 50, "px", "inlier threshold for EPnP");
   number("tracking.refine_iterations", &t.refine_iterations, 1, 100, "steps", "Levenberg-Marquardt steps a round of eq. (5)");
   number("tracking.refine_rounds", &t.refine_rounds, 1, 10, "rounds", "rounds of eq. (5), outliers told apart again after each");
+  number("tracking.correct_rolling_shutter", &t.correct_rolling_shutter, 0, 1, "", "1 carries features to where their frame's middle row would show them");
   number("tracking.correct_depth_lag", &t.correct_depth_lag, 0, 1, "", "1 carries depth taken at another time than colour to colour's time");
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "", "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 

@@ -70,6 +70,7 @@ struct TrackingConfig {
   double pnp_threshold_px = 4.0;          ///< inlier threshold for EPnP at level 0
   int refine_iterations = 10;             ///< Levenberg-Marquardt steps a round of eq. (5)
   int refine_rounds = 4;                  ///< rounds, outliers reclassified after each
+  int correct_rolling_shutter = 1;        ///< 1: features are carried to where their frame's middle row would show them
   int correct_depth_lag = 1;              ///< 1: depth taken at another time than colour is carried to colour's time
   double depth_weight = 1.0;              ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
 };

@@ -24,6 +24,13 @@ Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2
   return camera;
 }
 
+/// The first Kinect's and the Xtion's colour sensor, which TUM's and Bonn's sequences were filmed with, takes nearly the
+/// whole time between frames to read an image.
+Camera with_kinect_readout(Camera camera) {
+  camera.readout_s = 0.030;
+  return camera;
+}
+
 std::vector<double> distortion(const Camera& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
 
 }  // namespace
@@ -61,14 +68,14 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
 const std::vector<Camera>& known_cameras() {
   // freiburg2's depth reads about 4 % short at 5000 per metre; 5208 is what ORB-SLAM2 uses.
   static const std::vector<Camera> cameras = {
-      with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989), 0.262383, -0.953104, -0.005358,
-                      0.002628, 1.163314),
-      with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0), 0.231222, -0.784899,
-                      -0.003257, -0.000105, 0.917205),
-      make("freiburg3", 535.4, 539.2, 320.1, 247.6),
+      with_kinect_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989), 0.262383,
+                                          -0.953104, -0.005358, 0.002628, 1.163314)),
+      with_kinect_readout(with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0),
+                                          0.231222, -0.784899, -0.003257, -0.000105, 0.917205)),
+      with_kinect_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6)),
       make("icl_nuim", 481.20, 480.00, 319.50, 239.50),
-      with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903, -0.099343, -0.000730,
-                      -0.000144, 0.0),
+      with_kinect_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903,
+                                          -0.099343, -0.000730, -0.000144, 0.0)),
       make("generated", 535.4, 539.2, 320.1, 247.6),
       make("ros_default", 525.0, 525.0, 319.5, 239.5),
   };
@@ -110,7 +117,7 @@ Camera read_camera(const std::string& path) {
   camera.name = path;
   const std::pair<const char*, double*> reals[] = {
       {"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}, {"k1", &camera.k1},
-      {"k2", &camera.k2}, {"p1", &camera.p1}, {"p2", &camera.p2}, {"k3", &camera.k3}, {"depth_scale", &camera.depth_scale}};
+      {"k2", &camera.k2}, {"p1", &camera.p1}, {"p2", &camera.p2}, {"k3", &camera.k3}, {"depth_scale", &camera.depth_scale}, {"readout_s", &camera.readout_s}};
   const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
   for (auto&& [key, node] : table) {
     const std::string where = fmt::format("{}:{}: {}", path, node.source().begin.line, key.str());
@@ -138,6 +145,7 @@ Camera read_camera(const std::string& path) {
     if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));
   if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
+  if (std::abs(camera.readout_s) > 0.2) throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
   return camera;
 }
 

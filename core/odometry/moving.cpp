@@ -1,5 +1,5 @@
-// Method `stillpoint`'s part of Odometry: a pose from what was still so far, what moves under that pose, and the pose
-// again without it.
+// Method `stillpoint`'s part of Odometry: what is remembered to move, what moves under a first pose, and what the next
+// frame is to know of it.
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
@@ -10,56 +10,42 @@
 
 namespace stillpoint {
 
-void Odometry::track_and_detect(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
-  FrameRecord& record = result.record;
-  Stopwatch watch;
-  const auto view = std::make_shared<const RgbdView>(
-      make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
-  if (!last_) {
-    Current current = remove_moving(frame, found, {}, record);
-    initialise(frame, current, record);
-    record.features = std::move(current.records);
-  } else {
-    const Pose predicted = predicted_camera_from_world();
-    const cv::Mat remembered = remembered_mask(*view, predicted, frame.gray.size());
-    record.ms.motion += watch.lap();
-    Current first = remove_moving(frame, found, remembered, record);
-    first.camera_from_world = predicted;
-    first.seek_consensus = true;
-    first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
-    const bool estimated = estimate(first, record);
-    watch.lap();
-    result.mask = remembered;
-    if (estimated && frame.has_depth()) {
-      const Pose previous_from_current =
-          past_views_.empty() ? Pose::Identity() : past_views_.back().camera_from_world * first.camera_from_world.inverse();
-      result.depth_motion = detect_depth_motion(*view, frame.depth, reference_views(frame.index, first.camera_from_world),
-                                                memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
-      result.mask = result.depth_motion.mask;
-      record.mask_share = result.depth_motion.mask_share;
-      purge_moving_points(frame, result.mask, first.camera_from_world);
-    }
-    record.ms.motion += watch.lap();
-    Current current = remove_moving(frame, found, result.mask, record);
-    current.camera_from_world = estimated ? first.camera_from_world : predicted;
-    track(frame, current, record);
-    record.features = std::move(current.records);
+cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
+  const Stopwatch watch;
+  view_ = std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+  cv::Mat mask;
+  if (memory_ && !past_views_.empty()) {
+    const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
+    const cv::Mat prior = carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion);
+    cv::resize(prior > config_.depth_motion.moving_log_odds, mask, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
   }
-  if (!record.estimated || !frame.has_depth()) return;
-  memory_ = MotionMemory{view, result.depth_motion.log_odds.empty() ? cv::Mat::zeros(view->depth.size(), CV_32FC1)
-                                                                    : result.depth_motion.log_odds};
-  past_views_.push_back({frame.index, view, record.world_from_camera.inverse()});
-  while (past_views_.size() > 1 && past_views_[1].frame_index <= frame.index - config_.depth_motion.far_reference)
-    past_views_.pop_front();
+  record.ms.motion += watch.milliseconds();
+  return mask;
 }
 
-cv::Mat Odometry::remembered_mask(const RgbdView& view, const Pose& predicted, const cv::Size& size) const {
-  if (!memory_ || past_views_.empty()) return {};
-  const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
-  const cv::Mat prior = carry_memory(view, *memory_, previous_from_current, config_.depth_motion);
-  cv::Mat mask;
-  cv::resize(prior > config_.depth_motion.moving_log_odds, mask, size, 0, 0, cv::INTER_NEAREST);
-  return mask;
+void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
+  if (!frame.has_depth()) return;
+  const Stopwatch watch;
+  const Pose previous_from_current =
+      past_views_.empty() ? Pose::Identity() : past_views_.back().camera_from_world * camera_from_world.inverse();
+  result.depth_motion = detect_depth_motion(*view_, frame.depth, reference_views(frame.index, camera_from_world),
+                                            memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
+  result.mask = result.depth_motion.mask;
+  result.record.mask_share = result.depth_motion.mask_share;
+  purge_moving_points(frame, result.mask, camera_from_world);
+  result.record.ms.motion += watch.milliseconds();
+}
+
+void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
+  if (!result.record.estimated || !frame.has_depth()) return;
+  if (!view_)
+    view_ = std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+  const cv::Mat& log_odds = result.depth_motion.log_odds;
+  memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
+  past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});
+  while (past_views_.size() > 1 && past_views_[1].frame_index <= frame.index - config_.depth_motion.far_reference)
+    past_views_.pop_front();
+  view_.reset();
 }
 
 std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose& camera_from_world) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/odometry/mapping.hpp"
+#include "core/odometry/rolling_shutter.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -40,17 +41,9 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
     const auto [found, feature_ms] = features.get();
     record.ms.features = feature_ms;
 
-    if (config_.run.method == "stillpoint") {
-      track_and_detect(frame, found, result);
-    } else {
-      Current current = remove_moving(frame, found, result.mask, record);
-      if (last_) current.camera_from_world = predicted_camera_from_world();
-      if (last_)
-        track(frame, current, record);
-      else
-        initialise(frame, current, record);
-      record.features = std::move(current.records);
-    }
+    Current current = last_ ? track_frame(frame, found, result) : initialise(frame, found, result);
+    record.features = std::move(current.records);
+    if (config_.run.method == "stillpoint") remember_view(frame, result);
   }
   record.map_points = static_cast<int>(map_.point_count());
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
@@ -108,7 +101,7 @@ void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult
 }
 
 Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
-                                          FrameRecord& record) const {
+                                          const Vector6d& velocity, FrameRecord& record) const {
   Current current;
   FeatureSet all;
   all.keypoints = found.keypoints;
@@ -116,9 +109,11 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures&
   std::vector<cv::Point2f> pixels;
   cv::KeyPoint::convert(found.keypoints, pixels);
   all.undistorted = camera_.undistort(pixels);
-  const double lag = config_.tracking.correct_depth_lag != 0 ? frame.depth_timestamp - frame.timestamp : 0.0;
+  const double lag = depth_lag(frame);
   all.depth = lag == 0.0 ? depth_at(pixels, frame.depth)
-                         : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity_ * lag));
+                         : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity * lag));
+  if (config_.tracking.correct_rolling_shutter != 0)
+    correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
   current.records.resize(found.keypoints.size());
@@ -142,18 +137,47 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures&
   return current;
 }
 
-void Odometry::initialise(const Frame& frame, Current& current, FrameRecord& record) {
+Odometry::Current Odometry::initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
+  FrameRecord& record = result.record;
+  Current current = remove_moving(frame, found, result.mask, velocity_, record);
   const auto& depth = current.features->depth;
   const auto with_depth = std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; });
   if (with_depth < kMinFeaturesToBegin) {
     mark_lost(record, FrameStatus::lost,
               fmt::format("only {} features with depth; a map begins with {}", with_depth, kMinFeaturesToBegin));
-    return;
+    return current;
   }
   record.status = FrameStatus::initialised;
   record.estimated = true;
   add_keyframe(frame, current, record);
   remember(current, record);
+  return current;
+}
+
+Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
+  FrameRecord& record = result.record;
+  const bool finds_movers_by_pose = config_.run.method == "stillpoint";
+  const bool taken_at_once = (camera_.readout_s == 0.0 || config_.tracking.correct_rolling_shutter == 0) &&
+                             (depth_lag(frame) == 0.0);
+  Pose start = predicted_camera_from_world();
+  Vector6d velocity = velocity_;
+  if (finds_movers_by_pose || !taken_at_once) {
+    // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only then.
+    if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
+    Current first = remove_moving(frame, found, result.mask, velocity_, record);
+    first.camera_from_world = start;
+    first.seek_consensus = finds_movers_by_pose;
+    first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
+    if (estimate(first, record)) {
+      start = first.camera_from_world;
+      velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
+      if (finds_movers_by_pose) detect_by_pose(frame, start, result);
+    }
+  }
+  Current current = remove_moving(frame, found, result.mask, velocity, record);
+  current.camera_from_world = start;
+  track(frame, current, record);
+  return current;
 }
 
 bool Odometry::estimate(Current& current, FrameRecord& record) {
@@ -281,6 +305,10 @@ void Odometry::mark_lost(FrameRecord& record, FrameStatus status, const std::str
 
 Pose Odometry::last_camera_from_world() const {
   return last_->camera_from_reference * map_.pose_of(last_->reference_keyframe);
+}
+
+double Odometry::depth_lag(const Frame& frame) const {
+  return config_.tracking.correct_depth_lag != 0 && frame.has_depth() ? frame.depth_timestamp - frame.timestamp : 0.0;
 }
 
 double Odometry::elapsed() const {

@@ -79,12 +79,14 @@ class Odometry {
   void apply_due_bundle(FrameRecord& record, bool now);
   void detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
   [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
-                                      FrameRecord& record) const;
-  void track_and_detect(const Frame& frame, const OrbFeatures& found, FrameResult& result);
-  [[nodiscard]] cv::Mat remembered_mask(const RgbdView& view, const Pose& predicted, const cv::Size& size) const;
+                                      const Vector6d& velocity, FrameRecord& record) const;
+  [[nodiscard]] Current track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
+  void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
+  void remember_view(const Frame& frame, const FrameResult& result);
   [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index, const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
-  void initialise(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
   void track(const Frame& frame, Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate(Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record);
@@ -97,6 +99,7 @@ class Odometry {
   void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
   void remember(const Current& current, FrameRecord& record);
   void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
+  [[nodiscard]] double depth_lag(const Frame& frame) const;  // s, of depth after colour, as far as it is to be corrected
   [[nodiscard]] double elapsed() const;
   [[nodiscard]] Pose predicted_camera_from_world() const;
   [[nodiscard]] Pose last_camera_from_world() const;
@@ -116,6 +119,7 @@ class Odometry {
   std::optional<PendingBundle> pending_;
   std::deque<PastView> past_views_;           // newest last: what method `stillpoint` compares with
   std::optional<MotionMemory> memory_;        // of the newest past view
+  std::shared_ptr<const RgbdView> view_;      // of the frame at hand
 };
 
 }  // namespace stillpoint

@@ -10,6 +10,25 @@
 namespace stillpoint {
 namespace {
 
+/// EVALUATION.md's unit of speed: one detectAndCompute of 1000 features on this frame, by OpenCV and one thread.
+double orb_unit_ms(const cv::Mat& gray) {
+  static const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000, 1.2F, 8);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors;
+  const Stopwatch watch;
+  orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors);
+  return watch.milliseconds();
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
 std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map) {
   std::vector<SavedKeyframe> saved;
   for (const auto& [id, keyframe] : map.keyframes())
@@ -29,33 +48,15 @@ std::vector<SavedPoint> saved_points(const LocalMap& map) {
   return saved;
 }
 
-void collect_trajectories(const LocalMap& map, RunResult& result) {
-  for (const FrameRecord& record : result.records) {
+Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records) {
+  Trajectory trajectory;
+  for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
-    result.live.push_back({record.timestamp, record.world_from_camera});
     const Pose camera_from_world = record.camera_from_reference * map.pose_of(record.reference_keyframe);
-    result.trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
+    trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
   }
+  return trajectory;
 }
-
-/// EVALUATION.md's unit of speed: one detectAndCompute of 1000 features on this frame, by OpenCV and one thread.
-double orb_unit_ms(const cv::Mat& gray) {
-  static const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000, 1.2F, 8);
-  std::vector<cv::KeyPoint> keypoints;
-  cv::Mat descriptors;
-  const Stopwatch watch;
-  orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors);
-  return watch.milliseconds();
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 RunResult run_sequence(const FrameSource& source, const Config& config, const RunOptions& options) {
   RunResult result;
@@ -81,11 +82,14 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     result.scores.push_back(score_frame(processed, oracle ? known : truth.get()));
     if (options.measure_orb_unit && frame.readable()) units.push_back(orb_unit_ms(frame.gray));
     if (options.on_frame) options.on_frame(processed);
+    if (!options.keep_features) processed.record.features = {};
     result.records.push_back(std::move(processed.record));
   }
   result.orb_unit_ms = median(std::move(units));
   odometry.finish();
-  collect_trajectories(odometry.map(), result);
+  for (const FrameRecord& record : result.records)
+    if (record.estimated) result.live.push_back({record.timestamp, record.world_from_camera});
+  result.trajectory = trajectory_so_far(odometry.map(), result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
   return result;

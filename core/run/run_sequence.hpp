@@ -26,6 +26,15 @@ struct SavedKeyframe {
   StampedPose pose;
 };
 
+/// All keyframes of a map, those that left it included, in order of time.
+[[nodiscard]] std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map);
+
+/// All points of a map, by id.
+[[nodiscard]] std::vector<SavedPoint> saved_points(const LocalMap& map);
+
+/// The estimated poses among `records`, hung on their reference keyframes as these stand in the map now.
+[[nodiscard]] Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records);
+
 /// A whole sequence by one method.
 struct RunResult {
   Config config;
@@ -47,6 +56,7 @@ struct RunOptions {
   int first = 0;                                  ///< frame to begin with
   int count = 0;                                  ///< frames to process; 0 = to the end
   const std::atomic<bool>* stop = nullptr;        ///< when it turns true the run ends after the frame at hand
+  bool keep_features = false;                     ///< leave each record its features: 25 kB a frame, for who shows them
   bool measure_orb_unit = false;                  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
   std::function<void(const FrameResult&)> on_frame;  ///< called after each frame, from the calling thread
 };

@@ -7,6 +7,7 @@
 #include "core/odometry/feature_set.hpp"
 #include "core/odometry/matching.hpp"
 #include "core/odometry/orb_extractor.hpp"
+#include "core/odometry/rolling_shutter.hpp"
 
 namespace stillpoint {
 namespace {
@@ -170,6 +171,47 @@ TEST(FeatureSet, DepthTakenFromElsewhereIsCarriedToNow) {
     EXPECT_NEAR(z, plane_depth((pixel.x - camera.cx) / camera.fx), 0.002);
     EXPECT_GT(std::abs(depth_at({pixel}, depth).front() - z), 0.03) << "without being carried it is off";
   }
+}
+
+TEST(RollingShutter, FeaturesComeToWhereTheMiddleRowSeesThem) {
+  // A camera that moves and turns; each point is projected at the very moment its row is read.
+  Camera camera = camera_by_name("generated");
+  camera.readout_s = 0.03;
+  Vector6d velocity;
+  velocity << 0.4, -0.2, 0.3, 0.1, -0.5, 0.2;
+  const std::vector<Eigen::Vector3d> points = {{-0.5, -0.6, 1.5}, {0.4, 0.1, 1.0}, {0.3, 0.7, 2.0}, {-0.2, 0.45, 1.2}};
+  std::vector<cv::Point2f> pixels, undistorted;
+  std::vector<float> depth;
+  for (const Eigen::Vector3d& p : points) {
+    Eigen::Vector3d seen = p;
+    for (int i = 0; i < 10; ++i) {  // the row decides the moment, the moment the row
+      const double moment = ((camera.project(seen).y() + 0.5) / camera.height - 0.5) * camera.readout_s;
+      seen = se3_exp(velocity * moment) * p;
+    }
+    const Eigen::Vector2d pixel = camera.project(seen);
+    pixels.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    depth.push_back(static_cast<float>(seen.z()));
+  }
+  undistorted = pixels;
+  correct_rolling_shutter(camera, velocity, pixels, undistorted, depth);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d at_once = camera.project(points[i]);
+    EXPECT_NEAR(undistorted[i].x, at_once.x(), 0.05) << i;
+    EXPECT_NEAR(undistorted[i].y, at_once.y(), 0.05) << i;
+    EXPECT_NEAR(depth[i], points[i].z(), 1e-4) << i;
+    largest = std::max(largest, std::abs(pixels[i].x - at_once.x()));
+  }
+  EXPECT_GT(largest, 1.0) << "uncorrected they are off";
+}
+
+TEST(RollingShutter, AGlobalShutterIsLeftAlone) {
+  Vector6d velocity = Vector6d::Constant(1.0);
+  std::vector<cv::Point2f> pixels = {{10, 20}}, undistorted = pixels;
+  std::vector<float> depth = {1.5F};
+  correct_rolling_shutter(camera_by_name("generated"), velocity, pixels, undistorted, depth);
+  EXPECT_EQ(undistorted[0], pixels[0]);
+  EXPECT_EQ(depth[0], 1.5F);
 }
 
 TEST(Matching, TheNearestDescriptorInTheWindowWins) {

@@ -63,6 +63,7 @@ class GeneratedSequence : public FrameSource {
     Frame frame;
     frame.index = index;
     frame.timestamp = timestamp(index);
+    frame.depth_timestamp = frame.timestamp;
     frame.colour = sensor_.colour(ideal.colour, index, seconds);
     cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
     sensor_.depth(ideal, dropout(middle), camera_, index)

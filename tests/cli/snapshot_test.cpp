@@ -1,0 +1,105 @@
+// Images without a display, and a window without one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/cli/run_cli.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Snapshot : public ::testing::Test {
+ protected:
+  [[nodiscard]] CliResult snapshot(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"snapshot", sequence_.path()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_cli(arguments);
+  }
+  [[nodiscard]] std::string out() const { return sequence_.path("out"); }
+
+  SmallSequence sequence_{6};
+};
+
+TEST_F(Snapshot, WritesPanelsAndTheWorkbench) {
+  const CliResult result =
+      snapshot({"--frames", "2,4", "--panels", "workbench,union_mask", "--size", "800x600", "--out", out()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("4 images of 2 frames"));
+  for (const char* name :
+       {"000002_workbench", "000002_union_mask", "000004_workbench", "000004_union_mask"}) {
+    const cv::Mat image = cv::imread(out() + "/" + name + ".png");
+    EXPECT_EQ(image.size(), cv::Size(800, 600)) << name;
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(image, mean, deviation);
+    EXPECT_GT(deviation[0], 5.0) << name;
+  }
+}
+
+TEST_F(Snapshot, GivesTheSameBytesEachTime) {
+  for (const char* folder : {"a", "b"})
+    EXPECT_EQ(
+        snapshot({"--frames", "4", "--panels", "all,workbench", "--out", sequence_.path(folder)}).exit_code,
+        0);
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(sequence_.path("a"))) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(sequence_.folder.read("a/" + name), sequence_.folder.read("b/" + name)) << name;
+    ++compared;
+  }
+  EXPECT_GT(compared, 5);
+}
+
+TEST_F(Snapshot, SaysWhatIsWrongInOneSentence) {
+  expect_one_sentence(snapshot({"--frames", "6", "--out", out()}), "frames 0 to 5");
+  expect_one_sentence(snapshot({"--frames", "two", "--out", out()}), "expected frames like");
+  expect_one_sentence(snapshot({"--panels", "unionmask", "--out", out()}),
+                      "there is no such panel; there are all, workbench");
+  expect_one_sentence(snapshot({"--panels", ",", "--out", out()}), "names no panel");
+  expect_one_sentence(snapshot({"--size", "9x9", "--out", out()}), "--size");
+  expect_one_sentence(snapshot({"--theme", "pink", "--out", out()}), "no theme 'pink'");
+  expect_one_sentence(snapshot({"--layout", sequence_.path("none.json"), "--out", out()}), "cannot be read");
+  sequence_.folder.write("layout.json", std::string("{\"panel\": \"nothing\"}"));
+  expect_one_sentence(snapshot({"--layout", sequence_.path("layout.json"), "--out", out()}),
+                      "no panel 'nothing'");
+  sequence_.folder.write("file", std::string("x"));
+  expect_one_sentence(snapshot({"--out", sequence_.path("file")}), "file");
+  expect_one_sentence(run_cli({"snapshot", sequence_.path("nowhere"), "--out", out()}), "nowhere");
+}
+
+TEST_F(Snapshot, KeepsEarlierImagesUnlessForced) {
+  const std::vector<std::string> wanted = {"--frames", "0", "--panels", "input", "--out", out()};
+  EXPECT_EQ(snapshot(wanted).exit_code, 0);
+  expect_one_sentence(snapshot(wanted), "--force");
+  EXPECT_EQ(snapshot({"--frames", "0", "--panels", "input", "--out", out(), "--force"}).exit_code, 0);
+}
+
+TEST_F(Snapshot, ColourAloneIsEnough) {
+  fs::remove(sequence_.path("depth.txt"));
+  fs::remove(sequence_.path("groundtruth.txt"));
+  const CliResult result = snapshot({"--frames", "3", "--panels", "all", "--out", out()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(cv::imread(out() + "/000003_union_mask.png").empty());
+}
+
+TEST(View, WithoutADisplayNamesSnapshot) {
+  ::unsetenv("DISPLAY");
+  ::unsetenv("WAYLAND_DISPLAY");
+  const SmallSequence sequence(2);
+  expect_one_sentence(run_cli({"view", sequence.path()}), "stillpoint snapshot");
+  expect_one_sentence(run_cli({"view"}), "stillpoint snapshot");
+  expect_one_sentence(run_cli({}), "stillpoint snapshot");
+}
+
+TEST(View, SaysWhatItCannotOpen) {
+  expect_one_sentence(run_cli({"view", "/nowhere/at/all"}), "/nowhere/at/all");
+}
+
+}  // namespace
+}  // namespace stillpoint

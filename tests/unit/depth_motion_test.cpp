@@ -1,0 +1,178 @@
+#include "core/motion/depth_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "core/motion/segments.hpp"
+#include "core/odometry/consensus.hpp"
+
+namespace stillpoint {
+namespace {
+
+const Camera kCamera = camera_by_name("generated");
+
+/// A textured wall two metres off, seen by a camera that slides along x; before it a board one metre off.
+struct Scene {
+  double camera_x = 0.0;      // m
+  double board_x = 0.0;       // m, of the board's middle in the world
+  double board_z = 1.0;       // m
+  bool board = true;
+  double brightness = 0.0;    // grey levels added to all
+
+  static float texture(double x, double y, int salt) {
+    // Smooth bumps of some centimetres, so that small errors of place stay small in brightness.
+    return static_cast<float>(128 + 45 * std::sin(x * 37 + salt) * std::cos(y * 29 + salt) + 30 * std::sin(x * 61 - y * 53));
+  }
+
+  void render(cv::Mat& gray, cv::Mat& depth, cv::Mat* truth = nullptr) const {
+    gray.create(480, 640, CV_8UC1);
+    depth.create(480, 640, CV_32FC1);
+    if (truth) truth->create(480, 640, CV_8UC1);
+    cv::RNG noise(static_cast<std::uint64_t>(1000 + 1e4 * (camera_x + board_x + board_z)));
+    for (int v = 0; v < 480; ++v)
+      for (int u = 0; u < 640; ++u) {
+        const double rx = (u - kCamera.cx) / kCamera.fx, ry = (v - kCamera.cy) / kCamera.fy;
+        const double bx = rx * board_z + camera_x - board_x, by = ry * board_z;
+        const bool on_board = board && std::abs(bx) < 0.2 && std::abs(by) < 0.25;
+        const double z = on_board ? board_z : 2.0;
+        const float value = on_board ? texture(bx, by, 3) : texture(rx * z + camera_x, ry * z, 0);
+        gray.at<uchar>(v, u) = cv::saturate_cast<uchar>(value + brightness + noise.gaussian(2.0));
+        depth.at<float>(v, u) = static_cast<float>(z + noise.gaussian(0.0012 + 0.0019 * z * z));
+        if (truth) truth->at<uchar>(v, u) = on_board ? 255 : 0;
+      }
+  }
+
+  [[nodiscard]] RgbdView view() const {
+    cv::Mat gray, depth;
+    render(gray, depth);
+    return make_rgbd_view(gray, depth, kCamera, DepthMotionConfig{}.factor);
+  }
+};
+
+ReferenceView reference(const Scene& then, const Scene& now) {
+  Pose reference_from_current = Pose::Identity();
+  reference_from_current.translation().x() = now.camera_x - then.camera_x;
+  return {std::make_shared<const RgbdView>(then.view()), reference_from_current};
+}
+
+DepthMotionTrace detect(const Scene& now, const std::vector<ReferenceView>& references, const MotionMemory* memory = nullptr) {
+  cv::Mat gray, depth;
+  now.render(gray, depth);
+  return detect_depth_motion(make_rgbd_view(gray, depth, kCamera, 4), depth, references, memory, Pose::Identity(), {});
+}
+
+double overlap(const cv::Mat& mask, const cv::Mat& truth) {
+  return static_cast<double>(cv::countNonZero(mask & truth)) / std::max(1, cv::countNonZero(mask | truth));
+}
+
+TEST(DepthMotion, NothingMovesUnderAMovingCamera) {
+  // Parallax, and an exposure that changed: neither is motion.
+  const Scene now{0.15, 0.0, 1.0, true, 12.0};
+  const DepthMotionTrace trace = detect(now, {reference({0.10}, now), reference({0.0}, now)});
+  EXPECT_EQ(cv::countNonZero(trace.mask), 0) << "a frame in which nothing moves has an empty mask";
+  EXPECT_EQ(trace.references.size(), 2u);
+}
+
+TEST(DepthMotion, AMoverIsCoveredToItsOutline) {
+  const Scene now{0.06, 0.30};
+  const DepthMotionTrace trace = detect(now, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)});
+  cv::Mat gray, depth, truth;
+  now.render(gray, depth, &truth);
+  EXPECT_GT(overlap(trace.mask, truth), 0.85);
+}
+
+TEST(DepthMotion, MotionAlongTheOpticalAxisIsSeen) {
+  Scene now;
+  now.board_z = 0.9;
+  const DepthMotionTrace trace = detect(now, {reference({}, now)});
+  cv::Mat gray, depth, truth;
+  now.render(gray, depth, &truth);
+  EXPECT_GT(overlap(trace.mask, truth), 0.8);
+}
+
+TEST(DepthMotion, WhatLeavesRevealsBackgroundThatIsTrusted) {
+  // The board was here a moment ago and is gone: what is seen now is the wall, and the wall stands still.
+  Scene now;
+  now.board = false;
+  const DepthMotionTrace trace = detect(now, {reference({}, now)});
+  EXPECT_EQ(cv::countNonZero(trace.mask), 0);
+}
+
+TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
+  const Scene now{0.0, 0.30}, before{0.0, 0.30};
+  const DepthMotionTrace moving = detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
+  ASSERT_GT(cv::countNonZero(moving.mask), 0);
+  MotionMemory memory{std::make_shared<const RgbdView>(before.view()), moving.log_odds};
+  EXPECT_GT(cv::countNonZero(detect(now, {reference(before, now)}, &memory).mask), 0);
+  EXPECT_EQ(cv::countNonZero(detect(now, {reference(before, now)}).mask), 0) << "without memory it stands still";
+  int frames = 0;
+  for (cv::Mat odds = moving.log_odds; frames < 100; ++frames) {
+    memory.log_odds = odds;
+    const DepthMotionTrace trace = detect(now, {reference(before, now)}, &memory);
+    if (cv::countNonZero(trace.mask) == 0) break;
+    odds = trace.log_odds;
+  }
+  EXPECT_GE(frames, 2);
+  EXPECT_LE(frames, 60) << "what stands still for two seconds is furniture again";
+}
+
+TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
+  const DepthMotionTrace alone = detect({}, {});
+  EXPECT_EQ(cv::countNonZero(alone.mask), 0);
+  EXPECT_FALSE(alone.note.empty());
+  const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
+  const DepthMotionTrace blind =
+      detect_depth_motion(make_rgbd_view(gray, none, kCamera, 4), none, {reference({}, {})}, nullptr, Pose::Identity(), {});
+  EXPECT_EQ(cv::countNonZero(blind.mask), 0);
+}
+
+TEST(Segments, NeverCrossADepthEdge) {
+  const RgbdView view = Scene{}.view();
+  cv::Mat labels;
+  const auto segments = segment_surfaces(view, {}, labels);
+  std::vector<std::pair<float, float>> range(segments.size(), {1e9F, 0.0F});
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int l = labels.at<int>(y, x); l >= 0) {
+        auto& r = range[static_cast<std::size_t>(l)];
+        r.first = std::min(r.first, view.depth.at<float>(y, x));
+        r.second = std::max(r.second, view.depth.at<float>(y, x));
+      }
+  for (const auto& r : range)
+    if (r.second > 0) {
+      EXPECT_LT(r.second - r.first, 0.5F);
+    }
+}
+
+TEST(Consensus, AMoverRichInFeaturesDoesNotCaptureTheCamera) {
+  // 300 points on a near thing that goes with the camera, 150 on the room behind it.
+  cv::RNG random(9);
+  Pose truth = Pose::Identity();
+  truth.translation() = Eigen::Vector3d(0.04, 0.0, 0.01);
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < 450; ++i) {
+    const bool mover = i < 300;
+    PoseObservation o;
+    o.depth = mover ? random.uniform(0.6, 0.7) : random.uniform(1.0, 3.5);
+    o.pixel = mover ? Eigen::Vector2d(random.uniform(220.0, 420.0), random.uniform(100.0, 460.0))
+                    : Eigen::Vector2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0));
+    const Eigen::Vector3d in_camera = kCamera.back_project(o.pixel, o.depth);
+    o.point_in_world = mover ? in_camera : Eigen::Vector3d(truth.inverse() * in_camera);
+    o.pixel += Eigen::Vector2d(random.gaussian(0.4), random.gaussian(0.4));
+    observations.push_back(o);
+  }
+  const Pose captured = refine_pose(kCamera, observations, Pose::Identity(), {}).camera_from_world;
+  EXPECT_LT(captured.translation().norm(), 0.02) << "least squares follows the many";
+  const Consensus consensus = consensus_pose(kCamera, observations, {Pose::Identity(), captured}, 200, 1);
+  EXPECT_LT((consensus.camera_from_world.translation() - truth.translation()).norm(), 0.004);
+  int mover_inliers = 0;
+  for (std::size_t i = 0; i < 300; ++i) mover_inliers += consensus.inlier[i];
+  EXPECT_LT(mover_inliers, 30);
+  const Consensus again = consensus_pose(kCamera, observations, {Pose::Identity(), captured}, 200, 1);
+  EXPECT_EQ(consensus.camera_from_world.matrix(), again.camera_from_world.matrix());
+  EXPECT_EQ(consensus_pose(kCamera, {}, {Pose::Identity()}, 10, 1).inliers, 0);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,101 @@
+#include "ui/session/actions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace stillpoint {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<std::string> titles(const std::vector<const Action*>& actions) {
+  std::vector<std::string> titles;
+  for (const Action* action : actions) titles.push_back(action->title);
+  return titles;
+}
+
+TEST(Actions, RunByNameAndKeyWhileEnabled) {
+  Actions actions;
+  int runs = 0;
+  bool enabled = true;
+  actions.add({.name = "step",
+               .title = "Step forward",
+               .group = "Playback",
+               .keys = {{Key::kRight, {}}},
+               .enabled = [&] { return enabled; },
+               .run = [&] { ++runs; }});
+  EXPECT_TRUE(actions.run("step"));
+  EXPECT_FALSE(actions.run("leap"));
+  EXPECT_EQ(actions.for_key({Key::kRight, {}}), actions.find("step"));
+  EXPECT_EQ(actions.for_key({Key::kRight, {.ctrl = true}}), nullptr);
+  enabled = false;
+  EXPECT_FALSE(actions.run("step"));
+  EXPECT_EQ(actions.for_key({Key::kRight, {}}), nullptr);
+  EXPECT_EQ(runs, 1);
+  EXPECT_EQ(key_text(*actions.find("step")), "Right");
+}
+
+TEST(Actions, NamesAndKeysAreTakenOnce) {
+  Actions actions;
+  actions.add({.name = "a", .title = "A", .group = "G", .keys = {{Key::kA, {}}}, .run = [] {}});
+  EXPECT_THROW(actions.add({.name = "a", .title = "B", .group = "G", .run = [] {}}), std::logic_error);
+  EXPECT_THROW(actions.add({.name = "b", .title = "B", .group = "G", .keys = {{Key::kA, {}}}, .run = [] {}}),
+               std::logic_error);
+}
+
+TEST(Actions, AreFoundByTheirLettersInOrder) {
+  Actions actions;
+  const auto add = [&](const char* title, bool enabled = true) {
+    actions.add({.name = title,
+                 .title = title,
+                 .group = "G",
+                 .enabled = [enabled] { return enabled; },
+                 .run = [] {}});
+  };
+  add("Next lost frame");
+  add("Next keyframe");
+  add("Reset layout");
+  add("Next never", false);
+  EXPECT_THAT(titles(actions.matching("nk")), ElementsAre("Next keyframe"));
+  EXPECT_THAT(titles(actions.matching("NEXT")), ElementsAre("Next keyframe", "Next lost frame"));
+  EXPECT_THAT(titles(actions.matching("l")), ElementsAre("Reset layout", "Next lost frame"));
+  EXPECT_THAT(actions.matching("zebra"), ElementsAre());
+  EXPECT_EQ(actions.matching("").size(), 3U);
+}
+
+SessionView session_at(int index, const std::vector<int>& keyframes, const std::vector<int>& lost,
+                       int count) {
+  auto run = std::make_shared<RunView>();
+  for (int i = 0; i < count; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.status = FrameStatus::tracked;
+    run->records.push_back(record);
+  }
+  for (const int i : keyframes) run->records[static_cast<std::size_t>(i)].keyframe = true;
+  for (const int i : lost) run->records[static_cast<std::size_t>(i)].status = FrameStatus::lost;
+  auto current = std::make_shared<FrameView>();
+  current->index = index;
+  SessionView session;
+  session.run = run;
+  session.current = current;
+  session.frame_count = 100;
+  session.processed = count;
+  return session;
+}
+
+TEST(Navigation, GoesBetweenKeyframesAndToLostFrames) {
+  EXPECT_EQ(next_keyframe(session_at(3, {0, 3, 8, 12}, {}, 20)), 8);
+  EXPECT_EQ(previous_keyframe(session_at(3, {0, 3, 8}, {}, 20)), 0);
+  EXPECT_EQ(previous_keyframe(session_at(0, {0, 3}, {}, 20)), std::nullopt);
+  EXPECT_EQ(next_keyframe(session_at(12, {0, 12}, {}, 20)), std::nullopt);
+  EXPECT_EQ(next_lost_frame(session_at(5, {}, {4, 9, 10}, 20)), 9);
+  EXPECT_EQ(next_lost_frame(session_at(10, {}, {4, 9, 10}, 20)), std::nullopt);
+  // Of frames not processed yet nothing is known.
+  EXPECT_EQ(previous_keyframe(session_at(60, {0, 7}, {}, 20)), 7);
+  EXPECT_EQ(next_keyframe(session_at(60, {0, 7}, {}, 20)), std::nullopt);
+  EXPECT_EQ(next_keyframe(session_at(0, {}, {}, 0)), std::nullopt);
+}
+
+}  // namespace
+}  // namespace stillpoint

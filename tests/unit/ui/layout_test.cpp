@@ -1,0 +1,137 @@
+#include "ui/workbench/layout.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> kKnown = {"a", "b", "c", "d"};
+
+LayoutNode from(const std::string& json) { return parse_layout(json, "file.json", kKnown); }
+
+std::string complaint(const std::string& json) {
+  try {
+    (void)from(json);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Columns of 0.25 and 0.75, the second divided into rows of 0.4 and 0.6.
+const char* const kThree =
+    R"({"columns": [{"share": 0.25, "panel": "a"},
+                    {"share": 0.75, "rows": [{"share": 0.4, "panel": "b"}, {"share": 0.6, "panel": "c"}]}]})";
+
+TEST(Layout, LiesWhereItsSharesSay) {
+  // 1004 px less a gap of 4 is 1000: 250 and 750. 504 less 4 is 500: 200 and 300.
+  const PlacedLayout placed = arrange(from(kThree), {10, 20, 1004, 504}, 4);
+  ASSERT_EQ(placed.panels.size(), 3U);
+  EXPECT_EQ(placed.panels[0].rect, (LayoutRect{10, 20, 250, 504}));
+  EXPECT_EQ(placed.panels[1].rect, (LayoutRect{264, 20, 750, 200}));
+  EXPECT_EQ(placed.panels[2].rect, (LayoutRect{264, 224, 750, 300}));
+  ASSERT_EQ(placed.splitters.size(), 2U);
+  EXPECT_EQ(placed.splitters[0].rect, (LayoutRect{264, 220, 750, 4}));
+  EXPECT_EQ(placed.splitters[1].rect, (LayoutRect{260, 20, 4, 504}));
+  EXPECT_FALSE(placed.splitters[0].upright);
+  EXPECT_TRUE(placed.splitters[1].upright);
+}
+
+TEST(Layout, LeavesNoPixelUnused) {
+  const LayoutNode root = from(
+      R"({"columns": [{"share": 1, "panel": "a"}, {"share": 1, "panel": "b"}, {"share": 1, "panel": "c"}]})");
+  for (float width = 100; width < 140; ++width) {
+    const PlacedLayout placed = arrange(root, {0, 0, width, 50}, 3);
+    float x = 0;
+    for (const PlacedPanel& panel : placed.panels) {
+      EXPECT_EQ(panel.rect.x, x);
+      EXPECT_EQ(panel.rect.width, std::round(panel.rect.width));
+      x += panel.rect.width + 3;
+    }
+    EXPECT_EQ(x - 3, width);
+  }
+}
+
+TEST(Layout, ASplitterMovesBothItsNeighboursAlone) {
+  LayoutNode root = from(kThree);
+  const PlacedLayout before = arrange(root, {0, 0, 1004, 504}, 4);
+  drag(root, before.splitters[1], 50, 90);
+  const PlacedLayout after = arrange(root, {0, 0, 1004, 504}, 4);
+  EXPECT_EQ(after.panels[0].rect.width, 300);
+  EXPECT_EQ(after.panels[1].rect.width, 700);
+  EXPECT_EQ(after.panels[1].rect.height, before.panels[1].rect.height);
+}
+
+TEST(Layout, ASplitterStopsBeforeATileVanishes) {
+  LayoutNode root = from(kThree);
+  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[1], -5000, 90);
+  EXPECT_EQ(arrange(root, {0, 0, 1004, 504}, 4).panels[0].rect.width, 90);
+  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[1], 5000, 90);
+  EXPECT_EQ(arrange(root, {0, 0, 1004, 504}, 4).panels[1].rect.width, 90);
+}
+
+TEST(Layout, NeighboursTakeTheRoomOfWhatIsHidden) {
+  LayoutNode root = from(kThree);
+  remove_panel(root, "b");
+  EXPECT_THAT(panels_of(root), ElementsAre("a", "c"));
+  const PlacedLayout placed = arrange(root, {0, 0, 1004, 504}, 4);
+  EXPECT_EQ(placed.panels[1].rect, (LayoutRect{254, 0, 750, 504}));
+  remove_panel(root, "a");
+  EXPECT_TRUE(root.is_panel());
+  remove_panel(root, "c");
+  EXPECT_EQ(root.panel, "c");
+}
+
+TEST(Layout, PanelsChangePlaces) {
+  LayoutNode root = from(kThree);
+  replace_panel(root, "a", "c");
+  EXPECT_THAT(panels_of(root), ElementsAre("c", "b", "a"));
+  replace_panel(root, "b", "d");
+  EXPECT_THAT(panels_of(root), ElementsAre("c", "d", "a"));
+}
+
+TEST(Layout, ANewPanelHalvesTheLargestTile) {
+  LayoutNode root = from(kThree);
+  add_panel(root, "d", {0, 0, 1000, 500});
+  EXPECT_THAT(panels_of(root), ElementsAre("a", "b", "c", "d"));
+  const PlacedLayout placed = arrange(root, {0, 0, 1000, 500}, 0);
+  EXPECT_EQ(placed.panels[2].rect, (LayoutRect{250, 200, 375, 300}));
+  EXPECT_EQ(placed.panels[3].rect, (LayoutRect{625, 200, 375, 300}));
+  add_panel(root, "d", {0, 0, 1000, 500});
+  EXPECT_EQ(panels_of(root).size(), 4U);
+}
+
+TEST(Layout, ComesBackFromItsFile) {
+  EXPECT_EQ(from(to_json(from(kThree))), from(kThree));
+  const LayoutNode standard = default_layout();
+  EXPECT_EQ(parse_layout(to_json(standard), "file.json", panels_of(standard)), standard);
+}
+
+TEST(Layout, SharesAreScaledAndEqualWithoutAny) {
+  const LayoutNode root = from(R"({"rows": [{"panel": "a", "share": 3}, {"panel": "b", "share": 1}]})");
+  EXPECT_DOUBLE_EQ(root.children[0].share, 0.75);
+  EXPECT_DOUBLE_EQ(from(R"({"rows": [{"panel": "a"}, {"panel": "b"}]})").children[1].share, 0.5);
+}
+
+TEST(Layout, SaysWhatIsWrongWithAFile) {
+  EXPECT_THAT(complaint("{"), HasSubstr("file.json: is no layout: not JSON"));
+  EXPECT_THAT(complaint(R"({"panel": "z"})"), HasSubstr("no panel 'z'; the panels are a, b, c, d"));
+  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a"}, {"panel": "a"}]})"), HasSubstr("'a' is named twice"));
+  EXPECT_THAT(complaint(R"({"rows": []})"), HasSubstr("at least one tile"));
+  EXPECT_THAT(complaint("[]"), HasSubstr("must be an object"));
+  EXPECT_THAT(complaint(R"({"panel": "a", "rows": []})"), HasSubstr("one of"));
+  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a", "share": -1}]})"), HasSubstr("greater than 0"));
+  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a", "share": "x"}]})"), HasSubstr("must be a number"));
+  std::string deep = R"({"panel": "a"})";
+  for (int i = 0; i < 100; ++i) deep = R"({"rows": [)" + deep + "]}";
+  EXPECT_THAT(complaint(deep), HasSubstr("more than 32 times"));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,154 @@
+#include "ui/session/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <random>
+
+#include "core/run/run_report.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFrames = 12;
+
+Config config_of(const std::string& method) {
+  Config config;
+  config.run.method = method;
+  config.features.count = 400;
+  return config;
+}
+
+class SessionTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  [[nodiscard]] RunResult batch() const { return run_sequence(*source_, config_); }
+
+  std::vector<FrameRecord> records_of(const Session& session) const {
+    std::vector<FrameRecord> records;
+    for (int i = 0; i < session.view()->processed; ++i) records.push_back(session.record(i));
+    return records;
+  }
+
+  SmallSequence folder_{kFrames};
+  std::shared_ptr<const FrameSource> source_ = open_sequence(folder_.path());
+  Config config_ = config_of(GetParam());
+};
+
+TEST_P(SessionTest, EqualsABatchRunWhicheverWayOneGoes) {
+  Session session(source_, config_);
+  std::mt19937 random(5);
+  for (int step = 0; step < 30; ++step) {
+    const int wanted = static_cast<int>(random() % kFrames);
+    session.go_to(wanted);
+    EXPECT_EQ(session.view()->current->index, wanted);
+    ASSERT_NE(session.view()->current->record, nullptr);
+    EXPECT_EQ(run_hash({*session.view()->current->record}), run_hash({session.record(wanted)}));
+  }
+  session.go_to(kFrames - 1);
+  const RunResult expected = batch();
+  EXPECT_EQ(run_hash(records_of(session)), run_hash(expected.records));
+  const auto view = session.view();
+  ASSERT_EQ(view->run->trajectory.size(), expected.trajectory.size());
+  for (std::size_t i = 0; i < expected.trajectory.size(); ++i)
+    EXPECT_TRUE(
+        view->run->trajectory[i].world_from_camera.isApprox(expected.trajectory[i].world_from_camera, 0.0));
+  EXPECT_EQ(view->keyframes.size(), expected.keyframes.size());
+  EXPECT_EQ(view->map_points.size(), expected.points.size());
+}
+
+TEST_P(SessionTest, ReplayingAFrameGivesItsImagesAgain) {
+  RunTrack track(*source_, config_, {.checkpoint_every = 5, .max_checkpoints = 2});
+  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  std::vector<FrameResult> results;
+  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  EXPECT_LE(track.checkpoints(), 2);
+  for (const int index : {11, 0, 7, 4, 5}) {
+    const FrameResult& first = results[static_cast<std::size_t>(index)];
+    const FrameResult again = track.replay(index, read);
+    EXPECT_EQ(run_hash({again.record}), run_hash({track.record(index)})) << index;
+    ASSERT_EQ(again.mask.empty(), first.mask.empty()) << index;
+    if (!first.mask.empty()) {
+      EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
+    }
+    if (!first.depth_motion.log_odds.empty()) {
+      EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0)
+          << index;
+    }
+  }
+}
+
+TEST_P(SessionTest, ShowsTheMaskTheMethodUsedAfterManyOtherFrames) {
+  Session session(source_, config_);
+  session.go_to(3);
+  const auto before = session.view()->current;
+  session.go_to(kFrames - 1);
+  // Enough frames in between for what was kept of frame 3 to have gone.
+  for (int i = 4; i < kFrames; ++i) session.go_to(i);
+  session.go_to(3);
+  const auto after = session.view()->current;
+  ASSERT_EQ(before->mask.empty(), after->mask.empty());
+  if (!before->mask.empty()) {
+    EXPECT_EQ(cv::norm(before->mask, after->mask, cv::NORM_INF), 0.0);
+  }
+  EXPECT_EQ(before->motion.rounds.size(), after->motion.rounds.size());
+}
+
+TEST_P(SessionTest, TheWorkerComesToTheSame) {
+  Session session(source_, config_);
+  std::mutex mutex;
+  std::condition_variable changed;
+  session.start([&] {
+    const std::lock_guard lock(mutex);
+    changed.notify_all();
+  });
+  const auto wait_for = [&](auto&& holds) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*session.view()); });
+  };
+  session.request_frame(5);
+  EXPECT_TRUE(
+      wait_for([](const SessionView& view) { return view.current->index == 5 && view.current->record; }));
+  session.request_frame(2);
+  EXPECT_TRUE(wait_for([](const SessionView& view) { return view.current->index == 2; }));
+  session.request_speed(1000);
+  session.request_play(true);
+  EXPECT_TRUE(
+      wait_for([](const SessionView& view) { return view.current->index == kFrames - 1 && !view.playing; }));
+  const RunResult expected = batch();
+  ASSERT_EQ(session.view()->run->records.size(), expected.records.size());
+  for (std::size_t i = 0; i < expected.records.size(); ++i) {
+    EXPECT_EQ(session.view()->run->records[i].inliers, expected.records[i].inliers) << i;
+    EXPECT_TRUE(session.view()->run->records[i].world_from_camera.isApprox(
+        expected.records[i].world_from_camera, 0.0))
+        << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SessionTest, ::testing::Values("none", "paper", "stillpoint"));
+
+TEST(Session, RunsABaselineBesideOtherMethodsAlone) {
+  const SmallSequence folder(4);
+  const std::shared_ptr<const FrameSource> source = open_sequence(folder.path());
+  Session paper(source, config_of("paper"));
+  paper.go_to(3);
+  ASSERT_NE(paper.view()->baseline, nullptr);
+  EXPECT_EQ(paper.view()->baseline->name, "none");
+  EXPECT_EQ(paper.view()->baseline->records.size(), 4U);
+  Session none(source, config_of("none"));
+  none.go_to(3);
+  EXPECT_EQ(none.view()->baseline, nullptr);
+}
+
+TEST(Session, FramesBeyondTheEndsAreTheNearestThereAre) {
+  const SmallSequence folder(3);
+  Session session(open_sequence(folder.path()), config_of("none"));
+  session.go_to(1000);
+  EXPECT_EQ(session.view()->current->index, 2);
+  session.go_to(-5);
+  EXPECT_EQ(session.view()->current->index, 0);
+}
+
+}  // namespace
+}  // namespace stillpoint

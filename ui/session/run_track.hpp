@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "core/odometry/odometry.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
+#include "ui/session/session_view.hpp"
+
+namespace stillpoint {
+
+/// How much a RunTrack keeps.
+struct RunTrackOptions {
+  int checkpoint_every = 25;  ///< frames between copies of the odometry; doubled when there are too many
+  int max_checkpoints = 40;
+  bool keep_features = true;  ///< of the records: most of their size
+  bool keep_times = true;     ///< of the records; without them two runs give the same bytes
+};
+
+/// One method's way through a sequence, as far as it has been processed: records, and copies of the odometry
+/// from which any earlier frame can be processed again exactly as it was.
+class RunTrack {
+ public:
+  using ReadFrame = std::function<Frame(int)>;
+
+  RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options = {});
+
+  /// Processes frame `processed()`, which must be in the sequence.
+  /// @returns images of the motion stage; its record has gone into records()
+  FrameResult process_next(const ReadFrame& read);
+
+  /// Processes a frame that was processed before once more, from the nearest checkpoint on.
+  [[nodiscard]] FrameResult replay(int index, const ReadFrame& read) const;
+
+  [[nodiscard]] int processed() const { return static_cast<int>(records_.size()); }
+  /// All records, without their features: those are most of a record's size.
+  [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
+  /// A record with its features, where they are kept.
+  [[nodiscard]] FrameRecord record(int index) const;
+  [[nodiscard]] const LocalMap& map() const { return odometry_.map(); }
+  [[nodiscard]] const Config& config() const { return odometry_.config(); }
+  [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
+
+  /// The run for panels: records without their features, trajectory and evaluation so far.
+  [[nodiscard]] RunView view() const;
+
+ private:
+  [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const;
+  void keep_checkpoint();
+
+  const FrameSource* source_;
+  RunTrackOptions options_;
+  Odometry odometry_;
+  std::vector<FrameRecord> records_;                  // without features
+  std::vector<std::vector<FeatureRecord>> features_;  // … which are here, where they are kept
+  std::map<int, Odometry> checkpoints_;               // by the frame they process next
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,165 @@
+#include "ui/workbench/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stillpoint {
+namespace {
+
+using Division = LayoutNode::Division;
+
+void place(const LayoutNode& node, const LayoutRect& area, float gap, std::vector<std::size_t>& path,
+           PlacedLayout& placed) {
+  if (node.is_panel()) {
+    placed.panels.push_back({node.panel, area});
+    return;
+  }
+  const bool columns = node.division == Division::kColumns;
+  const float gaps = gap * static_cast<float>(node.children.size() - 1);
+  const float extent = std::max(0.0F, (columns ? area.width : area.height) - gaps);
+  double before = 0.0;
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const double after = i + 1 == node.children.size() ? 1.0 : before + node.children[i].share;
+    // Edges are rounded, not sizes: so errors do not add up.
+    const float low = std::round(static_cast<float>(before) * extent) + gap * static_cast<float>(i);
+    const float high = std::round(static_cast<float>(after) * extent) + gap * static_cast<float>(i);
+    const LayoutRect rect = columns ? LayoutRect{area.x + low, area.y, high - low, area.height}
+                                    : LayoutRect{area.x, area.y + low, area.width, high - low};
+    path.push_back(i);
+    place(node.children[i], rect, gap, path, placed);
+    path.pop_back();
+    if (i + 1 < node.children.size()) {
+      const LayoutRect between = columns ? LayoutRect{area.x + high, area.y, gap, area.height}
+                                         : LayoutRect{area.x, area.y + high, area.width, gap};
+      placed.splitters.push_back({path, i, columns, between, extent});
+    }
+    before = after;
+  }
+}
+
+LayoutNode* find(LayoutNode& node, std::string_view panel) {
+  if (node.is_panel()) return node.panel == panel ? &node : nullptr;
+  for (LayoutNode& child : node.children)
+    if (LayoutNode* found = find(child, panel)) return found;
+  return nullptr;
+}
+
+/// A division of one child is that child; one that divides as its parent does belongs into it.
+void simplify(LayoutNode& node) {
+  for (LayoutNode& child : node.children) simplify(child);
+  if (node.children.size() == 1) {
+    const double share = node.share;
+    LayoutNode only = std::move(node.children.front());
+    node = std::move(only);
+    node.share = share;
+  }
+}
+
+bool erase(LayoutNode& node, std::string_view panel) {
+  for (auto child = node.children.begin(); child != node.children.end(); ++child) {
+    if (!child->is_panel()) {
+      if (erase(*child, panel)) return true;
+      continue;
+    }
+    if (child->panel != panel) continue;
+    node.children.erase(child);
+    const double left = std::accumulate(node.children.begin(), node.children.end(), 0.0,
+                                        [](double sum, const LayoutNode& n) { return sum + n.share; });
+    for (LayoutNode& other : node.children) other.share /= left;
+    return true;
+  }
+  return false;
+}
+
+LayoutNode tile(double share, std::string panel) {
+  LayoutNode node;
+  node.share = share;
+  node.panel = std::move(panel);
+  return node;
+}
+
+LayoutNode divide(double share, Division division, std::vector<LayoutNode> children) {
+  LayoutNode node;
+  node.share = share;
+  node.division = division;
+  node.children = std::move(children);
+  return node;
+}
+
+}  // namespace
+
+PlacedLayout arrange(const LayoutNode& root, const LayoutRect& area, float gap) {
+  PlacedLayout placed;
+  std::vector<std::size_t> path;
+  place(root, area, gap, path, placed);
+  return placed;
+}
+
+void drag(LayoutNode& root, const PlacedSplitter& splitter, float delta, float least) {
+  LayoutNode* parent = &root;
+  for (const std::size_t index : splitter.path) parent = &parent->children.at(index);
+  LayoutNode& first = parent->children.at(splitter.before);
+  LayoutNode& second = parent->children.at(splitter.before + 1);
+  if (splitter.extent <= 0.0F) return;
+  const double both = first.share + second.share;
+  const double minimum = std::min(static_cast<double>(least) / splitter.extent, both / 2.0);
+  first.share =
+      std::clamp(first.share + static_cast<double>(delta) / splitter.extent, minimum, both - minimum);
+  second.share = both - first.share;
+}
+
+std::vector<std::string> panels_of(const LayoutNode& root) {
+  if (root.is_panel()) return {root.panel};
+  std::vector<std::string> panels;
+  for (const LayoutNode& child : root.children)
+    for (std::string& panel : panels_of(child)) panels.push_back(std::move(panel));
+  return panels;
+}
+
+bool contains(const LayoutNode& root, std::string_view panel) {
+  if (root.is_panel()) return root.panel == panel;
+  return std::any_of(root.children.begin(), root.children.end(),
+                     [&](const LayoutNode& child) { return contains(child, panel); });
+}
+
+void remove_panel(LayoutNode& root, std::string_view panel) {
+  if (root.is_panel()) return;
+  erase(root, panel);
+  simplify(root);
+}
+
+void replace_panel(LayoutNode& root, std::string_view panel, const std::string& wanted) {
+  LayoutNode* place = find(root, panel);
+  if (place == nullptr || place->panel == wanted) return;
+  if (LayoutNode* other = find(root, wanted)) other->panel = place->panel;
+  place->panel = wanted;
+}
+
+void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area) {
+  if (contains(root, panel)) return;
+  const PlacedLayout placed = arrange(root, area, 0.0F);
+  const auto largest = std::max_element(placed.panels.begin(), placed.panels.end(),
+                                        [](const PlacedPanel& a, const PlacedPanel& b) {
+                                          return a.rect.width * a.rect.height < b.rect.width * b.rect.height;
+                                        });
+  LayoutNode& place = *find(root, largest->panel);
+  const Division division =
+      largest->rect.width >= largest->rect.height ? Division::kColumns : Division::kRows;
+  place = divide(place.share, division, {tile(0.5, place.panel), tile(0.5, panel)});
+}
+
+LayoutNode default_layout() {
+  using enum Division;
+  // Above, how what moves is found, from left to right; below, what comes of it.
+  return divide(1.0, kRows,
+                {divide(0.47, kColumns,
+                        {tile(0.25, "features_after"), tile(0.25, "forward_mask"),
+                         tile(0.25, "backward_mask"), tile(0.25, "union_mask")}),
+                 divide(0.53, kColumns,
+                        {divide(0.25, kRows, {tile(0.66, "compensated"), tile(0.34, "inspector")}),
+                         tile(0.39, "trajectory"),
+                         divide(0.36, kRows, {tile(0.68, "errors"), tile(0.32, "timeline")})})});
+}
+
+}  // namespace stillpoint

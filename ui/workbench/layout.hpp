@@ -1,0 +1,82 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stillpoint {
+
+// The tiling of the workbench: plain data and arithmetic, without GL or ImGui.
+
+/// A tile: a panel, or a division of its area among children side by side (columns) or one below the other
+/// (rows). A node with children holds no panel.
+struct LayoutNode {
+  enum class Division { kColumns, kRows };
+  std::string panel;  ///< name of the panel; empty with children
+  Division division = Division::kColumns;
+  std::vector<LayoutNode> children;
+  double share = 1.0;  ///< of the parent's extent; siblings' shares add up to 1
+
+  [[nodiscard]] bool is_panel() const { return children.empty(); }
+  bool operator==(const LayoutNode&) const = default;
+};
+
+/// An area in px, origin top left.
+struct LayoutRect {
+  float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
+  bool operator==(const LayoutRect&) const = default;
+};
+
+/// Where a panel lies.
+struct PlacedPanel {
+  std::string panel;
+  LayoutRect rect;
+};
+
+/// The gap between two siblings, by which their shares are changed.
+struct PlacedSplitter {
+  std::vector<std::size_t> path;  ///< to the parent: indices of children, from the root
+  std::size_t before = 0;         ///< index of the child before the gap
+  bool upright = false;           ///< between columns: dragged sideways
+  LayoutRect rect;                ///< px, the gap itself
+  float extent = 0.0F;            ///< px that the parent's children share
+};
+
+struct PlacedLayout {
+  std::vector<PlacedPanel> panels;
+  std::vector<PlacedSplitter> splitters;
+};
+
+/// Lays a tree out in an area, `gap` px between tiles. Positions are whole pixels and leave no px unused.
+[[nodiscard]] PlacedLayout arrange(const LayoutNode& root, const LayoutRect& area, float gap);
+
+/// Moves a splitter by `delta` px; no tile gets smaller than `least` px unless there is no room anyway.
+void drag(LayoutNode& root, const PlacedSplitter& splitter, float delta, float least);
+
+/// Whether a panel is shown, and the panels shown in reading order.
+[[nodiscard]] bool contains(const LayoutNode& root, std::string_view panel);
+[[nodiscard]] std::vector<std::string> panels_of(const LayoutNode& root);
+
+/// Takes a panel out; its neighbours take its place. The last one stays.
+void remove_panel(LayoutNode& root, std::string_view panel);
+
+/// Puts `wanted` where `panel` is; where both are shown they change places.
+void replace_panel(LayoutNode& root, std::string_view panel, const std::string& wanted);
+
+/// Adds a panel that is not shown yet: in one half of the largest tile, divided across its longer side.
+void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
+
+/// What a newcomer sees.
+[[nodiscard]] LayoutNode default_layout();
+
+/// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input"}, {"share": 0.6, "rows": […]}]}.
+[[nodiscard]] std::string to_json(const LayoutNode& root);
+
+/// Reads to_json()'s text. Shares that do not add up to 1 are scaled; left out, they are equal.
+/// @param name of the file, for messages
+/// @param known names of the panels there are
+/// @throws InputError for what is no such JSON, an unknown panel or one named twice
+[[nodiscard]] LayoutNode parse_layout(const std::string& text, const std::string& name,
+                                      const std::vector<std::string>& known);
+
+}  // namespace stillpoint

@@ -1,0 +1,165 @@
+// What lies over the workbench: command palette, sheet of keys, the question what to open.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+#include "ui/theme/icons.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr ImGuiWindowFlags kOverlayFlags =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
+
+/// An overlay centred in x, its top at a share of the height.
+bool begin_overlay(const UiFrame& frame, const char* name, ImVec2 size, float top_share) {
+  size.x = std::min(size.x, frame.size.x - 20.0F);
+  size.y = std::min(size.y, (1.0F - top_share) * frame.size.y - 10.0F);
+  ImGui::SetNextWindowPos({0.5F * (frame.size.x - size.x), top_share * frame.size.y});
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {14.0F * frame.scale, 12.0F * frame.scale});
+  ImGui::PushStyleColor(ImGuiCol_Border, to_vec4(mix(frame.theme.border, frame.theme.accent, 0.5F)));
+  const bool visible = ImGui::Begin(name, nullptr, kOverlayFlags);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  return visible;
+}
+
+std::optional<int> as_frame(const char* query, int frame_count) {
+  int frame = 0;
+  const char* end = query + std::strlen(query);
+  const auto [rest, error] = std::from_chars(query, end, frame);
+  if (error != std::errc() || rest != end || frame < 0 || frame >= frame_count) return std::nullopt;
+  return frame;
+}
+
+/// A row of the palette: icon, title, key at the right. @returns whether it was clicked
+bool palette_row(const UiFrame& frame, const char* icon, const std::string& title, const std::string& key,
+                 bool chosen) {
+  ImGui::PushID(title.c_str());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const bool clicked = ImGui::Selectable("##row", chosen, 0, {width, 1.35F * ImGui::GetFontSize()});
+  const float y = at.y + 0.18F * ImGui::GetFontSize();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText({at.x + 4.0F * frame.scale, y}, to_u32(frame.theme.text_dim), icon);
+  list.AddText({at.x + 30.0F * frame.scale, y}, to_u32(frame.theme.text), title.c_str());
+  ImGui::PushFont(frame.fonts.mono);
+  list.AddText({at.x + width - ImGui::CalcTextSize(key.c_str()).x - 4.0F * frame.scale, y},
+               to_u32(frame.theme.text_dim), key.c_str());
+  ImGui::PopFont();
+  if (chosen) ImGui::SetScrollHereY();
+  ImGui::PopID();
+  return clicked;
+}
+
+}  // namespace
+
+void Workbench::draw_palette() {
+  if (!palette_.open) return;
+  const float scale = frame_->scale, height = 420.0F * scale;
+  if (palette_.opened_now) ImGui::SetNextWindowFocus();
+  if (begin_overlay(*frame_, "##palette", {620.0F * scale, height}, 0.12F)) {
+    if (palette_.opened_now) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0F);
+    if (ImGui::InputTextWithHint("##query", "What to do, or a frame's number", palette_.query,
+                                 sizeof palette_.query))
+      palette_.chosen = 0;
+    draw_palette_list(height);
+  }
+  const bool left = !palette_.opened_now && !ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+  if (left || is_key_pressed(Key::kEscape)) palette_.open = false;
+  palette_.opened_now = false;
+  ImGui::End();
+}
+
+void Workbench::draw_palette_list(float height) {
+  const auto actions = actions_.matching(palette_.query);
+  const auto frame =
+      session_ != nullptr && can_go() ? as_frame(palette_.query, session_->frame_count) : std::nullopt;
+  const int rows = static_cast<int>(actions.size()) + (frame ? 1 : 0);
+  if (is_key_pressed(Key::kDown, true)) ++palette_.chosen;
+  if (is_key_pressed(Key::kUp, true)) --palette_.chosen;
+  palette_.chosen = rows == 0 ? 0 : (palette_.chosen + rows) % rows;
+  const bool entered = is_key_pressed(Key::kEnter) || is_key_pressed(Key::kKeypadEnter);
+  std::function<void()> run;
+  ImGui::BeginChild("rows", {0.0F, height - 70.0F * frame_->scale});
+  int row = 0;
+  if (frame) {
+    const bool chosen = palette_.chosen == row++;
+    if (palette_row(*frame_, icons::kChevronRight, fmt::format("Go to frame {}", *frame), "", chosen) ||
+        (chosen && entered))
+      run = [this, to = *frame] { go_to(to); };
+  }
+  for (const Action* action : actions) {
+    const bool chosen = palette_.chosen == row++;
+    if (palette_row(*frame_, action->icon.c_str(), action->title, key_text(*action), chosen) ||
+        (chosen && entered))
+      run = action->run;
+  }
+  if (rows == 0) ImGui::TextDisabled("Nothing has such a name.");
+  ImGui::EndChild();
+  if (!run) return;
+  palette_.open = false;
+  run();
+}
+
+void Workbench::draw_shortcuts() {
+  if (!shortcuts_open_) return;
+  const float scale = frame_->scale;
+  ImGui::SetNextWindowFocus();
+  if (begin_overlay(*frame_, "##keys", {560.0F * scale, 600.0F * scale}, 0.12F)) {
+    ImGui::PushFont(frame_->fonts.heading);
+    ImGui::TextUnformatted("Keys");
+    ImGui::PopFont();
+    for (const std::string& group : actions_.groups()) {
+      bool first = true;
+      for (const Action& action : actions_.all()) {
+        if (action.group != group || action.keys.empty()) continue;
+        if (first) ImGui::TextDisabled("%s", group.c_str());
+        first = false;
+        ImGui::Indent();
+        ImGui::TextUnformatted(action.title.c_str());
+        ImGui::SameLine(400.0F * scale);
+        ImGui::PushFont(frame_->fonts.mono);
+        ImGui::TextColored(to_vec4(frame_->theme.accent), "%s", key_text(action).c_str());
+        ImGui::PopFont();
+        ImGui::Unindent();
+      }
+    }
+    ImGui::TextDisabled(
+        "On images: wheel zooms, drag pans, double click fits; on plots click goes to a frame.");
+  }
+  ImGui::End();
+  if (is_key_pressed(Key::kEscape) || ImGui::IsMouseClicked(0)) shortcuts_open_ = false;
+}
+
+void Workbench::draw_open_dialog() {
+  if (!open_dialog_.open) return;
+  const float scale = frame_->scale;
+  if (open_dialog_.opened_now) ImGui::SetNextWindowFocus();
+  bool wanted = false;
+  if (begin_overlay(*frame_, "##open", {640.0F * scale, 142.0F * scale}, 0.2F)) {
+    ImGui::PushFont(frame_->fonts.strong);
+    ImGui::TextUnformatted("Open a sequence");
+    ImGui::PopFont();
+    ImGui::TextDisabled("A folder in the TUM RGB-D layout, a folder of colour frames, or generated:KIND");
+    if (open_dialog_.opened_now) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0F);
+    wanted = ImGui::InputText("##path", open_dialog_.path, sizeof open_dialog_.path,
+                              ImGuiInputTextFlags_EnterReturnsTrue);
+    wanted = ImGui::Button("Open") || wanted;
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel") || is_key_pressed(Key::kEscape)) open_dialog_.open = false;
+  }
+  open_dialog_.opened_now = false;
+  ImGui::End();
+  if (!wanted || open_dialog_.path[0] == '\0') return;
+  open_dialog_.open = false;
+  after_frame_ = [this, path = std::string(open_dialog_.path)] { host_.open(path); };
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,99 @@
+#include "ui/workbench/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/out_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The file's text; nothing when it cannot be read.
+std::optional<std::string> read_whole(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) return std::nullopt;
+  return text.str();
+}
+
+Settings from_json(const Json& json, const fs::path& path, const std::vector<std::string>& known) {
+  Settings settings;
+  settings.look.theme = parse_theme(json.value("theme", "dark"));
+  settings.look.scale = std::clamp(json.value("scale", 1.0F), 0.5F, 4.0F);
+  settings.recent = json.value("recent", settings.recent);
+  settings.window_size = json.value("window", settings.window_size);
+  for (int& side : settings.window_size) side = std::clamp(side, 320, 16384);
+  if (json.contains("layout")) settings.layout = parse_layout(json["layout"].dump(), path.string(), known);
+  return settings;
+}
+
+}  // namespace
+
+fs::path settings_path() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
+  if (const std::string folder = variable("XDG_CONFIG_HOME"); !folder.empty())
+    return fs::path(folder) / "stillpoint" / "settings.json";
+  if (const std::string home = variable("HOME"); !home.empty())
+    return fs::path(home) / ".config" / "stillpoint" / "settings.json";
+  return {};
+}
+
+Settings read_settings(const fs::path& path, const std::vector<std::string>& known, std::string* problem) {
+  const auto text = read_whole(path);
+  if (!text) return {};
+  try {
+    return from_json(Json::parse(*text), path, known);
+  } catch (const InputError& error) {
+    if (problem != nullptr) *problem = error.what();
+  } catch (const Json::exception&) {
+    if (problem != nullptr)
+      *problem = fmt::format("{}: is not as the window leaves it; it is begun anew", path.string());
+  }
+  return {};
+}
+
+void write_settings(const fs::path& path, const Settings& settings) {
+  if (path.empty()) return;
+  Json json;
+  json["theme"] = settings.look.theme == ThemeName::kDark ? "dark" : "light";
+  json["scale"] = settings.look.scale;
+  json["window"] = settings.window_size;
+  json["recent"] = settings.recent;
+  if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));
+  prepare_out_folder(path.parent_path(), {}, true);
+  write_text_file(path, json.dump(1) + '\n');
+}
+
+void remember(std::vector<std::string>& recent, const std::string& sequence) {
+  std::erase(recent, sequence);
+  recent.insert(recent.begin(), sequence);
+  if (recent.size() > kRecentKept) recent.resize(kRecentKept);
+}
+
+LayoutNode read_layout(const fs::path& path, const std::vector<std::string>& known) {
+  const auto text = read_whole(path);
+  if (!text)
+    throw InputError(
+        fmt::format("{}: cannot be read; expected a layout as the window saves it", path.string()));
+  const Json json = Json::parse(*text, nullptr, false);
+  // The window's own settings hold a layout too.
+  if (json.is_object() && json.contains("layout"))
+    return parse_layout(json["layout"].dump(), path.string(), known);
+  return parse_layout(*text, path.string(), known);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ui/shell/canvas.hpp"
+#include "ui/workbench/layout.hpp"
+
+namespace stillpoint {
+
+/// What the window remembers from one time to the next.
+struct Settings {
+  Look look{};
+  std::optional<LayoutNode> layout;
+  std::vector<std::string> recent;            ///< sequences, newest first
+  std::array<int, 2> window_size{1600, 900};  ///< screen coordinates
+};
+
+inline constexpr std::size_t kRecentKept = 8;
+
+/// `settings.json` in $XDG_CONFIG_HOME/stillpoint, or in ~/.config/stillpoint; empty where neither is known.
+[[nodiscard]] std::filesystem::path settings_path();
+
+/// The settings a file holds. A file that is not there gives the defaults; one that cannot be used does too,
+/// and says why.
+/// @param known names of the panels there are
+[[nodiscard]] Settings read_settings(const std::filesystem::path& path, const std::vector<std::string>& known,
+                                     std::string* problem = nullptr);
+
+/// @throws InputError when it cannot be written
+void write_settings(const std::filesystem::path& path, const Settings& settings);
+
+/// Puts a sequence in front of those opened before.
+void remember(std::vector<std::string>& recent, const std::string& sequence);
+
+/// Reads a whole layout file.
+/// @throws InputError for a file that cannot be read or is no layout
+[[nodiscard]] LayoutNode read_layout(const std::filesystem::path& path,
+                                     const std::vector<std::string>& known);
+
+}  // namespace stillpoint

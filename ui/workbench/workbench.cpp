@@ -1,0 +1,284 @@
+#include "ui/workbench/workbench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/theme/icons.hpp"
+
+namespace stillpoint {
+namespace {
+
+// Design px.
+constexpr float kGap = 5.0F, kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
+
+constexpr ImGuiWindowFlags kRootFlags =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse;
+
+void begin_root(const UiFrame& frame, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(frame.size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0F);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.background));
+  ImGui::Begin("##workbench", nullptr, kRootFlags | flags);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(3);
+}
+
+/// A rounded surface with a hairline and a heading strip.
+void draw_card(const UiFrame& frame, const LayoutRect& rect, float heading, bool hovered) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float rounding = 6.0F * frame.scale;
+  const ImVec2 low{rect.x, rect.y}, high{rect.x + rect.width, rect.y + rect.height};
+  list.AddRectFilled(low, high, to_u32(frame.theme.panel), rounding);
+  list.AddRectFilled(low, {high.x, low.y + heading},
+                     to_u32(mix(frame.theme.panel, frame.theme.raised, 0.55F)), rounding,
+                     ImDrawFlags_RoundCornersTop);
+  list.AddLine({low.x, low.y + heading}, {high.x, low.y + heading}, to_u32(frame.theme.border));
+  list.AddRect(low, high,
+               to_u32(hovered ? mix(frame.theme.border, frame.theme.accent, 0.45F) : frame.theme.border),
+               rounding);
+}
+
+void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, const LayoutRect& rect,
+                     PanelActions& wanted) {
+  if (rect.width < 8.0F || rect.height < 8.0F) return;
+  ImGui::SetCursorScreenPos({rect.x, rect.y});
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, ImVec4{0, 0, 0, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8.0F * frame.scale, 6.0F * frame.scale});
+  const bool visible =
+      ImGui::BeginChild(panel.name().c_str(), {rect.width, rect.height}, false,
+                        ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  if (visible) panel.draw(frame, session, wanted);
+  ImGui::EndChild();
+}
+
+LayoutRect below_heading(const LayoutRect& rect, float heading) {
+  return {rect.x + 1.0F, rect.y + heading + 1.0F, rect.width - 2.0F, rect.height - heading - 2.0F};
+}
+
+}  // namespace
+
+Workbench::Workbench(std::vector<std::unique_ptr<Panel>> panels, WorkbenchHost host)
+    : panels_(std::move(panels)), host_(std::move(host)) {
+  set_layout(default_layout());
+  add_actions();
+}
+
+std::vector<std::string> Workbench::panel_names() const {
+  std::vector<std::string> names;
+  for (const auto& panel : panels_) names.push_back(panel->name());
+  return names;
+}
+
+Panel* Workbench::find_panel(const std::string& name) const {
+  const auto it =
+      std::find_if(panels_.begin(), panels_.end(), [&](const auto& panel) { return panel->name() == name; });
+  return it == panels_.end() ? nullptr : it->get();
+}
+
+void Workbench::set_layout(LayoutNode layout) {
+  for (const std::string& name : panels_of(layout))
+    if (find_panel(name) == nullptr) remove_panel(layout, name);
+  layout_ = std::move(layout);
+  maximised_.clear();
+}
+
+void Workbench::say(std::string message, bool error) {
+  message_ = std::move(message);
+  message_is_error_ = error;
+}
+
+void Workbench::draw(UiFrame& frame, const SessionView* session) {
+  frame_ = &frame;
+  session_ = session;
+  if (session != nullptr && session->current->index != last_shown_) {
+    const double interval = frame.time_s - last_shown_s_;
+    shown_interval_s_ =
+        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
+    last_shown_ = session->current->index;
+    last_shown_s_ = frame.time_s;
+  }
+  const bool overlay = palette_.open || open_dialog_.open;
+  if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
+
+  begin_root(frame, ImGuiWindowFlags_MenuBar);
+  draw_menu_bar();
+  const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
+  if (session != nullptr) draw_toolbar();
+  const float top = ImGui::GetCursorScreenPos().y;
+  tiles_area_ = {gap, top, frame.size.x - 2.0F * gap, frame.size.y - top - status - 1.0F};
+  if (session != nullptr)
+    draw_tiles(tiles_area_);
+  else
+    draw_start_page(tiles_area_);
+  draw_status_bar(status);
+  ImGui::End();
+
+  draw_shortcuts();
+  draw_palette();
+  draw_open_dialog();
+  frame_ = nullptr;
+  session_ = nullptr;
+  if (const auto after = std::exchange(after_frame_, {})) after();
+}
+
+void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel) {
+  begin_root(frame, 0);
+  const float inset = std::round(4.0F * frame.scale), heading = std::round(kHeading * frame.scale);
+  const LayoutRect rect{inset, inset, frame.size.x - 2.0F * inset, frame.size.y - 2.0F * inset};
+  draw_card(frame, rect, heading, false);
+  const float text_y = rect.y + 0.5F * (heading - ImGui::GetFontSize()), margin = 10.0F * frame.scale;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(frame.fonts.strong, frame.fonts.strong->FontSize, {rect.x + margin, text_y},
+               to_u32(frame.theme.text), panel.title().c_str());
+  const float title_width =
+      frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
+  const auto& records = session.run->records;
+  const double seconds =
+      records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
+  const std::string where =
+      fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
+                  session.frame_count, seconds, session.config.run.method);
+  ImGui::PushFont(frame.fonts.small);
+  const float width =
+      std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
+  draw_clipped_text({rect.x + rect.width - margin - width, rect.y + 0.5F * (heading - ImGui::GetFontSize())},
+                    where, width, to_u32(frame.theme.text_dim));
+  ImGui::PopFont();
+  PanelActions ignored;
+  draw_panel_body(frame, session, panel, below_heading(rect, heading), ignored);
+  ImGui::End();
+}
+
+void Workbench::draw_tiles(const LayoutRect& area) {
+  if (!maximised_.empty()) {
+    draw_tile(maximised_, area);
+    return;
+  }
+  const PlacedLayout placed = arrange(layout_, area, std::round(kGap * frame_->scale));
+  hovered_panel_.clear();
+  for (const PlacedPanel& panel : placed.panels) draw_tile(panel.panel, panel.rect);
+  draw_splitters(placed);
+}
+
+void Workbench::draw_splitters(const PlacedLayout& placed) {
+  const float grip = 2.0F * frame_->scale;
+  for (std::size_t i = 0; i < placed.splitters.size(); ++i) {
+    const PlacedSplitter& splitter = placed.splitters[i];
+    const LayoutRect& rect = splitter.rect;
+    ImGui::SetCursorScreenPos(
+        {rect.x - (splitter.upright ? grip : 0.0F), rect.y - (splitter.upright ? 0.0F : grip)});
+    ImGui::PushID(static_cast<int>(i));
+    const ImVec2 size{rect.width + (splitter.upright ? 2.0F * grip : 0.0F),
+                      rect.height + (splitter.upright ? 0.0F : 2.0F * grip)};
+    ImGui::InvisibleButton("splitter", {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
+    const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
+    ImGui::PopID();
+    if (hovered || active) {
+      ImGui::SetMouseCursor(splitter.upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+      ImGui::GetWindowDrawList()->AddRectFilled({rect.x, rect.y}, {rect.x + rect.width, rect.y + rect.height},
+                                                to_u32(frame_->theme.accent, active ? 0.9F : 0.5F), grip);
+    }
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    const float delta = splitter.upright ? moved.x : moved.y;
+    if (active && delta != 0.0F)
+      after_frame_ = [this, splitter, delta, least = kLeastTile * frame_->scale] {
+        drag(layout_, splitter, delta, least);
+      };
+  }
+}
+
+void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
+  Panel* panel = find_panel(name);
+  if (panel == nullptr) return;
+  const float heading = std::round(kHeading * frame_->scale);
+  const bool hovered =
+      ImGui::IsMouseHoveringRect({rect.x, rect.y}, {rect.x + rect.width, rect.y + rect.height}, false) &&
+      ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows);
+  if (hovered) hovered_panel_ = name;
+  draw_card(*frame_, rect, heading, hovered && maximised_.empty());
+  ImGui::PushID(name.c_str());
+  draw_tile_heading(*panel, rect, heading);
+  PanelActions wanted;
+  draw_panel_body(*frame_, *session_, *panel, below_heading(rect, heading), wanted);
+  ImGui::PopID();
+  carry_out(wanted);
+}
+
+void Workbench::draw_tile_heading(Panel& panel, const LayoutRect& rect, float height) {
+  const float button = height - 4.0F * frame_->scale, margin = 9.0F * frame_->scale;
+  const float buttons = 2.0F * button + 6.0F * frame_->scale;
+  ImGui::PushFont(frame_->fonts.strong);
+  draw_clipped_text({rect.x + margin, rect.y + 0.5F * (height - ImGui::GetFontSize())}, panel.title(),
+                    rect.width - margin - buttons, to_u32(frame_->theme.text));
+  ImGui::PopFont();
+  ImGui::PushStyleColor(ImGuiCol_Button, ImVec4{0, 0, 0, 0});
+  ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame_->theme.text_dim));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+  ImGui::SetCursorScreenPos({rect.x + rect.width - buttons, rect.y + 2.0F * frame_->scale});
+  const bool maximised = maximised_ == panel.name();
+  if (ImGui::Button(maximised ? icons::kRestore : icons::kMaximise, {button, button}))
+    after_frame_ = [this, name = maximised ? std::string() : panel.name()] { maximised_ = name; };
+  ImGui::SetCursorScreenPos(
+      {rect.x + rect.width - buttons + button + 2.0F * frame_->scale, rect.y + 2.0F * frame_->scale});
+  if (ImGui::Button(icons::kBars, {button, button})) ImGui::OpenPopup("tile menu");
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor(2);
+  draw_tile_menu(panel.name());
+}
+
+void Workbench::draw_tile_menu(const std::string& name) {
+  if (!ImGui::BeginPopup("tile menu")) return;
+  const bool maximised = maximised_ == name;
+  if (ImGui::MenuItem(maximised ? "Restore" : "Maximise", "M"))
+    after_frame_ = [this, wanted = maximised ? std::string() : name] { maximised_ = wanted; };
+  if (ImGui::MenuItem("Hide", nullptr, false, maximised_.empty() && !layout_.is_panel()))
+    after_frame_ = [this, name] { remove_panel(layout_, name); };
+  ImGui::Separator();
+  if (ImGui::BeginMenu("Show here", maximised_.empty())) {
+    for (const auto& panel : panels_)
+      if (ImGui::MenuItem(panel->title().c_str(), contains(layout_, panel->name()) ? "swap" : "",
+                          panel->name() == name))
+        after_frame_ = [this, name, wanted = panel->name()] { replace_panel(layout_, name, wanted); };
+    ImGui::EndMenu();
+  }
+  ImGui::EndPopup();
+}
+
+void Workbench::carry_out(const PanelActions& wanted) {
+  if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  if (wanted.set_parameters.empty() || !host_.configure) return;
+  Config config = session_->config;
+  try {
+    for (const auto& [key, value] : wanted.set_parameters) set_parameter(config, key + "=" + value);
+    host_.configure(config);
+  } catch (const std::exception& error) {
+    say(error.what(), true);
+  }
+}
+
+void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
+    list.AddText(at, colour, text.c_str());
+    return;
+  }
+  const char* ellipsis = "…";
+  const float room = width - ImGui::CalcTextSize(ellipsis).x;
+  std::size_t end = text.size();
+  const auto shown = [&] { return ImGui::CalcTextSize(text.c_str(), text.c_str() + end).x; };
+  // Never in the middle of a UTF-8 letter.
+  do {
+    while (end > 0 && (static_cast<unsigned char>(text[--end]) & 0xC0U) == 0x80U) continue;
+  } while (end > 0 && shown() > room);
+  if (end > 0) list.AddText(at, colour, (text.substr(0, end) + ellipsis).c_str());
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+#include "ui/session/actions.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/canvas.hpp"
+#include "ui/workbench/layout.hpp"
+
+namespace stillpoint {
+
+/// What the workbench has done by whoever runs it. Functions left empty are not offered, as in images.
+struct WorkbenchHost {
+  std::function<void(int)> go_to_frame{};
+  std::function<void(bool)> play{};
+  std::function<void(double)> speed{};             ///< frames a second, while playing
+  std::function<void(const Config&)> configure{};  ///< run with this config
+  std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
+};
+
+/// The whole interface: menus, toolbar, tiles with panels, status bar, palette, shortcut sheet, start page.
+/// One function draws it in a window and offscreen alike. Panels keep textures of the GL context it was first
+/// drawn in, which must be current when it goes.
+class Workbench {
+ public:
+  explicit Workbench(std::vector<std::unique_ptr<Panel>> panels, WorkbenchHost host = {});
+
+  /// Draws everything. Without a session it shows the start page.
+  void draw(UiFrame& frame, const SessionView* session);
+
+  /// Draws one panel with a heading of its own over the whole frame.
+  static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel);
+
+  [[nodiscard]] const LayoutNode& layout() const { return layout_; }
+  void set_layout(LayoutNode layout);
+  [[nodiscard]] const std::string& maximised() const { return maximised_; }
+
+  /// Says something in the status bar until something else is said.
+  void say(std::string message, bool error = false);
+  [[nodiscard]] const std::string& message() const { return message_; }
+
+  /// Sequences opened before, newest first, for menu and start page.
+  void set_recent(std::vector<std::string> recent) { recent_ = std::move(recent); }
+
+  [[nodiscard]] const Actions& actions() const { return actions_; }
+  [[nodiscard]] std::vector<std::string> panel_names() const;
+  [[nodiscard]] bool palette_open() const { return palette_.open; }
+  [[nodiscard]] bool shortcuts_open() const { return shortcuts_open_; }
+
+ private:
+  struct Palette {
+    bool open = false, opened_now = false;
+    char query[128] = "";
+    int chosen = 0;
+  };
+  struct OpenDialog {
+    bool open = false, opened_now = false;
+    char path[1024] = "";
+  };
+
+  void add_actions();
+  void add_playback_actions();
+  void add_view_actions();
+  void add_panel_actions();
+  void go_to(int frame);
+  void toggle_panel(const std::string& name);
+  void scale_by(float factor);
+  [[nodiscard]] bool can_go() const { return session_ != nullptr && host_.go_to_frame; }
+  [[nodiscard]] Panel* find_panel(const std::string& name) const;
+
+  void draw_menu_bar();
+  void draw_menu_row();
+  void draw_toolbar();
+  void draw_transport();
+  void draw_frame_slider(float width);
+  void draw_speed();
+  void draw_status_bar(float height);
+  void draw_tiles(const LayoutRect& area);
+  void draw_splitters(const PlacedLayout& placed);
+  void draw_tile(const std::string& name, const LayoutRect& rect);
+  void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
+  void draw_tile_menu(const std::string& name);
+  void draw_palette();
+  void draw_palette_list(float height);
+  void draw_shortcuts();
+  void draw_open_dialog();
+  void draw_start_page(const LayoutRect& area);
+  void carry_out(const PanelActions& wanted);
+  bool action_button(const char* name);
+
+  std::vector<std::unique_ptr<Panel>> panels_;
+  WorkbenchHost host_;
+  Actions actions_;
+  LayoutNode layout_ = default_layout();
+  LayoutRect tiles_area_{};
+  std::string maximised_, hovered_panel_;
+  std::string message_;
+  bool message_is_error_ = false;
+  std::vector<std::string> recent_;
+  Palette palette_;
+  OpenDialog open_dialog_;
+  bool shortcuts_open_ = false;
+  double speed_ = 30.0;  // frames a second
+
+  // For the frame of the interface being drawn only.
+  UiFrame* frame_ = nullptr;
+  const SessionView* session_ = nullptr;
+  std::function<void()> after_frame_;  // what would change the layout while it is drawn
+
+  // How fast frames go by while playing.
+  int last_shown_ = -1;
+  double last_shown_s_ = 0.0, shown_interval_s_ = 0.0;
+};
+
+/// Draws `text` in small type at most `width` px wide, cut with an ellipsis.
+void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour);
+
+}  // namespace stillpoint

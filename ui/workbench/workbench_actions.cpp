@@ -1,0 +1,166 @@
+// The workbench's named actions, in the order of its menus.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ui/theme/icons.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr Modifiers kCtrl{.ctrl = true}, kShift{.shift = true}, kCtrlShift{.ctrl = true, .shift = true};
+
+}  // namespace
+
+void Workbench::add_actions() {
+  actions_.add({.name = "open",
+                .title = "Open a sequence…",
+                .group = "File",
+                .icon = icons::kFolderOpen,
+                .keys = {{Key::kO, kCtrl}},
+                .enabled = [this] { return static_cast<bool>(host_.open); },
+                .run = [this] { open_dialog_ = {.open = true, .opened_now = true}; }});
+  actions_.add({.name = "open_demo",
+                .title = "Open the generated demo",
+                .group = "File",
+                .icon = icons::kFilm,
+                .enabled = [this] { return static_cast<bool>(host_.open); },
+                .run = [this] { after_frame_ = [this] { host_.open("generated:walking_static"); }; }});
+  actions_.add({.name = "quit", .title = "Quit", .group = "File", .keys = {{Key::kQ, kCtrl}}, .run = [this] {
+                  if (frame_ != nullptr) frame_->quit = true;
+                }});
+  add_playback_actions();
+  add_view_actions();
+  add_panel_actions();
+  actions_.add({.name = "palette",
+                .title = "Command palette…",
+                .group = "Help",
+                .icon = icons::kSearch,
+                .keys = {{Key::kP, kCtrlShift}},
+                .run = [this] { palette_ = {.open = true, .opened_now = true}; }});
+  actions_.add({.name = "shortcuts",
+                .title = "Keys",
+                .group = "Help",
+                .icon = icons::kKeyboard,
+                .keys = {{Key::kSlash, kShift}, {Key::kF1, {}}},
+                .run = [this] { shortcuts_open_ = !shortcuts_open_; }});
+}
+
+void Workbench::add_playback_actions() {
+  const auto add = [this](const char* name, const char* title, const char* icon, KeyChord key, bool repeats,
+                          std::function<std::optional<int>()> target) {
+    actions_.add({.name = name,
+                  .title = title,
+                  .group = "Playback",
+                  .icon = icon,
+                  .keys = {key},
+                  .repeats = repeats,
+                  .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .run = [this, target] { go_to(*target()); }});
+  };
+  using Target = std::optional<int>;
+  actions_.add({.name = "play_pause",
+                .title = "Play or pause",
+                .group = "Playback",
+                .icon = icons::kPlay,
+                .keys = {{Key::kSpace, {}}},
+                .enabled = [this] { return session_ != nullptr && host_.play; },
+                .checked = [this] { return session_ != nullptr && session_->playing; },
+                .run = [this] { host_.play(!session_->playing); }});
+  add("step", "Step forward", icons::kStepForward, {Key::kRight, {}}, true, [this]() -> Target {
+    if (session_->current->index + 1 >= session_->frame_count) return std::nullopt;
+    return session_->current->index + 1;
+  });
+  add("step_back", "Step back", icons::kStepBack, {Key::kLeft, {}}, true, [this]() -> Target {
+    if (session_->current->index == 0) return std::nullopt;
+    return session_->current->index - 1;
+  });
+  add("first", "First frame", icons::kFastBack, {Key::kHome, {}}, false, []() -> Target { return 0; });
+  add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false,
+      [this]() -> Target { return std::max(0, session_->processed - 1); });
+  add("last", "Last frame of the sequence", icons::kFlag, {Key::kEnd, kCtrl}, false,
+      [this]() -> Target { return session_->frame_count - 1; });
+  add("next_keyframe", "Next keyframe", icons::kChevronRight, {Key::kRightBracket, {}}, true,
+      [this] { return next_keyframe(*session_); });
+  add("previous_keyframe", "Previous keyframe", icons::kChevronLeft, {Key::kLeftBracket, {}}, true,
+      [this] { return previous_keyframe(*session_); });
+  add("next_lost", "Next lost frame", icons::kWarning, {Key::kL, {}}, true,
+      [this] { return next_lost_frame(*session_); });
+}
+
+void Workbench::add_view_actions() {
+  actions_.add({.name = "toggle_theme",
+                .title = "Light or dark theme",
+                .group = "View",
+                .icon = icons::kContrast,
+                .keys = {{Key::kT, kCtrl}},
+                .run = [this] {
+                  if (frame_ == nullptr) return;
+                  ThemeName& wanted = frame_->wanted_look.theme;
+                  wanted = wanted == ThemeName::kDark ? ThemeName::kLight : ThemeName::kDark;
+                }});
+  constexpr float kStep = 1.1F;
+  actions_.add({.name = "scale_up",
+                .title = "Larger interface",
+                .group = "View",
+                .keys = {{Key::kEqual, kCtrl}, {Key::kEqual, kCtrlShift}},
+                .run = [this] { scale_by(kStep); }});
+  actions_.add({.name = "scale_down",
+                .title = "Smaller interface",
+                .group = "View",
+                .keys = {{Key::kMinus, kCtrl}},
+                .run = [this] { scale_by(1.0F / kStep); }});
+  actions_.add({.name = "scale_reset",
+                .title = "Interface at its own size",
+                .group = "View",
+                .keys = {{Key::k0, kCtrl}},
+                .run = [this] { scale_by(0.0F); }});
+  actions_.add(
+      {.name = "maximise",
+       .title = "Maximise the panel under the mouse, or restore",
+       .group = "View",
+       .icon = icons::kMaximise,
+       .keys = {{Key::kM, {}}},
+       .enabled = [this] { return session_ != nullptr && (!maximised_.empty() || !hovered_panel_.empty()); },
+       .run = [this] { maximised_ = maximised_.empty() ? hovered_panel_ : ""; }});
+  actions_.add({.name = "reset_layout",
+                .title = "Reset layout",
+                .group = "View",
+                .icon = icons::kLayout,
+                .keys = {{Key::kR, kCtrlShift}},
+                .run = [this] { after_frame_ = [this] { set_layout(default_layout()); }; }});
+}
+
+void Workbench::add_panel_actions() {
+  for (const auto& panel : panels_) {
+    const std::string name = panel->name();
+    actions_.add({.name = "panel." + name,
+                  .title = "Show or hide: " + panel->title(),
+                  .group = "Panels",
+                  .checked = [this, name] { return contains(layout_, name); },
+                  .run = [this, name] { after_frame_ = [this, name] { toggle_panel(name); }; }});
+  }
+}
+
+void Workbench::go_to(int frame) {
+  if (!can_go()) return;
+  if (session_->playing && host_.play) host_.play(false);
+  host_.go_to_frame(std::clamp(frame, 0, session_->frame_count - 1));
+}
+
+void Workbench::toggle_panel(const std::string& name) {
+  maximised_.clear();
+  if (contains(layout_, name))
+    remove_panel(layout_, name);
+  else
+    add_panel(layout_, name, tiles_area_);
+}
+
+void Workbench::scale_by(float factor) {
+  if (frame_ == nullptr) return;
+  float& scale = frame_->wanted_look.scale;
+  scale = factor > 0.0F ? std::clamp(scale * factor, 0.5F, 4.0F) : 1.0F;
+}
+
+}  // namespace stillpoint
