@@ -61,6 +61,9 @@ class Viewer {
     session_.reset();
     session_ = std::make_unique<Session>(std::move(source), config_);
     session_->start([] { Window::wake(); });
+    // What moves shows from the first frame that has another to be compared with.
+    session_->request_frame(config_.motion.reference_gap);
+    if (where == kDemo) session_->request_play(true);
     window_.set_title(fmt::format("{} - Stillpoint", session_->source().name()));
     std::error_code ignored;
     remember(settings_.recent,

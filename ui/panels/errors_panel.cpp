@@ -22,7 +22,10 @@ class ErrorsPanel final : public NamedPanel {
                              : "No frame with a pose lies near a ground-truth pose yet.");
       return;
     }
+    // Two plots one below the other where both can be read, else one of them.
+    const bool both = ImGui::GetContentRegionAvail().y > kRoomForBoth * frame.scale;
     Controls controls(frame);
+    if (!both) controls.choice("over", {"1 s", "Frame"}, over_, "What motions are measured over");
     controls.choice("of", {"Translation", "Rotation"}, of_);
     controls.toggle("Log scale", log_, "Errors on a logarithmic axis");
     collect(session);
@@ -30,9 +33,10 @@ class ErrorsPanel final : public NamedPanel {
     Footer footer;
     footer.caption = caption(session);
     const ImVec2 room = room_above(frame, footer);
-    const ImVec2 half{room.x, 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y)};
-    plot(frame, session, actions, "second", run_.second, baseline_.second, half);
-    plot(frame, session, actions, "frame", run_.frame, baseline_.frame, half);
+    const ImVec2 size{room.x, both ? 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y) : room.y};
+    if (both || over_ == kSecond)
+      plot(frame, session, actions, "second", run_.second, baseline_.second, size);
+    if (both || over_ == kFrame) plot(frame, session, actions, "frame", run_.frame, baseline_.frame, size);
     footer.draw(frame);
   }
 
@@ -96,6 +100,8 @@ class ErrorsPanel final : public NamedPanel {
     return text + ". Each error stands at the end of its motion.";
   }
 
+  static constexpr float kRoomForBoth = 300.0F;  // design px
+  enum Over { kSecond, kFrame };
   enum Of { kTranslation, kRotation };
   struct Key {
     const void *run = nullptr, *baseline = nullptr;
@@ -104,7 +110,7 @@ class ErrorsPanel final : public NamedPanel {
     bool operator==(const Key&) const = default;
   };
 
-  int of_ = kTranslation;
+  int over_ = kSecond, of_ = kTranslation;
   bool log_ = false;
   Key kept_;
   Curves run_, baseline_;

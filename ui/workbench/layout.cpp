@@ -153,13 +153,13 @@ LayoutNode default_layout() {
   using enum Division;
   // Above, how what moves is found, from left to right; below, what comes of it.
   return divide(1.0, kRows,
-                {divide(0.47, kColumns,
+                {divide(0.45, kColumns,
                         {tile(0.25, "features_after"), tile(0.25, "forward_mask"),
                          tile(0.25, "backward_mask"), tile(0.25, "union_mask")}),
-                 divide(0.53, kColumns,
-                        {divide(0.25, kRows, {tile(0.66, "compensated"), tile(0.34, "inspector")}),
+                 divide(0.55, kColumns,
+                        {divide(0.25, kRows, {tile(0.6, "compensated"), tile(0.4, "inspector")}),
                          tile(0.39, "trajectory"),
-                         divide(0.36, kRows, {tile(0.68, "errors"), tile(0.32, "timeline")})})});
+                         divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
 }
 
 }  // namespace stillpoint
