@@ -129,6 +129,7 @@ std::shared_ptr<RunView> handmade_run(const std::string& name, double millimetre
   }
   run->evaluation.rpe_frame.delta = "1 frame";
   run->evaluation.rpe_time.delta = "0.5 s";
+  run->evaluation.rpe_time.translation_m.count = run->evaluation.rpe_frame.translation_m.count = 25;
   run->evaluation.ate.translation_m.rmse = 0.004 * millimetres;
   run->evaluation.rpe_time.translation_m.rmse = 0.005 * millimetres;
   run->evaluation.rpe_frame.translation_m.rmse = 0.0015 * millimetres;

@@ -97,11 +97,11 @@ class MaskPanel final : public NamedPanel {
     controls.choice("stage", stages, stage_,
                     "Raw is what is above the threshold; erosion and dilation clean it");
     controls.choice("look", {"Overlay", "Alone"}, look_);
-    if (look_ == kOverlay) controls.slider("Opacity", opacity_, 0.0F, 1.0F, "%.2f");
+    if (look_ == kOverlay) controls.slider("##opacity", opacity_, 0.0F, 1.0F, "opacity %.2f");
     controls.round(static_cast<int>(view.motion.rounds.size()), round_);
     if (!has_truth) return;
     bool beside = shows_truth(frame);
-    if (controls.toggle("Against truth", beside, "Shows what truly moves beside it")) beside_ = beside;
+    if (controls.toggle("Truth", beside, "Shows what truly moves beside it")) beside_ = beside;
   }
 
   [[nodiscard]] bool shows_truth(const UiFrame& frame) const {

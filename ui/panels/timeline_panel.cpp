@@ -78,7 +78,7 @@ class TimelinePanel final : public NamedPanel {
     for (Lane& lane : lanes_) {
       for (const double value : lane.values)
         if (std::isfinite(value)) lane.highest = std::max(lane.highest, value);
-      lane.highest = std::max(lane.highest * 1.05, 1e-6);
+      lane.highest = lane.highest > 0.0 ? 1.05 * lane.highest : 1.05;
     }
   }
 
