@@ -29,6 +29,7 @@ SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, doub
   auto current = std::make_shared<FrameView>();
   RunOptions options;
   options.count = frames;
+  options.keep_features = true;
   options.on_frame = [&](const FrameResult& result) {
     if (result.record.index != frames - 1) return;
     current->depth_motion = result.depth_motion;

@@ -12,7 +12,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
-constexpr double kMostRoom = 1.0;    // … but no farther than the paths are long
+constexpr double kMostRoom = 2.5;    // … but no more than so many times the extent of the paths
 constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
