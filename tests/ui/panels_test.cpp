@@ -39,6 +39,7 @@ class PanelStage {
     offscreen_.draw(place);
     return actions_;
   }
+  void send(const InputEvent& event) { offscreen_.send(event); }
   void resize(int width, int height) { offscreen_.resize(width, height); }
 
  private:
@@ -172,6 +173,50 @@ TEST(Panels, AClickInTimingsGoesToTheFrameThere) {
   const auto frame = stage.click(generated_example(), 0.95, 0.2).go_to_frame;
   ASSERT_TRUE(frame);
   EXPECT_GE(*frame, 11);
+}
+
+TEST(Panels, ResettingAParameterAsksForItsDefault) {
+  PanelStage stage("parameters", {});
+  // The first row is the method, which is not the default one: its reset button stands at the right.
+  SessionView session = generated_example();
+  session.config.run.method = "none";
+  const PanelActions actions = stage.click(session, 486.0 / 520.0, 73.0 / 420.0);
+  using Assignment = std::pair<std::string, std::string>;
+  EXPECT_THAT(actions.set_parameters, ::testing::ElementsAre(Assignment("run.method", Config().run.method)));
+}
+
+TEST(Panels, HoldingTFlipsToTheTarget) {
+  PanelStage stage("compensated", {});
+  stage.send(MouseMoved{260.0F, 200.0F});
+  const cv::Mat before = stage.render(generated_example());
+  stage.send(KeyChanged{Key::kT, true, {}});
+  EXPECT_FALSE(images_agree(stage.render(generated_example()), before, {2, 1000.0, 0.0}));
+  stage.send(KeyChanged{Key::kT, false, {}});
+  EXPECT_TRUE(images_agree(stage.render(generated_example()), before, {0, 0.0, 0.0}));
+}
+
+TEST(Panels, TheInspectorReadsThePixelUnderTheMouse) {
+  // Panels of one set share what the mouse points at, so both are drawn here.
+  Offscreen offscreen({.width = 900, .height = 420});
+  const auto panels = make_panels();
+  PanelActions actions;
+  const auto draw = [&](UiFrame& frame) {
+    float left = 0.0F;
+    for (const auto& panel : panels) {
+      if (panel->name() != "input" && panel->name() != "inspector") continue;
+      ImGui::SetNextWindowPos({left, 0});
+      ImGui::SetNextWindowSize({450, 420});
+      ImGui::Begin(panel->name().c_str(), nullptr, ImGuiWindowFlags_NoDecoration);
+      panel->draw(frame, generated_example(), actions);
+      ImGui::End();
+      left += 450.0F;
+    }
+  };
+  const cv::Mat before = offscreen.render(draw);
+  offscreen.send(MouseMoved{225.0F, 200.0F});
+  const cv::Mat after = offscreen.render(draw);
+  const cv::Rect inspector(450, 0, 450, 200);
+  EXPECT_FALSE(images_agree(before(inspector), after(inspector), {2, 500.0, 0.0}));
 }
 
 TEST(Panels, WhatIsMissingIsSaidInstead) {

@@ -8,7 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kSliderWidth = 96.0F;  // design px
+constexpr float kSliderWidth = 112.0F;  // design px
 constexpr float kBarWidth = 12.0F;
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
@@ -77,7 +77,8 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
-  place(kSliderWidth * frame_.scale + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
+  const float name = text_width(label);
+  place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
   return ImGui::SliderFloat(label, &value, low, high, format);
 }

@@ -12,6 +12,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
+constexpr double kMostRoom = 2.5;    // … but no more than so many times the extent of the paths
 constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
@@ -20,6 +21,7 @@ Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<
 /// The part of the ground truth the run has come by.
 ScenePath truth_path(const SessionView& session) {
   ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
+  if (session.run->records.empty()) return path;
   const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
   double before = -1.0;
   for (const StampedPose& pose : session.ground_truth) {
@@ -94,13 +96,14 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 SceneBounds sight_of(const SceneData& data) {
   SceneBounds box = bounds(data);
   if (data.points.size() < 20) return box;
+  const double most = kMostRoom * std::max((box.high - box.low).norm(), 0.1);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> along;
     for (const ScenePoint& point : data.points) along.push_back(static_cast<double>(point.position[axis]));
     std::sort(along.begin(), along.end());
     const double low = along[along.size() / 10], high = along[along.size() - 1 - along.size() / 10];
-    box.low[axis] += kRoomShare * std::min(0.0, low - box.low[axis]);
-    box.high[axis] += kRoomShare * std::max(0.0, high - box.high[axis]);
+    box.low[axis] += std::max(-most, kRoomShare * std::min(0.0, low - box.low[axis]));
+    box.high[axis] += std::min(most, kRoomShare * std::max(0.0, high - box.high[axis]));
   }
   return box;
 }

@@ -27,8 +27,8 @@ struct SessionScene {
   std::vector<std::vector<PathFrame>> frames_of_path;
 };
 
-/// What to bring into sight at first: the paths, and a part of the way out to where most map points lie. Paths
-/// alone would hide the room the camera moves in, and points alone the way it went.
+/// What to bring into sight at first: the paths, and a part of the way out to where most map points lie.
+/// Paths alone would hide the room the camera moves in, and points alone the way it went.
 [[nodiscard]] SceneBounds sight_of(const SceneData& data);
 
 /// Run, baseline, ground truth, keyframes, current camera and map in one world: the truth's, where there is

@@ -17,7 +17,7 @@ class TrajectoryPanel final : public NamedPanel {
   explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (session.run->trajectory.empty()) {
+    if (session.run->records.empty() || session.run->trajectory.empty()) {
       draw_absent(frame, session.run->records.empty()
                              ? "No frame has been processed yet."
                              : "No frame has a pose yet, so there is no trajectory.");
@@ -112,15 +112,17 @@ class TrajectoryPanel final : public NamedPanel {
     const std::size_t poses = session.run->trajectory.size();
     const auto& evaluation = session.run->evaluation;
     if (evaluation.matched.empty()) {
-      return fmt::format("{} poses in the world of the first camera{}.", poses,
+      return fmt::format("{} pose{} in the world of the first camera{}.", poses, poses == 1 ? "" : "s",
                          session.ground_truth.empty() ? "; there is no ground truth" : "");
     }
     const double degrees =
         rotation_angle(session.alignment.truth_from_estimate.linear()) * 180.0 / 3.14159265358979;
     std::string text = fmt::format(
-        "{} poses, laid over the truth by a rigid motion without scale (Umeyama, {} pairs: {:.2f} m, {:.1f} "
+        "{} pose{}, laid over the truth by a rigid motion without scale (Umeyama, {} pairs; moved {:.2f} m, "
+        "turned {:.1f} "
         "°). ATE {:.1f} mm RMSE",
-        poses, evaluation.matched.size(), session.alignment.truth_from_estimate.translation().norm(), degrees,
+        poses, poses == 1 ? "" : "s", evaluation.matched.size(),
+        session.alignment.truth_from_estimate.translation().norm(), degrees,
         1000.0 * evaluation.ate.translation_m.rmse);
     if (session.baseline && !session.baseline->evaluation.matched.empty())
       text += fmt::format(", {} {:.1f} mm", session.baseline->name,
