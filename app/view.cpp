@@ -40,7 +40,7 @@ class Viewer {
         settings_(read_settings(settings_path_, names_of(make_panels()), &problem_)),
         window_(window_options(settings_)),
         workbench_(make_panels(), host()) {
-    if (settings_.layout) workbench_.set_layout(*settings_.layout);
+    workbench_.set_layout(settings_.layout ? *settings_.layout : default_layout(config.run.method));
     if (!problem_.empty()) workbench_.say(problem_, true);
     workbench_.set_recent(settings_.recent);
   }
@@ -61,6 +61,9 @@ class Viewer {
     session_.reset();
     session_ = std::make_unique<Session>(std::move(source), config_);
     session_->start([] { Window::wake(); });
+    // What moves shows from the first frame that has another to be compared with.
+    session_->request_frame(config_.motion.reference_gap);
+    if (where == kDemo) session_->request_play(true);
     window_.set_title(fmt::format("{} - Stillpoint", session_->source().name()));
     std::error_code ignored;
     remember(settings_.recent,

@@ -1,7 +1,9 @@
 #include <benchmark/benchmark.h>
 
 #include "tests/ui/gallery.hpp"
+#include "ui/session/session.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/workbench/workbench.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -52,6 +54,27 @@ void draw_gallery(benchmark::State& state) {
   }
 }
 BENCHMARK(draw_gallery)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The whole workbench at 1600x900 over a session whose pictures are computed already.
+void draw_workbench(benchmark::State& state) {
+  OpenOptions short_one;
+  short_one.frames = 12;
+  Config config;
+  config.run.method = "stillpoint";
+  Session session(open_sequence("generated:walking_static", short_one), config);
+  session.go_to(11);
+  const auto view = session.view();
+  Offscreen offscreen({.width = 1600, .height = 900});
+  Workbench workbench(make_panels());
+  const FrameFunction draw = [&](UiFrame& frame) { workbench.draw(frame, view.get()); };
+  offscreen.render(draw);
+  for (auto _ : state) {
+    offscreen.draw(draw);
+    offscreen.gl().Finish();
+  }
+  offscreen.make_current();
+}
+BENCHMARK(draw_workbench)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// From nothing to the first image: context, fonts, shaders, one frame.
 void open_offscreen(benchmark::State& state) {

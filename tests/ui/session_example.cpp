@@ -1,5 +1,7 @@
 #include "tests/ui/session_example.hpp"
 
+#include <opencv2/imgproc.hpp>
+
 #include "core/motion/detect_motion.hpp"
 #include "core/run/run_sequence.hpp"
 
@@ -68,6 +70,106 @@ const SessionView& generated_example() {
     return run_example(open_sequence("generated:walking_static", options), 14, 0.2);
   }();
   return example.view;
+}
+
+namespace {
+
+/// A room of blocks, CV_8UC3, with a disc that moves.
+cv::Mat handmade_picture(int disc_x) {
+  cv::Mat picture(240, 320, CV_8UC3);
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      picture.at<cv::Vec3b>(y, x) =
+          cv::Vec3b::all(static_cast<std::uint8_t>(70 + 50 * ((x / 40 + y / 40) % 3) + y / 4));
+  cv::circle(picture, {disc_x, 120}, 45, {90, 60, 170}, cv::FILLED);
+  return picture;
+}
+
+Frame handmade_frame(int index) {
+  Frame frame;
+  frame.index = index;
+  frame.timestamp = index / 30.0;
+  frame.colour = handmade_picture(100 + 4 * index);
+  cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
+  return frame;
+}
+
+FrameRecord handmade_record(int index) {
+  FrameRecord record;
+  record.index = index;
+  record.timestamp = index / 30.0;
+  record.status = index == 0    ? FrameStatus::initialised
+                  : index == 18 ? FrameStatus::lost
+                                : FrameStatus::tracked;
+  record.estimated = index != 18;
+  record.keyframe = index % 9 == 0;
+  record.mask_share = 0.08 + 0.004 * (index % 7);
+  record.inliers = 260 - 6 * (index % 11);
+  record.features_found = 300;
+  record.features_removed = 60;
+  record.features_kept = 240;
+  for (int i = 0; i < record.features_found; ++i) {
+    FeatureRecord feature;
+    feature.pixel = {static_cast<float>(10 + 37 * i % 300), static_cast<float>(8 + 53 * i % 220)};
+    feature.fate = i % 5 == 0 ? FeatureFate::removed : static_cast<FeatureFate>(i % 3);
+    record.features.push_back(feature);
+  }
+  return record;
+}
+
+std::shared_ptr<RunView> handmade_run(const std::string& name, double millimetres) {
+  auto run = std::make_shared<RunView>();
+  run->name = name;
+  for (int i = 0; i < 40; ++i) {
+    run->records.push_back(handmade_record(i));
+    const double time = i / 30.0, size = 0.001 * millimetres * (2 + i * 5 % 8);
+    run->evaluation.matched.push_back({time, time, Pose::Identity(), Pose::Identity()});
+    run->evaluation.ate.errors.push_back({time, size, 0.1});
+    if (i > 0) run->evaluation.rpe_frame.errors.push_back({time - 1.0 / 30.0, time, 0.3 * size, 0.1});
+    if (i > 14) run->evaluation.rpe_time.errors.push_back({time - 0.5, time, size, 0.2});
+  }
+  run->evaluation.rpe_frame.delta = "1 frame";
+  run->evaluation.rpe_time.delta = "0.5 s";
+  run->evaluation.rpe_time.translation_m.count = run->evaluation.rpe_frame.translation_m.count = 25;
+  run->evaluation.ate.translation_m.rmse = 0.004 * millimetres;
+  run->evaluation.rpe_time.translation_m.rmse = 0.005 * millimetres;
+  run->evaluation.rpe_frame.translation_m.rmse = 0.0015 * millimetres;
+  return run;
+}
+
+}  // namespace
+
+SessionView handmade_example() {
+  SessionView view;
+  auto run = handmade_run("paper", 1.0);
+  auto current = std::make_shared<FrameView>();
+  current->index = 24;
+  current->frame = handmade_frame(24);
+  current->reference = handmade_frame(23);
+  MotionRound round;
+  for (DirectionTrace* direction : {&round.forward, &round.backward}) {
+    direction->homography.valid = true;
+    direction->threshold = 31;
+    direction->raw_mask = direction->mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  }
+  round.mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  cv::circle(round.mask, {190, 110}, 40, 255, cv::FILLED);
+  cv::rectangle(round.mask, {30, 180, 50, 24}, 255, cv::FILLED);
+  round.backward_mask_in_target = round.mask;
+  round.regions = {{{150, 70, 81, 81}, {190, 110}, 5025}, {{30, 180, 50, 24}, {55, 192}, 1200}};
+  current->motion.rounds.push_back(round);
+  current->mask = round.mask;
+  current->truth.moving = cv::Mat::zeros(240, 320, CV_8UC1);
+  cv::circle(current->truth.moving, {196, 120}, 45, 255, cv::FILLED);
+  current->record = &run->records[24];
+  view.title = "by hand";
+  view.frame_count = 60;
+  view.processed = 40;
+  view.current = current;
+  view.run = run;
+  view.baseline = handmade_run("none", 4.0);
+  view.revision = 1;
+  return view;
 }
 
 }  // namespace stillpoint::testing

@@ -14,9 +14,14 @@ struct SessionExample {
   SessionView view;
 };
 
-/// Runs method `stillpoint`, and `none` as the baseline, over the first `frames` frames and shows the last one.
+/// Runs method `stillpoint`, and `none` as the baseline, over the first `frames` frames and shows the last
+/// one.
 /// @param rpe_delta_s span of the error over time: short sequences have no second
 [[nodiscard]] SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, double rpe_delta_s);
+
+/// A session put together by hand, nothing of which was computed by the method: for golden images, which only
+/// a change of the panels is to change.
+[[nodiscard]] SessionView handmade_example();
 
 /// 14 frames of generated:walking_static, run once a program.
 [[nodiscard]] const SessionView& generated_example();

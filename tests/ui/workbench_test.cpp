@@ -161,6 +161,7 @@ TEST_F(WorkbenchTest, PanelsAreHiddenMaximisedAndBroughtBack) {
   EXPECT_EQ(workbench.layout(), before);
   // The forward mask lies in the upper half, a quarter from the left.
   offscreen_.send(MouseMoved{500, 300});
+  render(workbench, *session);
   strike(offscreen_, Key::kM);
   render(workbench, *session);
   EXPECT_EQ(workbench.maximised(), "forward_mask");
@@ -177,7 +178,9 @@ TEST_F(WorkbenchTest, SplittersAreDragged) {
   // Between the first two tiles of the upper row.
   offscreen_.send(MouseMoved{321.0F, 300.0F});
   offscreen_.send(MouseButton{0, true, {}});
+  render(workbench, *session);
   offscreen_.send(MouseMoved{371.0F, 300.0F});
+  render(workbench, *session);
   offscreen_.send(MouseButton{0, false, {}});
   render(workbench, *session);
   EXPECT_GT(workbench.layout().children[0].children[0].share, before.children[0].children[0].share + 0.03);

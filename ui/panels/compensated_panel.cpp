@@ -27,7 +27,7 @@ class CompensatedPanel final : public NamedPanel {
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
     controls.choice("look", {"Image", "Wipe", "Signed difference"}, look_);
-    if (look_ == kWipe) controls.slider("Target", wipe_, 0.0F, 1.0F, "%.2f");
+    if (look_ == kWipe) controls.slider("##wipe", wipe_, 0.0F, 1.0F, "target %.2f");
     if (look_ == kImage)
       controls.button("Hold for target (T)", "Hold the button, or T over this panel", &held);
     held = held || (is_key_down(kFlipKey) && ImGui::IsWindowHovered());

@@ -11,6 +11,8 @@ namespace stillpoint {
 namespace {
 
 constexpr int kStages = 6;
+constexpr std::array<const char*, kStages> kNames{
+    "Depth residual", "Brightness residual", "Memory", "All evidence", "Segments", "Mask"};
 
 /// Method `stillpoint`'s stages: what depth and brightness say against an earlier frame, what is remembered,
 /// and what becomes of it on surfaces.
@@ -129,8 +131,6 @@ class DepthMotionPanel final : public NamedPanel {
   }
 
   [[nodiscard]] std::string heading_of(const SessionView& session, Stage stage) const {
-    constexpr std::array<const char*, kStages> kNames{
-        "Depth residual", "Brightness residual", "Memory", "All evidence", "Segments", "Mask"};
     const std::string name = kNames[static_cast<std::size_t>(stage)];
     if (shown_ != 0 || stage == kMask) return name;
     return fmt::format("{}, ±{:g} {}", name, range_of_stage(session, stage), unit_of(stage));
@@ -160,13 +160,19 @@ class DepthMotionPanel final : public NamedPanel {
       const int factor = std::max(1, view.frame.gray.cols / std::max(1, values.cols));
       shared_->pixel = Eigen::Vector2i(factor * response.pixel->x(), factor * response.pixel->y());
     }
-    label(frame, response, heading_of(session, stage));
+    label(frame, response, heading_of(session, stage), kNames[slot]);
   }
 
-  static void label(const UiFrame& frame, const ImageResponse& response, const std::string& text) {
+  /// Writes the heading, or where there is no room for it the name alone.
+  static void label(const UiFrame& frame, const ImageResponse& response, const std::string& heading,
+                    const std::string& name) {
     push_clip(response);
     const float gap = 4.0F * frame.scale;
-    draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, text, frame.theme.text);
+    const ImFont* font = frame.fonts.small;
+    const float wide = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, heading.c_str()).x + 4.0F * gap;
+    const bool fits = wide < response.panel_max.x - response.panel_min.x;
+    draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, fits ? heading : name,
+               frame.theme.text);
     pop_clip();
   }
 
@@ -185,7 +191,7 @@ class DepthMotionPanel final : public NamedPanel {
     push_clip(response);
     draw_outlines(frame, response, outlines_, colour);
     pop_clip();
-    label(frame, response, heading_of(session, kMask));
+    label(frame, response, heading_of(session, kMask), kNames[kMask]);
   }
 
   /// Each patch in the colour of its log-odds, patches parted by lines.
@@ -216,16 +222,16 @@ class DepthMotionPanel final : public NamedPanel {
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
                                  const DepthMotionTrace& trace) const {
     Footer footer;
+    footer.legend.push_back({"speaks for moving", diverging_colour(frame.theme, 1.0), Sign::kSquare});
     footer.legend.push_back(
-        {"speaks for moving, or nearer", diverging_colour(frame.theme, 1.0), Sign::kSquare});
+        {"speaks for still; in depth: hidden then", diverging_colour(frame.theme, -1.0), Sign::kSquare});
     const auto moving = std::count_if(trace.segments.begin(), trace.segments.end(),
                                       [](const Segment& segment) { return segment.moving; });
     const ReferenceEvidence& reference = trace.references[static_cast<std::size_t>(reference_)];
-    footer.caption = fmt::format(
-        "{}: brightness noise {:.1f} grey levels; {} of {} patches move, {:.1f} % of the pixels in {} "
-        "region{}.",
-        frame_text(session, session.current->frame), reference.intensity_sigma, moving, trace.segments.size(),
-        100.0 * trace.mask_share, trace.regions.size(), trace.regions.size() == 1 ? "" : "s");
+    footer.caption =
+        fmt::format("{}: brightness noise {:.1f} grey levels; {} of {} patches move, {:.1f} % of the pixels.",
+                    frame_text(session, session.current->frame), reference.intensity_sigma, moving,
+                    trace.segments.size(), 100.0 * trace.mask_share);
     if (!trace.note.empty()) footer.caption += " " + trace.note;
     return footer;
   }

@@ -22,7 +22,12 @@ class ErrorsPanel final : public NamedPanel {
                              : "No frame with a pose lies near a ground-truth pose yet.");
       return;
     }
+    // Two plots one below the other where both can be read, else one of them.
+    const bool both = ImGui::GetContentRegionAvail().y > kRoomForBoth * frame.scale;
     Controls controls(frame);
+    if (!both)
+      controls.choice("over", {session.run->evaluation.rpe_time.delta, "Frame"}, over_,
+                      "What motions are measured over");
     controls.choice("of", {"Translation", "Rotation"}, of_);
     controls.toggle("Log scale", log_, "Errors on a logarithmic axis");
     collect(session);
@@ -30,9 +35,10 @@ class ErrorsPanel final : public NamedPanel {
     Footer footer;
     footer.caption = caption(session);
     const ImVec2 room = room_above(frame, footer);
-    const ImVec2 half{room.x, 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y)};
-    plot(frame, session, actions, "second", run_.second, baseline_.second, half);
-    plot(frame, session, actions, "frame", run_.frame, baseline_.frame, half);
+    const ImVec2 size{room.x, both ? 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y) : room.y};
+    if (both || over_ == kSecond)
+      plot(frame, session, actions, "second", run_.second, baseline_.second, size);
+    if (both || over_ == kFrame) plot(frame, session, actions, "frame", run_.frame, baseline_.frame, size);
     footer.draw(frame);
   }
 
@@ -59,7 +65,7 @@ class ErrorsPanel final : public NamedPanel {
     const ThemeName theme = frame.theme.name;
     Plot plot{.x_label = "time", .x_unit = "s"};
     const bool per_second = id == std::string("second");
-    plot.y_label = per_second ? "RPE over " + session.run->evaluation.rpe_time.delta : "RPE per frame";
+    plot.y_label = per_second ? "RPE over " + evaluation_of(session).rpe_time.delta : "RPE per frame";
     plot.y_unit = of_ == kRotation ? "°" : "mm";
     if (!baseline.x.empty()) {
       plot.series.push_back({session.baseline->name, baseline.x, baseline.y,
@@ -72,9 +78,28 @@ class ErrorsPanel final : public NamedPanel {
     plot.cursor_x = session.current->frame.timestamp - series_start(session);
     view_[per_second].x = x_;
     view_[per_second].log_y = log_;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
     const PlotResponse response = draw_plot(frame, id, plot, view_[per_second], size);
     x_ = view_[per_second].x;
+    if (run.x.empty() && baseline.x.empty()) {
+      draw_label(frame, {corner.x + 0.3F * size.x, corner.y + 0.4F * size.y},
+                 per_second
+                     ? fmt::format("No two poses lie {} apart yet.", evaluation_of(session).rpe_time.delta)
+                     : "No two neighbouring frames have poses yet.",
+                 frame.theme.text_dim);
+    }
     if (response.clicked_x) actions.go_to_frame = frame_at(session, *response.clicked_x);
+  }
+
+  [[nodiscard]] static const TrajectoryEvaluation& evaluation_of(const SessionView& session) {
+    return session.run->evaluation;
+  }
+
+  /// "12.3 mm over 1 s"; errors there are none of are not said to be 0.
+  [[nodiscard]] static std::string figure(const ErrorStatistics& statistics, double factor, const char* unit,
+                                          const std::string& delta) {
+    if (statistics.count == 0) return fmt::format("none over {}", delta);
+    return fmt::format("{:.3g} {} over {}", factor * statistics.rmse, unit, delta);
   }
 
   [[nodiscard]] std::string caption(const SessionView& session) const {
@@ -82,13 +107,13 @@ class ErrorsPanel final : public NamedPanel {
       const auto& evaluation = run.evaluation;
       if (evaluation.matched.empty()) return fmt::format("{}: no figures", run.name);
       if (of_ == kRotation) {
-        return fmt::format("{}: RMSE {:.3f} ° over {}, {:.3f} ° a frame", run.name,
-                           evaluation.rpe_time.rotation_deg.rmse, evaluation.rpe_time.delta,
-                           evaluation.rpe_frame.rotation_deg.rmse);
+        return fmt::format("{}: RMSE {}, {}", run.name,
+                           figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta),
+                           figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta));
       }
-      return fmt::format("{}: RMSE {:.1f} mm over {}, {:.2f} mm a frame, ATE {:.1f} mm", run.name,
-                         1000.0 * evaluation.rpe_time.translation_m.rmse, evaluation.rpe_time.delta,
-                         1000.0 * evaluation.rpe_frame.translation_m.rmse,
+      return fmt::format("{}: RMSE {}, {}, ATE {:.3g} mm", run.name,
+                         figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta),
+                         figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
                          1000.0 * evaluation.ate.translation_m.rmse);
     };
     std::string text = figures(*session.run);
@@ -96,6 +121,8 @@ class ErrorsPanel final : public NamedPanel {
     return text + ". Each error stands at the end of its motion.";
   }
 
+  static constexpr float kRoomForBoth = 300.0F;  // design px
+  enum Over { kSecond, kFrame };
   enum Of { kTranslation, kRotation };
   struct Key {
     const void *run = nullptr, *baseline = nullptr;
@@ -104,7 +131,7 @@ class ErrorsPanel final : public NamedPanel {
     bool operator==(const Key&) const = default;
   };
 
-  int of_ = kTranslation;
+  int over_ = kSecond, of_ = kTranslation;
   bool log_ = false;
   Key kept_;
   Curves run_, baseline_;

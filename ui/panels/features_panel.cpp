@@ -29,6 +29,11 @@ class FeaturesPanel final : public NamedPanel {
       draw_absent(frame, missing_motion(session));
       return;
     }
+    if (view.record->features.empty() && view.record->features_found > 0) {
+      draw_absent(frame, fmt::format("Frame {}'s {} features were not kept in its record.", view.index,
+                                     view.record->features_found));
+      return;
+    }
     Controls controls(frame);
     if (moment_ == FeatureMoment::kBefore) {
       controls.toggle("Mask", mask_, "Lays the mask under the features it removes");

@@ -26,7 +26,7 @@ class FlowTracksPanel final : public NamedPanel {
     controls.choice("direction", {"Forward", "Backward"}, direction_);
     controls.round(rounds, round_);
     const int shown = round_ < 0 ? rounds : std::min(round_ + 1, rounds);
-    controls.slider("Length", length_, 1.0F, 8.0F, "x%.0f");
+    controls.slider("##length", length_, 1.0F, 8.0F, "length x%.0f");
     const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(shown - 1)];
     const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;
     const Frame& target = direction_ == 0 ? view.frame : view.reference;

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_series.hpp"
 
 namespace stillpoint {
 namespace {
@@ -62,9 +64,12 @@ std::string position_text(const Pose& pose) {
 }
 
 Rows record_rows(const SessionView& session, const FrameRecord& r) {
+  // Only methods that judge by homographies have rounds.
+  const bool rounds = r.motion_rounds > 0;
   Rows rows{
       {"Frame", fmt::format("{} of {}", r.index, session.frame_count)},
-      {"Time", fmt::format("{:.6f} s", r.timestamp)},
+      {"Time", fmt::format("{:.3f} s", r.timestamp - series_start(session))},
+      {"Stamp", fmt::format("{:.4f} s", r.timestamp)},
       {"Status", std::string(to_string(r.status))},
       {"Note", r.note.empty() ? "–" : r.note},
       {"Position", position_text(r.world_from_camera)},
@@ -72,21 +77,23 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
        fmt::format("{:.2f} °", rotation_angle(r.world_from_camera.linear()) * 180.0 / 3.14159265358979)},
       {"Pose", r.estimated ? "estimated" : "predicted"},
       {"Pose begun from", std::string(to_string(r.pose_start))},
-      {"Reference keyframe", r.reference_keyframe == kNone ? "–" : fmt::format("{}", r.reference_keyframe)},
+      {"Refers to keyframe", r.reference_keyframe == kNone ? "–" : fmt::format("{}", r.reference_keyframe)},
       {"Features found", fmt::format("{}", r.features_found)},
       {"Features removed", fmt::format("{}", r.features_removed)},
       {"Features kept", fmt::format("{}", r.features_kept)},
       {"Mask", fmt::format("{:.2f} % of the pixels", 100.0 * r.mask_share)},
-      {"Motion rounds", fmt::format("{}", r.motion_rounds)},
-      {"Static tracks", fmt::format("{}", r.static_tracks)},
-      {"Homography RMS", fmt::format("{:.3f} px", r.homography_rms_px)},
+      {"Motion rounds", rounds ? fmt::format("{}", r.motion_rounds) : "–"},
+      {"Static tracks", rounds ? fmt::format("{}", r.static_tracks) : "–"},
+      {"Homography RMS", rounds ? fmt::format("{:.3f} px", r.homography_rms_px) : "–"},
       {"Matches", fmt::format("{}", r.matches)},
       {"Inliers", fmt::format("{}", r.inliers)},
       {"Reprojection RMS", fmt::format("{:.3f} px", r.rms_px)},
       {"Refining steps", fmt::format("{}", r.refine_iterations)},
       {"Keyframe", yes(r.keyframe)},
-      {"Points new, fused, culled", fmt::format("{}, {}, {}", r.new_points, r.fused_points, r.culled_points)},
-      {"Keyframes culled", fmt::format("{}", r.culled_keyframes)},
+      {"New points", fmt::format("{}", r.new_points)},
+      {"Fused points", fmt::format("{}", r.fused_points)},
+      {"Culled points", fmt::format("{}", r.culled_points)},
+      {"Culled keyframes", fmt::format("{}", r.culled_keyframes)},
       {"Map points", fmt::format("{}", r.map_points)},
       {"Map keyframes", fmt::format("{}", r.map_keyframes)}};
   if (r.bundle_iterations > 0) {
@@ -143,6 +150,12 @@ class InspectorPanel final : public NamedPanel {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
     if (ImGui::BeginTable(id, 2 * pairs, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
+      float widest = 0.0F;
+      for (const auto& [name, value] : rows) widest = std::max(widest, ImGui::CalcTextSize(name.c_str()).x);
+      for (int pair = 0; pair < pairs; ++pair) {
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, widest);
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+      }
       const auto count = static_cast<int>(rows.size()), lines = (count + pairs - 1) / pairs;
       for (int line = 0; line < lines; ++line) {
         ImGui::TableNextRow();

@@ -78,7 +78,7 @@ class MaskPanel final : public NamedPanel {
     const ImageResponse response = draw_frame_image(frame, "mask", content, *shared_, tiling.size,
                                                     beside ? heading(ground, session) : "");
     push_clip(response);
-    draw_outlines(frame, response, outlines_, role_colour(role_, frame.theme.name));
+    if (look_ == kOverlay) draw_outlines(frame, response, outlines_, role_colour(role_, frame.theme.name));
     if (kind_ == MaskKind::kUnion && stage_ == kCleaned) draw_regions(frame, response, round.regions);
     pop_clip();
     if (beside) draw_truth(frame, session, round, tiling, start, variant);
@@ -97,11 +97,11 @@ class MaskPanel final : public NamedPanel {
     controls.choice("stage", stages, stage_,
                     "Raw is what is above the threshold; erosion and dilation clean it");
     controls.choice("look", {"Overlay", "Alone"}, look_);
-    if (look_ == kOverlay) controls.slider("Opacity", opacity_, 0.0F, 1.0F, "%.2f");
+    if (look_ == kOverlay) controls.slider("##opacity", opacity_, 0.0F, 1.0F, "opacity %.2f");
     controls.round(static_cast<int>(view.motion.rounds.size()), round_);
     if (!has_truth) return;
     bool beside = shows_truth(frame);
-    if (controls.toggle("Against truth", beside, "Shows what truly moves beside it")) beside_ = beside;
+    if (controls.toggle("Truth", beside, "Shows what truly moves beside it")) beside_ = beside;
   }
 
   [[nodiscard]] bool shows_truth(const UiFrame& frame) const {
@@ -191,7 +191,9 @@ class MaskPanel final : public NamedPanel {
         mask_.empty() ? 0.0
                       : static_cast<double>(cv::countNonZero(mask_)) / static_cast<double>(mask_.total());
     footer.caption = fmt::format("{}: {:.1f} % of the pixels", frame_text(session, ground), 100.0 * share);
-    if (kind_ == MaskKind::kUnion) {
+    if (kind_ == MaskKind::kUnion && stage_ == kRaw) {
+      footer.caption += ", both directions' before clean-up";
+    } else if (kind_ == MaskKind::kUnion) {
       footer.caption +=
           fmt::format(", {} region{}", round.regions.size(), round.regions.size() == 1 ? "" : "s");
     } else {

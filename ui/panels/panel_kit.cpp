@@ -8,7 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kSliderWidth = 96.0F;  // design px
+constexpr float kSliderWidth = 112.0F;  // design px
 constexpr float kBarWidth = 12.0F;
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
@@ -77,7 +77,8 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
-  place(kSliderWidth * frame_.scale + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
+  const float name = text_width(label);
+  place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
   return ImGui::SliderFloat(label, &value, low, high, format);
 }
@@ -133,6 +134,10 @@ void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radi
       return;
     case Sign::kTriangle:
       list.AddTriangleFilled({centre.x - r, high.y}, {high.x, high.y}, {centre.x, low.y}, colour);
+      return;
+    case Sign::kDiamond:
+      list.AddQuadFilled({low.x, centre.y}, {centre.x, low.y}, {high.x, centre.y}, {centre.x, high.y},
+                         colour);
       return;
     case Sign::kLine:
       list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);

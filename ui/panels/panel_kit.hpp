@@ -46,6 +46,7 @@ class Controls {
   bool choice(const char* id, const std::vector<std::string>& names, int& chosen,
               const char* tooltip = nullptr);
   bool toggle(const char* label, bool& on, const char* tooltip = nullptr);
+  /// @param label shown after it, unless it begins with ##: `format` names it then
   bool slider(const char* label, float& value, float low, float high, const char* format);
   /// One of several rounds; `chosen` from 0, below 0 is the last.
   void round(int rounds, int& chosen);
@@ -70,6 +71,7 @@ enum class Sign {
   kCross,
   kHollowSquare,
   kTriangle,
+  kDiamond,
   kLine,
   kDashed
 };

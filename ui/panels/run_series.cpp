@@ -59,6 +59,15 @@ std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
   return bands;
 }
 
+std::optional<std::size_t> record_of(const SessionView& session, int frame_index) {
+  const auto& records = session.run->records;
+  const auto found =
+      std::lower_bound(records.begin(), records.end(), frame_index,
+                       [](const FrameRecord& record, int index) { return record.index < index; });
+  if (found == records.end() || found->index != frame_index) return std::nullopt;
+  return static_cast<std::size_t>(found - records.begin());
+}
+
 std::optional<int> frame_at(const SessionView& session, double seconds) {
   const auto& records = session.run->records;
   if (records.empty()) return std::nullopt;

@@ -27,6 +27,9 @@ struct Series {
 /// The stretches of time in which the run had no pose.
 [[nodiscard]] std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour);
 
+/// The place of a frame's record among the run's; nothing where it has none.
+[[nodiscard]] std::optional<std::size_t> record_of(const SessionView& session, int frame_index);
+
 /// The index of the frame nearest to a time; nothing where there are no records.
 [[nodiscard]] std::optional<int> frame_at(const SessionView& session, double seconds);
 

@@ -12,6 +12,8 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
+constexpr double kMostRoom = 2.5;    // … but no more than so many times the extent of the paths
+constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
 Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()); }
@@ -19,6 +21,7 @@ Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<
 /// The part of the ground truth the run has come by.
 ScenePath truth_path(const SessionView& session) {
   ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
+  if (session.run->records.empty()) return path;
   const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
   double before = -1.0;
   for (const StampedPose& pose : session.ground_truth) {
@@ -90,6 +93,21 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 
 }  // namespace
 
+SceneBounds sight_of(const SceneData& data) {
+  SceneBounds box = bounds(data);
+  if (data.points.size() < 20) return box;
+  const double most = kMostRoom * std::max((box.high - box.low).norm(), 0.1);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> along;
+    for (const ScenePoint& point : data.points) along.push_back(static_cast<double>(point.position[axis]));
+    std::sort(along.begin(), along.end());
+    const double low = along[along.size() / 10], high = along[along.size() - 1 - along.size() / 10];
+    box.low[axis] += std::max(-most, kRoomShare * std::min(0.0, low - box.low[axis]));
+    box.high[axis] += std::min(most, kRoomShare * std::max(0.0, high - box.high[axis]));
+  }
+  return box;
+}
+
 SessionScene scene_of_session(const SessionView& session, const SceneLayers& layers) {
   SessionScene scene;
   SceneData& data = scene.data;
@@ -132,7 +150,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
   // Cameras are drawn in proportion to the way they went, so that neither hides the other.
   const SceneBounds box = bounds(data);
   const double extent = (box.high - box.low).norm();
-  data.frustum.current_depth_m = static_cast<float>(std::clamp(0.22 * extent, 0.05, 0.6));
+  data.frustum.current_depth_m = static_cast<float>(std::clamp(0.2 * extent, 0.05, 0.6));
   data.frustum.keyframe_depth_m = 0.3F * data.frustum.current_depth_m;
   data.ground_m = aligned ? 0.0 : -1.0;
   return scene;

@@ -27,6 +27,10 @@ struct SessionScene {
   std::vector<std::vector<PathFrame>> frames_of_path;
 };
 
+/// What to bring into sight at first: the paths, and a part of the way out to where most map points lie.
+/// Paths alone would hide the room the camera moves in, and points alone the way it went.
+[[nodiscard]] SceneBounds sight_of(const SceneData& data);
+
 /// Run, baseline, ground truth, keyframes, current camera and map in one world: the truth's, where there is
 /// one, z up; else the first camera's, whose y axis points down.
 [[nodiscard]] SessionScene scene_of_session(const SessionView& session, const SceneLayers& layers);

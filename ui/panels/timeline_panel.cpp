@@ -78,7 +78,7 @@ class TimelinePanel final : public NamedPanel {
     for (Lane& lane : lanes_) {
       for (const double value : lane.values)
         if (std::isfinite(value)) lane.highest = std::max(lane.highest, value);
-      lane.highest = std::max(lane.highest * 1.05, 1e-6);
+      lane.highest = lane.highest > 0.0 ? 1.05 * lane.highest : 1.05;
     }
   }
 
@@ -252,32 +252,28 @@ class TimelinePanel final : public NamedPanel {
       list.AddRectFilled({from, high}, {to, high + 1.5F * frame.scale}, to_u32(lane.colour));
     }
     list.PopClipRect();
-    const FrameRecord* record = session.current->record;
-    if (record == nullptr) return;
-    const auto here = static_cast<std::size_t>(record - records.data());
-    const double value =
-        record >= records.data() && here < lane.values.size() ? lane.values[here] : std::nan("");
+    const auto here = record_of(session, session.current->index);
+    if (!here) return;
+    const double value = lane.values[*here];
     write(frame, {right_ + 6.0F * frame.scale, top},
           std::isfinite(value) ? format_value(std::round(value * 10.0) / 10.0, lane.unit) : "–",
           frame.theme.text);
   }
 
   void tell(const SessionView& session, int index) const {
-    const auto& records = session.run->records;
-    const auto found =
-        std::find_if(records.begin(), records.end(), [&](const FrameRecord& r) { return r.index == index; });
-    if (found == records.end()) {
+    const auto at = record_of(session, index);
+    if (!at) {
       ImGui::SetTooltip("frame %d\nnot processed yet", index);
       return;
     }
-    std::string text = fmt::format("frame {}, {:.3f} s\n{}", index, found->timestamp - series_start(session),
-                                   to_string(found->status));
-    if (found->keyframe) text += ", keyframe";
-    const auto at = static_cast<std::size_t>(found - records.begin());
+    const FrameRecord& record = session.run->records[*at];
+    std::string text = fmt::format("frame {}, {:.3f} s\n{}", index, record.timestamp - series_start(session),
+                                   to_string(record.status));
+    if (record.keyframe) text += ", keyframe";
     for (const Lane& lane : lanes_)
-      if (std::isfinite(lane.values[at]))
-        text += fmt::format("\n{} {:.1f} {}", lane.name, lane.values[at], lane.unit);
-    if (!found->note.empty()) text += "\n" + found->note;
+      if (std::isfinite(lane.values[*at]))
+        text += fmt::format("\n{} {:.1f} {}", lane.name, lane.values[*at], lane.unit);
+    if (!record.note.empty()) text += "\n" + record.note;
     ImGui::SetTooltip("%s", text.c_str());
   }
 
@@ -291,7 +287,7 @@ class TimelinePanel final : public NamedPanel {
       entry.name = fmt::format("{} {}", counts[i], entry.name);
       footer.legend.push_back(std::move(entry));
     }
-    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, frame.theme.name), Sign::kTriangle});
+    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, frame.theme.name), Sign::kDiamond});
     footer.caption =
         fmt::format("Frame {} of {}; {} processed. Error: distance to the truth after alignment.",
                     session.current->index, session.frame_count, session.processed);

@@ -17,7 +17,7 @@ class TrajectoryPanel final : public NamedPanel {
   explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (session.run->trajectory.empty()) {
+    if (session.run->records.empty() || session.run->trajectory.empty()) {
       draw_absent(frame, session.run->records.empty()
                              ? "No frame has been processed yet."
                              : "No frame has a pose yet, so there is no trajectory.");
@@ -49,6 +49,7 @@ class TrajectoryPanel final : public NamedPanel {
     const std::uint64_t revision = scene_.data.revision + 1;
     scene_ = scene_of_session(session, layers_);
     scene_.data.revision = scene_.data.image_revision = revision;
+    sight_ = sight_of(scene_.data);
     view_shown_ = session.current;
     revision_ = session.revision;
     run_ = session.run.get();
@@ -90,7 +91,7 @@ class TrajectoryPanel final : public NamedPanel {
     if (!keeps_fitting_) return;
     const Viewport viewport{std::max(16.0, static_cast<double>(room.x)),
                             std::max(16.0, static_cast<double>(room.y))};
-    fit(view_, viewport, bounds(scene_.data));
+    fit(view_, viewport, sight_);
   }
 
   void tell_pose(const SessionView& session, const ScenePose& pose, bool clicked,
@@ -111,15 +112,17 @@ class TrajectoryPanel final : public NamedPanel {
     const std::size_t poses = session.run->trajectory.size();
     const auto& evaluation = session.run->evaluation;
     if (evaluation.matched.empty()) {
-      return fmt::format("{} poses in the world of the first camera{}.", poses,
+      return fmt::format("{} pose{} in the world of the first camera{}.", poses, poses == 1 ? "" : "s",
                          session.ground_truth.empty() ? "; there is no ground truth" : "");
     }
     const double degrees =
         rotation_angle(session.alignment.truth_from_estimate.linear()) * 180.0 / 3.14159265358979;
     std::string text = fmt::format(
-        "{} poses, laid over the truth by a rigid motion without scale (Umeyama, {} pairs: {:.2f} m, {:.1f} "
+        "{} pose{}, laid over the truth by a rigid motion without scale (Umeyama, {} pairs; moved {:.2f} m, "
+        "turned {:.1f} "
         "°). ATE {:.1f} mm RMSE",
-        poses, evaluation.matched.size(), session.alignment.truth_from_estimate.translation().norm(), degrees,
+        poses, poses == 1 ? "" : "s", evaluation.matched.size(),
+        session.alignment.truth_from_estimate.translation().norm(), degrees,
         1000.0 * evaluation.ate.translation_m.rmse);
     if (session.baseline && !session.baseline->evaluation.matched.empty())
       text += fmt::format(", {} {:.1f} mm", session.baseline->name,
@@ -132,6 +135,7 @@ class TrajectoryPanel final : public NamedPanel {
   SessionScene scene_;
   SceneLayers layers_, layers_drawn_;
   SceneView view_;
+  SceneBounds sight_;
   ViewPreset preset_ = ViewPreset::kOblique;
   bool looked_ = false, keeps_fitting_ = true;
   std::weak_ptr<const FrameView> view_shown_;

@@ -144,7 +144,10 @@ void PlotPaint::level(const PlotLevel& level) const {
   float phase = 0.0F;
   dashed({low.x, at}, {high.x, at}, to_u32(level.colour, 0.9F), frame_.scale, phase);
   const ImVec2 extent = text_size(level.name);
-  text({high.x - extent.x - 4.0F * frame_.scale, at - extent.y - 1.0F}, level.name, to_u32(level.colour));
+  // Near the upper edge the name goes below the line.
+  const float above = at - extent.y - 1.0F;
+  text({high.x - extent.x - 4.0F * frame_.scale, above < low.y ? at + 1.0F : above}, level.name,
+       to_u32(level.colour));
 }
 
 void PlotPaint::mark(const PlotLevel& mark) const {

@@ -105,6 +105,11 @@ void Workbench::draw_toolbar() {
   const float margin = 8.0F * frame_->scale;
   ImGui::SetCursorScreenPos({margin, ImGui::GetCursorScreenPos().y + 1.0F * frame_->scale});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4.0F * frame_->scale, 6.0F * frame_->scale});
+  // On the light theme's background a raised surface would not be seen.
+  const Theme& theme = frame_->theme;
+  const Rgb surface = theme.name == ThemeName::kLight ? theme.panel : theme.raised;
+  ImGui::PushStyleColor(ImGuiCol_Button, to_vec4(surface));
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, to_vec4(surface));
   draw_transport();
   ImGui::SameLine(0.0F, 14.0F * frame_->scale);
   ImGui::PushFont(frame_->fonts.mono);
@@ -120,6 +125,7 @@ void Workbench::draw_toolbar() {
   ImGui::SameLine(0.0F, margin);
   ImGui::SetNextItemWidth(speed_width);
   draw_speed();
+  ImGui::PopStyleColor(2);
   ImGui::PopStyleVar();
   ImGui::SetCursorScreenPos({0.0F, ImGui::GetCursorScreenPos().y});
 }
@@ -153,7 +159,8 @@ void Workbench::draw_frame_slider(float width) {
   const Theme& theme = frame_->theme;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float half = 3.0F * frame_->scale;
-  list.AddRectFilled({left, middle - half}, {left + span, middle + half}, to_u32(theme.raised), half);
+  list.AddRectFilled({left, middle - half}, {left + span, middle + half},
+                     to_u32(mix(theme.raised, theme.text_dim, 0.25F)), half);
   if (session_->processed > 0)
     list.AddRectFilled({left, middle - half}, {x_of(session_->processed - 1), middle + half},
                        to_u32(mix(theme.raised, theme.accent, 0.45F)), half);

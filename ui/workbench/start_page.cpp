@@ -26,9 +26,9 @@ void paragraph(const UiFrame& frame, const char* icon, const char* head, const c
 void Workbench::draw_start_page(const LayoutRect& area) {
   const float scale = frame_->scale;
   const float width = std::min(620.0F * scale, area.width), left = area.x + 0.5F * (area.width - width);
-  ImGui::SetCursorScreenPos({left, area.y + std::max(0.0F, 0.12F * area.height)});
+  ImGui::SetCursorScreenPos({left, area.y + std::max(0.0F, 0.16F * area.height)});
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImVec4{0, 0, 0, 0});
-  ImGui::BeginChild("start", {width, 0.86F * area.height});
+  ImGui::BeginChild("start", {width, 0.82F * area.height});
   ImGui::PopStyleColor();
   ImGui::PushFont(frame_->fonts.heading);
   ImGui::TextColored(to_vec4(frame_->theme.accent), "%s", icons::kTarget);

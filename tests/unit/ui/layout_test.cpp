@@ -37,10 +37,10 @@ TEST(Layout, LiesWhereItsSharesSay) {
   EXPECT_EQ(placed.panels[1].rect, (LayoutRect{264, 20, 750, 200}));
   EXPECT_EQ(placed.panels[2].rect, (LayoutRect{264, 224, 750, 300}));
   ASSERT_EQ(placed.splitters.size(), 2U);
-  EXPECT_EQ(placed.splitters[0].rect, (LayoutRect{264, 220, 750, 4}));
-  EXPECT_EQ(placed.splitters[1].rect, (LayoutRect{260, 20, 4, 504}));
-  EXPECT_FALSE(placed.splitters[0].upright);
-  EXPECT_TRUE(placed.splitters[1].upright);
+  EXPECT_EQ(placed.splitters[0].rect, (LayoutRect{260, 20, 4, 504}));
+  EXPECT_EQ(placed.splitters[1].rect, (LayoutRect{264, 220, 750, 4}));
+  EXPECT_TRUE(placed.splitters[0].upright);
+  EXPECT_FALSE(placed.splitters[1].upright);
 }
 
 TEST(Layout, LeavesNoPixelUnused) {
@@ -61,7 +61,7 @@ TEST(Layout, LeavesNoPixelUnused) {
 TEST(Layout, ASplitterMovesBothItsNeighboursAlone) {
   LayoutNode root = from(kThree);
   const PlacedLayout before = arrange(root, {0, 0, 1004, 504}, 4);
-  drag(root, before.splitters[1], 50, 90);
+  drag(root, before.splitters[0], 50, 90);
   const PlacedLayout after = arrange(root, {0, 0, 1004, 504}, 4);
   EXPECT_EQ(after.panels[0].rect.width, 300);
   EXPECT_EQ(after.panels[1].rect.width, 700);
@@ -70,9 +70,9 @@ TEST(Layout, ASplitterMovesBothItsNeighboursAlone) {
 
 TEST(Layout, ASplitterStopsBeforeATileVanishes) {
   LayoutNode root = from(kThree);
-  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[1], -5000, 90);
+  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[0], -5000, 90);
   EXPECT_EQ(arrange(root, {0, 0, 1004, 504}, 4).panels[0].rect.width, 90);
-  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[1], 5000, 90);
+  drag(root, arrange(root, {0, 0, 1004, 504}, 4).splitters[0], 5000, 90);
   EXPECT_EQ(arrange(root, {0, 0, 1004, 504}, 4).panels[1].rect.width, 90);
 }
 
@@ -109,7 +109,9 @@ TEST(Layout, ANewPanelHalvesTheLargestTile) {
 
 TEST(Layout, ComesBackFromItsFile) {
   EXPECT_EQ(from(to_json(from(kThree))), from(kThree));
-  const LayoutNode standard = default_layout();
+  const LayoutNode standard = default_layout("stillpoint");
+  EXPECT_TRUE(contains(standard, "depth_motion"));
+  EXPECT_FALSE(contains(default_layout(), "depth_motion"));
   EXPECT_EQ(parse_layout(to_json(standard), "file.json", panels_of(standard)), standard);
 }
 

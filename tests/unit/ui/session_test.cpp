@@ -23,7 +23,11 @@ Config config_of(const std::string& method) {
 
 class SessionTest : public ::testing::TestWithParam<std::string> {
  protected:
-  [[nodiscard]] RunResult batch() const { return run_sequence(*source_, config_); }
+  [[nodiscard]] RunResult batch() const {
+    RunOptions options;
+    options.keep_features = true;
+    return run_sequence(*source_, config_, options);
+  }
 
   std::vector<FrameRecord> records_of(const Session& session) const {
     std::vector<FrameRecord> records;

@@ -1,0 +1,263 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/golden.hpp"
+#include "tests/ui/session_example.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/shell/offscreen.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::IsEmpty;
+
+/// One panel offscreen, filling the image, as `snapshot` draws it.
+class PanelStage {
+ public:
+  PanelStage(const std::string& name, const Look& look, int width = 520, int height = 420)
+      : offscreen_({.width = width, .height = height, .look = look}), panels_(make_panels()) {
+    for (const auto& panel : panels_)
+      if (panel->name() == name) panel_ = panel.get();
+  }
+  ~PanelStage() { EXPECT_THAT(offscreen_.take_gl_errors(), IsEmpty()) << panel_->name(); }
+
+  cv::Mat render(const SessionView& session) {
+    return offscreen_.render([&](UiFrame& frame) { draw(frame, session); });
+  }
+  /// What the panel asks for when it is clicked at a place of the image, as shares of its size.
+  PanelActions click(const SessionView& session, double x, double y) {
+    const auto place = [&](UiFrame& frame) { draw(frame, session); };
+    const cv::Mat image = render(session);
+    offscreen_.send(MouseMoved{static_cast<float>(x * image.cols), static_cast<float>(y * image.rows)});
+    offscreen_.render(place);
+    actions_ = {};
+    offscreen_.send(MouseButton{0, true, {}});
+    offscreen_.draw(place);
+    offscreen_.send(MouseButton{0, false, {}});
+    offscreen_.draw(place);
+    return actions_;
+  }
+  void send(const InputEvent& event) { offscreen_.send(event); }
+  void resize(int width, int height) { offscreen_.resize(width, height); }
+
+ private:
+  void draw(UiFrame& frame, const SessionView& session) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(frame.size);
+    ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    panel_->draw(frame, session, actions_);
+    ImGui::End();
+  }
+
+  Offscreen offscreen_;
+  std::vector<std::unique_ptr<Panel>> panels_;
+  Panel* panel_ = nullptr;
+  PanelActions actions_;
+};
+
+std::vector<std::string> panel_names() {
+  std::vector<std::string> names;
+  for (const auto& panel : make_panels()) names.push_back(panel->name());
+  return names;
+}
+
+/// The example without depth: of the frame, and of what was made of it.
+SessionView without_depth() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->frame.depth = current->reference.depth = cv::Mat();
+  current->depth_motion = {};
+  view.current = current;
+  return view;
+}
+
+SessionView without_truth() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->truth = {};
+  view.current = current;
+  auto run = std::make_shared<RunView>(*view.run), baseline = std::make_shared<RunView>(*view.baseline);
+  run->evaluation = baseline->evaluation = {};
+  // The record belongs to the run shown.
+  current->record = &run->records.back();
+  view.run = run;
+  view.baseline = baseline;
+  view.ground_truth.clear();
+  view.alignment = {};
+  return view;
+}
+
+/// The first frame of a sequence just opened: read, not processed.
+SessionView not_processed() {
+  SessionView view = generated_example();
+  auto current = std::make_shared<FrameView>();
+  current->frame = view.current->frame;
+  view.current = current;
+  view.run = std::make_shared<RunView>();
+  view.baseline = nullptr;
+  view.keyframes.clear();
+  view.map_points.clear();
+  view.alignment = {};
+  view.processed = 0;
+  return view;
+}
+
+/// A frame whose image could not be read.
+SessionView unreadable() {
+  SessionView view = not_processed();
+  auto current = std::make_shared<FrameView>();
+  current->frame.problem = "rgb/12.png is cut short.";
+  view.current = current;
+  return view;
+}
+
+class EveryPanel : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryPanel, IsDrawnTwiceTheSame) {
+  PanelStage stage(GetParam(), {}), again(GetParam(), {});
+  const cv::Mat image = stage.render(generated_example());
+  EXPECT_FALSE(is_blank(image, 40));
+  EXPECT_TRUE(images_agree(image, again.render(generated_example()), {0, 0.0, 0.0}));
+  EXPECT_TRUE(images_agree(image, stage.render(generated_example()), {0, 0.0, 0.0}));
+}
+
+TEST_P(EveryPanel, IsDrawnWhateverIsMissing) {
+  PanelStage stage(GetParam(), {ThemeName::kLight, 1.0F});
+  EXPECT_FALSE(is_blank(stage.render(generated_example()), 40));
+  for (const auto& make : {without_depth, without_truth, not_processed, unreadable})
+    EXPECT_FALSE(is_blank(stage.render(make()), 8));
+  stage.resize(40, 32);
+  stage.render(generated_example());
+}
+
+INSTANTIATE_TEST_SUITE_P(Panels, EveryPanel, ::testing::ValuesIn(panel_names()),
+                         [](const auto& one) { return one.param; });
+
+TEST(Panels, HaveNamesOfTheirOwn) {
+  std::set<std::string> names, titles;
+  for (const auto& panel : make_panels()) {
+    names.insert(panel->name());
+    titles.insert(panel->title());
+  }
+  EXPECT_EQ(names.size(), make_panels().size());
+  EXPECT_EQ(titles.size(), names.size());
+  for (const char* name : {"input", "forward_mask", "backward_mask", "union_mask", "trajectory", "errors"})
+    EXPECT_EQ(names.count(name), 1U) << name;
+}
+
+TEST(Panels, AClickInErrorsGoesToTheFrameThere) {
+  PanelStage stage("errors", {});
+  const auto left = stage.click(generated_example(), 0.4, 0.3).go_to_frame;
+  ASSERT_TRUE(left);
+  const auto right = stage.click(generated_example(), 0.8, 0.7).go_to_frame;
+  ASSERT_TRUE(right);
+  EXPECT_GT(*left, 0);
+  EXPECT_LT(*left, *right);
+  EXPECT_LT(*right, 14);
+}
+
+TEST(Panels, AClickInTheTimelineGoesToTheFrameThere) {
+  PanelStage stage("timeline", {});
+  const auto frame = stage.click(generated_example(), 0.3, 0.4).go_to_frame;
+  ASSERT_TRUE(frame);
+  // The lanes show all 20 frames between names and values: this place is a little left of a quarter.
+  EXPECT_GE(*frame, 2);
+  EXPECT_LE(*frame, 5);
+  EXPECT_FALSE(stage.click(generated_example(), 0.05, 0.4).go_to_frame);
+}
+
+TEST(Panels, AClickInTimingsGoesToTheFrameThere) {
+  PanelStage stage("timings", {});
+  const auto frame = stage.click(generated_example(), 0.95, 0.2).go_to_frame;
+  ASSERT_TRUE(frame);
+  EXPECT_GE(*frame, 11);
+}
+
+TEST(Panels, ResettingAParameterAsksForItsDefault) {
+  PanelStage stage("parameters", {});
+  // The first row is the method, which is not the default one: its reset button stands at the right.
+  SessionView session = generated_example();
+  session.config.run.method = "none";
+  const PanelActions actions = stage.click(session, 486.0 / 520.0, 73.0 / 420.0);
+  using Assignment = std::pair<std::string, std::string>;
+  EXPECT_THAT(actions.set_parameters, ::testing::ElementsAre(Assignment("run.method", Config().run.method)));
+}
+
+TEST(Panels, HoldingTFlipsToTheTarget) {
+  PanelStage stage("compensated", {});
+  stage.send(MouseMoved{260.0F, 200.0F});
+  const cv::Mat before = stage.render(generated_example());
+  stage.send(KeyChanged{Key::kT, true, {}});
+  EXPECT_FALSE(images_agree(stage.render(generated_example()), before, {2, 1000.0, 0.0}));
+  stage.send(KeyChanged{Key::kT, false, {}});
+  EXPECT_TRUE(images_agree(stage.render(generated_example()), before, {0, 0.0, 0.0}));
+}
+
+TEST(Panels, TheInspectorReadsThePixelUnderTheMouse) {
+  // Panels of one set share what the mouse points at, so both are drawn here.
+  Offscreen offscreen({.width = 900, .height = 420});
+  const auto panels = make_panels();
+  PanelActions actions;
+  const auto draw = [&](UiFrame& frame) {
+    float left = 0.0F;
+    for (const auto& panel : panels) {
+      if (panel->name() != "input" && panel->name() != "inspector") continue;
+      ImGui::SetNextWindowPos({left, 0});
+      ImGui::SetNextWindowSize({450, 420});
+      ImGui::Begin(panel->name().c_str(), nullptr, ImGuiWindowFlags_NoDecoration);
+      panel->draw(frame, generated_example(), actions);
+      ImGui::End();
+      left += 450.0F;
+    }
+  };
+  const cv::Mat before = offscreen.render(draw);
+  offscreen.send(MouseMoved{225.0F, 200.0F});
+  const cv::Mat after = offscreen.render(draw);
+  const cv::Rect inspector(450, 0, 450, 200);
+  EXPECT_FALSE(images_agree(before(inspector), after(inspector), {2, 500.0, 0.0}));
+}
+
+TEST(Panels, WhatIsMissingIsSaidInstead) {
+  // A sentence is little ink: nearly all of the panel is its ground, as with a picture it is not.
+  const auto ground_share = [](const cv::Mat& image) {
+    const cv::Vec3b ground = image.at<cv::Vec3b>(image.rows - 4, image.cols / 2);
+    cv::Mat same;
+    cv::inRange(image, ground, ground, same);
+    return static_cast<double>(cv::countNonZero(same)) / static_cast<double>(image.total());
+  };
+  const auto expect_sentence = [&](const std::string& name, const SessionView& lacking) {
+    PanelStage stage(name, {});
+    EXPECT_LT(ground_share(stage.render(generated_example())), 0.8) << name;
+    EXPECT_GT(ground_share(stage.render(lacking)), 0.95) << name;
+  };
+  expect_sentence("depth_motion", without_depth());
+  expect_sentence("errors", without_truth());
+  expect_sentence("features_after", not_processed());
+  expect_sentence("union_mask", unreadable());
+}
+
+TEST(Panels, ANewFrameIsShownAtOnce) {
+  PanelStage stage("input", {});
+  const cv::Mat before = stage.render(generated_example());
+  SessionView other = generated_example();
+  auto current = std::make_shared<FrameView>(*other.current);
+  current->frame.colour = cv::Mat(current->frame.colour.size(), CV_8UC3, cv::Scalar(200, 40, 90));
+  other.current = current;
+  EXPECT_FALSE(images_agree(stage.render(other), before, {}));
+}
+
+TEST(Panels, GoldenImages) {
+  const SessionView example = handmade_example();
+  for (const auto& [name, theme] : {std::pair{"union_mask", ThemeName::kDark},
+                                    {"features_before", ThemeName::kLight},
+                                    {"errors", ThemeName::kDark},
+                                    {"timeline", ThemeName::kLight}}) {
+    PanelStage stage(name, {theme, 1.0F});
+    EXPECT_TRUE(matches_golden(stage.render(example), std::string("panel_") + name));
+  }
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
