@@ -81,6 +81,7 @@ class Viewer {
   void run() {
     window_.run([this](UiFrame& frame) { draw(frame); });
     save();
+    throw_if_interrupted();
   }
 
  private:
