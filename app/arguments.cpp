@@ -10,7 +10,7 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
   command.add_option("--config", preset, "A preset's name or a TOML file");
   command.add_option("--set", assignments, "One parameter, as section.name=value; may be given again");
   command.add_option("--threads", threads, "Worker threads; any number gives the same result")->check(CLI::Range(1, 64));
-  if (with_method) command.add_option("--method", method, "What is removed: none, paper, or oracle (told the true masks)");
+  if (with_method) command.add_option("--method", method, "What is removed: stillpoint, paper, none, or oracle (told the true masks)");
 }
 
 Config ConfigArguments::config() const {

@@ -82,7 +82,7 @@ void write_png(const fs::path& path, const cv::Mat& image) {
 /// textures it holds.
 class Painter {
  public:
-  explicit Painter(const SnapshotArguments& arguments)
+  Painter(const SnapshotArguments& arguments, const std::string& method)
       : look_{parse_theme(arguments.theme), static_cast<float>(arguments.scale)},
         workbench_size_(parse_size(arguments.size.empty() ? kWorkbenchSize : arguments.size)),
         panel_size_(parse_size(arguments.size.empty() ? kPanelSize : arguments.size)),
@@ -90,6 +90,7 @@ class Painter {
         panels_(make_panels()),
         workbench_(make_panels()),
         pictures_(chosen_pictures(arguments.panels, panels_)) {
+    workbench_.set_layout(default_layout(method));
     if (!arguments.layout.empty())
       workbench_.set_layout(read_layout(arguments.layout, workbench_.panel_names()));
   }
@@ -129,7 +130,7 @@ void snapshot(const SnapshotArguments& arguments) {
   const Config config = arguments.config.config();
   std::shared_ptr<const FrameSource> source = arguments.source.open(arguments.sequence, config);
   const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
-  Painter painter(arguments);
+  Painter painter(arguments, config.run.method);
   prepare_out_folder(arguments.out, {"snapshots.txt"}, arguments.force);
 
   Session session(source, config, {.baseline = !arguments.no_baseline, .keep_times = arguments.timings});

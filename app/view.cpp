@@ -40,7 +40,7 @@ class Viewer {
         settings_(read_settings(settings_path_, names_of(make_panels()), &problem_)),
         window_(window_options(settings_)),
         workbench_(make_panels(), host()) {
-    if (settings_.layout) workbench_.set_layout(*settings_.layout);
+    workbench_.set_layout(settings_.layout ? *settings_.layout : default_layout(config.run.method));
     if (!problem_.empty()) workbench_.say(problem_, true);
     workbench_.set_recent(settings_.recent);
   }

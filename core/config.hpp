@@ -98,7 +98,7 @@ struct BundleConfig {
 };
 
 struct RunConfig {
-  std::string method = "paper";  ///< none, paper; or oracle, which is told what moves
+  std::string method = "paper";  ///< stillpoint, paper, none; or oracle, which is told what moves
   int threads = 2;               ///< worker threads; any number gives the same bytes
   int seed = 1;                  ///< of generated sequences
 };

@@ -49,6 +49,11 @@ class TimingsPanel final : public NamedPanel {
       draw_absent(frame, "No frame has been processed yet.");
       return;
     }
+    if (session.run->records.back().ms.total <= 0.0) {
+      draw_absent(frame,
+                  "Stage times differ from run to run, so this image leaves them out; --timings shows them.");
+      return;
+    }
     collect(session);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float row = frame.fonts.text->FontSize + 2.0F * ImGui::GetStyle().CellPadding.y;

@@ -149,17 +149,21 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
   place = divide(place.share, division, {tile(0.5, place.panel), tile(0.5, panel)});
 }
 
-LayoutNode default_layout() {
+LayoutNode default_layout(std::string_view method) {
   using enum Division;
+  // What the method itself goes by stands where one looks for the result.
+  const bool by_depth = method == "stillpoint";
+  const char* const found = by_depth ? "depth_motion" : "union_mask";
+  const char* const beside = by_depth ? "union_mask" : "compensated";
   // Above, how what moves is found, from left to right; below, what comes of it.
-  return divide(1.0, kRows,
-                {divide(0.45, kColumns,
-                        {tile(0.25, "features_after"), tile(0.25, "forward_mask"),
-                         tile(0.25, "backward_mask"), tile(0.25, "union_mask")}),
-                 divide(0.55, kColumns,
-                        {divide(0.25, kRows, {tile(0.6, "compensated"), tile(0.4, "inspector")}),
-                         tile(0.39, "trajectory"),
-                         divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
+  return divide(
+      1.0, kRows,
+      {divide(0.45, kColumns,
+              {tile(0.25, "features_after"), tile(0.25, "forward_mask"), tile(0.25, "backward_mask"),
+               tile(0.25, found)}),
+       divide(0.55, kColumns,
+              {divide(0.25, kRows, {tile(0.6, beside), tile(0.4, "inspector")}), tile(0.39, "trajectory"),
+               divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
 }
 
 }  // namespace stillpoint

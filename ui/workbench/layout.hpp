@@ -66,8 +66,8 @@ void replace_panel(LayoutNode& root, std::string_view panel, const std::string& 
 /// Adds a panel that is not shown yet: in one half of the largest tile, divided across its longer side.
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
 
-/// What a newcomer sees.
-[[nodiscard]] LayoutNode default_layout();
+/// What a newcomer sees of a run by this method.
+[[nodiscard]] LayoutNode default_layout(std::string_view method = "paper");
 
 /// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input"}, {"share": 0.6, "rows": […]}]}.
 [[nodiscard]] std::string to_json(const LayoutNode& root);

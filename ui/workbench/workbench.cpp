@@ -141,8 +141,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
   const float title_width =
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
   const auto& records = session.run->records;
-  const double seconds =
-      records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
+  const double seconds = records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
   const std::string where =
       fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
                   session.frame_count, seconds, session.config.run.method);

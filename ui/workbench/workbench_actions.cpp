@@ -129,7 +129,10 @@ void Workbench::add_view_actions() {
                 .group = "View",
                 .icon = icons::kLayout,
                 .keys = {{Key::kR, kCtrlShift}},
-                .run = [this] { after_frame_ = [this] { set_layout(default_layout()); }; }});
+                .run = [this] {
+                  const std::string method = session_ == nullptr ? "paper" : session_->config.run.method;
+                  after_frame_ = [this, method] { set_layout(default_layout(method)); };
+                }});
 }
 
 void Workbench::add_panel_actions() {
