@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <stop_token>
+#include <thread>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
@@ -79,8 +82,16 @@ class Viewer {
   }
 
   void run() {
+    // A signal does not end the window's sleep.
+    const std::jthread watcher([](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        if (stop_requested()) Window::wake();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    });
     window_.run([this](UiFrame& frame) { draw(frame); });
     save();
+    throw_if_interrupted();
   }
 
  private:

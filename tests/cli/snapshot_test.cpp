@@ -2,18 +2,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/xvfb.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 class Snapshot : public ::testing::Test {
  protected:
@@ -95,6 +98,31 @@ TEST(View, WithoutADisplayNamesSnapshot) {
   expect_one_sentence(run_cli({"view", sequence.path()}), "stillpoint snapshot");
   expect_one_sentence(run_cli({"view"}), "stillpoint snapshot");
   expect_one_sentence(run_cli({}), "stillpoint snapshot");
+}
+
+TEST(View, ComesBackAsItWasLeft) {
+  const testing::Xvfb xvfb;
+  if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
+  const SmallSequence sequence(4);
+  ::setenv("XDG_CONFIG_HOME", sequence.path("config").c_str(), 1);
+  std::string left;
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"view", sequence.path()}, {"view"}}) {
+    CliProcess window(arguments);
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    window.send(SIGTERM);
+    const CliResult result = window.wait();
+    EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+    EXPECT_FALSE(result.by_signal);
+    const std::string now = sequence.folder.read("config/stillpoint/settings.json");
+    EXPECT_THAT(now, HasSubstr(sequence.path()));
+    EXPECT_THAT(now, HasSubstr("forward_mask"));
+    if (!left.empty()) {
+      EXPECT_EQ(now, left);
+    }
+    left = now;
+  }
+  ::unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST(View, SaysWhatItCannotOpen) {

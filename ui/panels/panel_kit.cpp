@@ -156,6 +156,7 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
   const float sign_room = 22.0F * frame.scale, gap = 16.0F * frame.scale;
   float x = 0.0F, y = 0.0F;
   for (const LegendEntry& entry : legend) {
+    if (!has_legend_) break;
     const float needed = sign_room + small_extent(frame, entry.name).x;
     if (x > 0.0F && x + needed > width) {
       x = 0.0F;
@@ -170,15 +171,22 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
     }
     x += needed + gap;
   }
-  if (!legend.empty()) y += line;
-  if (!caption.empty()) {
+  if (!legend.empty() && has_legend_) y += line;
+  if (!caption.empty() && has_caption_) {
     if (draw) small_text(frame, {corner.x, corner.y + y}, caption, frame.theme.text_dim, width);
     y += small_extent(frame, caption, width).y;
   }
   return y;
 }
 
-float Footer::height(const UiFrame& frame) const { return lay_out(frame, false); }
+float Footer::height(const UiFrame& frame) const {
+  constexpr float kMostShare = 0.3F;  // of the room that is there
+  const float most = kMostShare * ImGui::GetContentRegionAvail().y;
+  has_legend_ = has_caption_ = true;
+  if (lay_out(frame, false) > most) has_caption_ = false;
+  if (lay_out(frame, false) > most) has_legend_ = false;
+  return lay_out(frame, false);
+}
 
 void Footer::draw(const UiFrame& frame) const {
   const float used = lay_out(frame, true);

@@ -90,13 +90,17 @@ class Footer {
   std::vector<LegendEntry> legend;
   std::string caption;
 
-  /// px, at the current content region's width.
+  /// px, at the current content region's width. In a low panel the caption goes first, then the legend: the
+  /// picture matters more.
   [[nodiscard]] float height(const UiFrame& frame) const;
   /// Draws it at ImGui's cursor.
   void draw(const UiFrame& frame) const;
 
  private:
   float lay_out(const UiFrame& frame, bool draw) const;
+
+  mutable bool has_legend_ = true,
+               has_caption_ = true;  // as height() decided, before the picture took its room
 };
 
 /// What is left of the content region above a footer, px.

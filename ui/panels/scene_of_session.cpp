@@ -12,7 +12,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
-constexpr double kMostRoom = 2.5;    // … but no more than so many times the extent of the paths
+constexpr double kMostRoom = 0.5;    // … but no more than so many times the extent of the paths
 constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
@@ -96,7 +96,7 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 SceneBounds sight_of(const SceneData& data) {
   SceneBounds box = bounds(data);
   if (data.points.size() < 20) return box;
-  const double most = kMostRoom * std::max((box.high - box.low).norm(), 0.1);
+  const double most = kMostRoom * std::max((box.high - box.low).norm(), 0.05);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> along;
     for (const ScenePoint& point : data.points) along.push_back(static_cast<double>(point.position[axis]));

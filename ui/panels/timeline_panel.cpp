@@ -129,10 +129,12 @@ class TimelinePanel final : public NamedPanel {
     y += thin + gap;
     paint_keyframes(frame, session, y, y + thin);
     y += thin + gap;
-    const auto lanes = static_cast<float>(lanes_.size());
-    const float height = std::max((bottom - y - gap * lanes) / lanes, thin);
-    for (const Lane& lane : lanes_) {
-      paint_lane(frame, session, lane, y, y + height);
+    // In a low panel the last lanes give way.
+    const int fitting = std::max(0, static_cast<int>((bottom - y) / (thin + gap)));
+    const std::size_t shown = std::min(lanes_.size(), static_cast<std::size_t>(fitting));
+    const float height = shown == 0 ? 0.0F : (bottom - y) / static_cast<float>(shown) - gap;
+    for (std::size_t i = 0; i < shown; ++i) {
+      paint_lane(frame, session, lanes_[i], y, y + height);
       y += height + gap;
     }
     const AxisMap map = map_of(session);
@@ -236,9 +238,10 @@ class TimelinePanel final : public NamedPanel {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ground(frame, session, top, bottom);
     write(frame, {low_.x, top}, lane.name, frame.theme.text);
-    write(frame, {low_.x, top + frame.fonts.small->FontSize + 1.0F},
-          fmt::format("0–{:.3g}{}{}", lane.highest / 1.05, lane.unit.empty() ? "" : " ", lane.unit),
-          frame.theme.text_dim);
+    if (bottom - top > 2.0F * frame.fonts.small->FontSize)
+      write(frame, {low_.x, top + frame.fonts.small->FontSize + 1.0F},
+            fmt::format("0–{:.3g}{}{}", lane.highest / 1.05, lane.unit.empty() ? "" : " ", lane.unit),
+            frame.theme.text_dim);
     const AxisMap map = map_of(session);
     const auto& records = session.run->records;
     list.PushClipRect({left_, top}, {right_, bottom}, true);

@@ -21,6 +21,7 @@ constexpr std::array<Stage, 6> kStages{{{"Motion", &StageTimes::motion},
                                         {"Pose", &StageTimes::pose},
                                         {"Mapping", &StageTimes::mapping},
                                         {"Bundle", &StageTimes::bundle}}};
+constexpr float kRoomForPlot = 110.0F;        // design px, least height of the plot above the table
 constexpr double kFrameTime = 1000.0 / 30.0;  // ms, of a 30 Hz camera
 
 struct Figures {
@@ -61,9 +62,13 @@ class TimingsPanel final : public NamedPanel {
     footer.caption =
         "Wall time. Motion and features run beside each other where threads allow, so stages may add up to "
         "more than the whole.";
-    const float below = table + footer.height(frame) + 2.0F * ImGui::GetStyle().ItemSpacing.y;
-    draw_plot_of(frame, session, actions, {room.x, std::max(room.y - below, 90.0F * frame.scale)});
-    draw_table(frame, session);
+    // In a low panel the plot alone is shown, and names the stages itself.
+    const bool has_table = room.y > table + kRoomForPlot * frame.scale;
+    const float below = footer.height(frame) + ImGui::GetStyle().ItemSpacing.y * (has_table ? 2.0F : 1.0F) +
+                        (has_table ? table : 0.0F);
+    draw_plot_of(frame, session, actions, !has_table,
+                 {room.x, std::max(room.y - below, 60.0F * frame.scale)});
+    if (has_table) draw_table(frame, session);
     footer.draw(frame);
   }
 
@@ -95,11 +100,13 @@ class TimingsPanel final : public NamedPanel {
     whole_ = figures_of(total_);
   }
 
-  void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, ImVec2 size) {
+  void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, bool named,
+                    ImVec2 size) {
     Plot plot{.x_label = "frame", .y_label = "time a frame", .y_unit = "ms"};
     // The highest stack first: each lower one is painted over it.
     for (std::size_t i = kStages.size(); i-- > 0;)
-      plot.series.push_back({"", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
+      plot.series.push_back(
+          {named ? kStages[i].name : "", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
     plot.series.push_back({"whole frame", index_, total_, frame.theme.text, SeriesStyle::kSteps, 1.5F});
     plot.levels.push_back({kFrameTime, "30 Hz", role_colour(Role::kWarning, frame.theme.name)});
     plot.cursor_x = session.current->index + 0.5;

@@ -78,7 +78,9 @@ std::vector<const Action*> Actions::matching(std::string_view query) const {
   std::vector<std::pair<int, const Action*>> scored;
   for (const Action& action : actions_) {
     if (!is_enabled(action)) continue;
-    if (const auto score = match_score(action.title, query)) scored.emplace_back(*score, &action);
+    // Nothing asked for yet: the order of the menus.
+    const std::optional<int> score = query.empty() ? 0 : match_score(action.title, query);
+    if (score) scored.emplace_back(*score, &action);
   }
   std::stable_sort(scored.begin(), scored.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

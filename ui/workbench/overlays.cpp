@@ -68,7 +68,7 @@ void Workbench::draw_palette() {
     if (ImGui::InputTextWithHint("##query", "What to do, or a frame's number", palette_.query,
                                  sizeof palette_.query))
       palette_.chosen = 0;
-    draw_palette_list(height);
+    draw_palette_list();
   }
   const bool left = !palette_.opened_now && !ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
   if (left || is_key_pressed(Key::kEscape)) palette_.open = false;
@@ -76,7 +76,7 @@ void Workbench::draw_palette() {
   ImGui::End();
 }
 
-void Workbench::draw_palette_list(float height) {
+void Workbench::draw_palette_list() {
   const auto actions = actions_.matching(palette_.query);
   const auto frame =
       session_ != nullptr && can_go() ? as_frame(palette_.query, session_->frame_count) : std::nullopt;
@@ -86,7 +86,7 @@ void Workbench::draw_palette_list(float height) {
   palette_.chosen = rows == 0 ? 0 : (palette_.chosen + rows) % rows;
   const bool entered = is_key_pressed(Key::kEnter) || is_key_pressed(Key::kKeypadEnter);
   std::function<void()> run;
-  ImGui::BeginChild("rows", {0.0F, height - 70.0F * frame_->scale});
+  ImGui::BeginChild("rows");
   int row = 0;
   if (frame) {
     const bool chosen = palette_.chosen == row++;

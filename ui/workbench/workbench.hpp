@@ -85,7 +85,7 @@ class Workbench {
   void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
-  void draw_palette_list(float height);
+  void draw_palette_list();
   void draw_shortcuts();
   void draw_open_dialog();
   void draw_start_page(const LayoutRect& area);

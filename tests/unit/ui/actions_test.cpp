@@ -60,7 +60,7 @@ TEST(Actions, AreFoundByTheirLettersInOrder) {
   EXPECT_THAT(titles(actions.matching("NEXT")), ElementsAre("Next keyframe", "Next lost frame"));
   EXPECT_THAT(titles(actions.matching("l")), ElementsAre("Reset layout", "Next lost frame"));
   EXPECT_THAT(actions.matching("zebra"), ElementsAre());
-  EXPECT_EQ(actions.matching("").size(), 3U);
+  EXPECT_THAT(titles(actions.matching("")), ElementsAre("Next lost frame", "Next keyframe", "Reset layout"));
 }
 
 SessionView session_at(int index, const std::vector<int>& keyframes, const std::vector<int>& lost,
