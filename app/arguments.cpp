@@ -9,8 +9,11 @@ namespace stillpoint {
 void ConfigArguments::add_to(CLI::App& command, bool with_method) {
   command.add_option("--config", preset, "A preset's name or a TOML file");
   command.add_option("--set", assignments, "One parameter, as section.name=value; may be given again");
-  command.add_option("--threads", threads, "Worker threads; any number gives the same result")->check(CLI::Range(1, 64));
-  if (with_method) command.add_option("--method", method, "What is removed: stillpoint, paper, none, or oracle (told the true masks)");
+  command.add_option("--threads", threads, "Worker threads; any number gives the same result")
+      ->check(CLI::Range(1, 64));
+  if (with_method)
+    command.add_option("--method", method,
+                       "What is removed: stillpoint, paper, none, or oracle (told the true masks)");
 }
 
 Config ConfigArguments::config() const {
@@ -23,7 +26,8 @@ Config ConfigArguments::config() const {
 
 void SequenceArguments::add_to(CLI::App& command) {
   command.add_option("--camera", camera, "A camera's name or a TOML file; otherwise the folder tells");
-  command.add_option("--frames", frames, "Only so many frames from the first on")->check(CLI::Range(1, 10'000'000));
+  command.add_option("--frames", frames, "Only so many frames from the first on")
+      ->check(CLI::Range(1, 10'000'000));
   command.add_option("--seed", seed, "Seed of a generated sequence")->check(CLI::Range(0, 1'000'000'000));
 }
 
@@ -33,7 +37,8 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   options.frames = frames;
   options.seed = static_cast<unsigned>(seed >= 0 ? seed : config.run.seed);
   auto source = open_sequence(where, options);
-  for (const std::string& warning : source->warnings()) std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
+  for (const std::string& warning : source->warnings())
+    std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   return source;
 }
 

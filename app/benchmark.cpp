@@ -45,9 +45,10 @@ std::string cell(const std::optional<double>& value, int digits) {
 /// What Table 1 leaves out: the other errors, coverage, masks and speed.
 Table details_table(const std::vector<RunReport>& reports) {
   Table table;
-  table.header = {"sequence", "method", "coverage %", "ATE m", "RPE 1 s m", "RPE 1 s deg", "pairs", "RPE 1 frame m",
-                  "mask precision", "recall", "IoU", "forward recall", "removed rightly", "removed wrongly", "median ms",
-                  "p99 ms", "ORB units"};
+  table.header = {"sequence",    "method",         "coverage %",      "ATE m",           "RPE 1 s m",
+                  "RPE 1 s deg", "pairs",          "RPE 1 frame m",   "mask precision",  "recall",
+                  "IoU",         "forward recall", "removed rightly", "removed wrongly", "median ms",
+                  "p99 ms",      "ORB units"};
   for (const RunReport& r : reports) {
     std::optional<double> ate, rpe, rpe_deg, rpe_frame;
     int pairs = 0;
@@ -56,16 +57,18 @@ Table details_table(const std::vector<RunReport>& reports) {
       rpe = r.evaluation->rpe_time.translation_m.rmse;
       rpe_deg = r.evaluation->rpe_time.rotation_deg.rmse;
     }
-    if (r.evaluation && r.evaluation->rpe_frame.translation_m.count > 0) rpe_frame = r.evaluation->rpe_frame.translation_m.rmse;
+    if (r.evaluation && r.evaluation->rpe_frame.translation_m.count > 0)
+      rpe_frame = r.evaluation->rpe_frame.translation_m.rmse;
     const bool masks = r.scores.known && r.method != "none";
-    table.rows.push_back({r.sequence, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4), cell(rpe, 4),
-                          cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
-                          masks ? cell(r.scores.mask.precision(), 3) : "-", masks ? cell(r.scores.mask.recall(), 3) : "-",
-                          masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.forward_mask.recall(), 3) : "-",
-                          masks ? std::to_string(r.scores.removal.removed_rightly) : "-",
-                          masks ? std::to_string(r.scores.removal.removed_wrongly) : "-",
-                          fmt::format("{:.1f}", r.speed.median_ms), fmt::format("{:.1f}", r.speed.p99_ms),
-                          fmt::format("{:.2f}", r.speed.units)});
+    table.rows.push_back(
+        {r.sequence, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4), cell(rpe, 4),
+         cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
+         masks ? cell(r.scores.mask.precision(), 3) : "-", masks ? cell(r.scores.mask.recall(), 3) : "-",
+         masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.forward_mask.recall(), 3) : "-",
+         masks ? std::to_string(r.scores.removal.removed_rightly) : "-",
+         masks ? std::to_string(r.scores.removal.removed_wrongly) : "-",
+         fmt::format("{:.1f}", r.speed.median_ms), fmt::format("{:.1f}", r.speed.p99_ms),
+         fmt::format("{:.2f}", r.speed.units)});
   }
   return table;
 }
@@ -92,10 +95,12 @@ void write_tables(const std::filesystem::path& folder, const Table& table_1, con
 std::unique_ptr<FrameSource> open_with_depth(const std::string& sequence, const BenchmarkArguments& arguments,
                                              const Config& config) {
   auto source = arguments.frames.open(sequence, config);
-  if (!source->has_depth()) throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
+  if (!source->has_depth())
+    throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
   for (const std::string& method : arguments.methods)
     if (method == "oracle" && !source->has_masks())
-      throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", sequence));
+      throw InputError(
+          fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", sequence));
   return source;
 }
 
@@ -109,13 +114,15 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (const std::string& sequence : expanded(arguments.sequences))
     sources.push_back(open_with_depth(sequence, arguments, config));
-  if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
+  if (!arguments.out.empty())
+    prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
   return sources;
 }
 
-/// Where a sequence's runs go below the out folder: by its name (`generated:room` as `generated_room`), numbered where
-/// several share it.
-std::filesystem::path runs_folder(const std::string& out, std::string sequence, std::set<std::string>& taken) {
+/// Where a sequence's runs go below the out folder: by its name (`generated:room` as `generated_room`),
+/// numbered where several share it.
+std::filesystem::path runs_folder(const std::string& out, std::string sequence,
+                                  std::set<std::string>& taken) {
   std::replace(sequence.begin(), sequence.end(), ':', '_');
   std::string name = sequence;
   for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", sequence, number);
@@ -129,7 +136,9 @@ RunResult run_one(const FrameSource& source, const Config& config, int frames) {
   options.measure_orb_unit = true;
   const int total = frames > 0 ? std::min(frames, source.size()) : source.size();
   Progress progress(fmt::format("{} ({})", source.name(), config.run.method), total);
-  options.on_frame = [&progress](const FrameResult& frame) { progress.advance(std::string(to_string(frame.record.status))); };
+  options.on_frame = [&progress](const FrameResult& frame) {
+    progress.advance(std::string(to_string(frame.record.status)));
+  };
   return run_sequence(source, config, options);
 }
 
@@ -154,7 +163,8 @@ void benchmark(const BenchmarkArguments& arguments) {
     }
     rows.push_back(std::move(row));
     // After each sequence, so that an interrupted benchmark keeps what it has.
-    if (!arguments.out.empty()) write_tables(arguments.out, table_one(rows, arguments.methods), details_table(reports));
+    if (!arguments.out.empty())
+      write_tables(arguments.out, table_one(rows, arguments.methods), details_table(reports));
     if (stop_requested()) break;
   }
   fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
@@ -167,11 +177,17 @@ void benchmark(const BenchmarkArguments& arguments) {
 
 void add_benchmark_command(CLI::App& app) {
   const auto arguments = std::make_shared<BenchmarkArguments>();
-  CLI::App* command =
-      app.add_subcommand("benchmark", "Run sequences by several methods and print the paper's Table 1 with our columns");
-  command->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")->required();
-  command->add_option("--methods", arguments->methods, "Methods to compare, separated by commas")->delimiter(',')->capture_default_str();
-  command->add_option("--out", arguments->out, "Folder for the tables, as Markdown and CSV, and for SEQUENCE/METHOD folders of the runs");
+  CLI::App* command = app.add_subcommand(
+      "benchmark", "Run sequences by several methods and print the paper's Table 1 with our columns");
+  command
+      ->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")
+      ->required();
+  command->add_option("--methods", arguments->methods, "Methods to compare, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option(
+      "--out", arguments->out,
+      "Folder for the tables, as Markdown and CSV, and for SEQUENCE/METHOD folders of the runs");
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
   arguments->config.add_to(*command, false);
   arguments->frames.add_to(*command);

@@ -4,8 +4,8 @@
 
 namespace stillpoint {
 
-// Each subcommand lives in a file of its own and adds itself: its options, its help and its callback. A callback
-// throws InputError for bad input; main() reports it and sets the exit status.
+// Each subcommand lives in a file of its own and adds itself: its options, its help and its callback. A
+// callback throws InputError for bad input; main() reports it and sets the exit status.
 
 /// All of them, in the order the help lists them.
 void add_commands(CLI::App& app);

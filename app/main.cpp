@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
@@ -24,6 +26,12 @@ bool output_arrived() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Images come and go by the frame: kept by the allocator, their pages need not be had from the kernel anew
+  // each time.
+  constexpr int kKeptBytes = 256 << 20;
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+
   // Stages run beside each other here; threads inside OpenCV as well would only contend for the same cores.
   cv::setNumThreads(1);
   // What is wrong with an image is said once, by whoever reads it.

@@ -55,11 +55,12 @@ void Progress::advance(const std::string& remark) {
   if (done_ < total_ && elapsed - last_shown_ms_ < (terminal_ ? kBarInterval : kLineInterval)) return;
   last_shown_ms_ = elapsed;
   const double rate = done_ / (elapsed / 1000.0);
-  const std::string figures =
-      fmt::format("{}/{}  {:.1f} frames/s  {} left  {}", done_, total_, rate, clock_text((total_ - done_) / rate), remark);
+  const std::string figures = fmt::format("{}/{}  {:.1f} frames/s  {} left  {}", done_, total_, rate,
+                                          clock_text((total_ - done_) / rate), remark);
   if (terminal_) {
     const auto filled = static_cast<std::size_t>(kBarWidth * done_ / total_);
-    fmt::print(stderr, "\r\033[K{} [{}{}] {}", title_, std::string(filled, '#'), std::string(kBarWidth - filled, '.'), figures);
+    fmt::print(stderr, "\r\033[K{} [{}{}] {}", title_, std::string(filled, '#'),
+               std::string(kBarWidth - filled, '.'), figures);
     std::fflush(stderr);
   } else {
     fmt::print(stderr, "{}: {}\n", title_, figures);

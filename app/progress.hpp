@@ -11,7 +11,8 @@ namespace stillpoint {
 [[nodiscard]] const std::atomic<bool>& stop_requested();
 
 /// Thrown by a command that ended early because it was asked to, once what was done is written and told: the
-/// program then ends with status 128 + signal, as shells expect, so that no script takes a part for the whole.
+/// program then ends with status 128 + signal, as shells expect, so that no script takes a part for the
+/// whole.
 struct Interrupted {
   int signal = 0;
 };
@@ -19,7 +20,8 @@ struct Interrupted {
 /// Throws Interrupted when a stop was requested.
 void throw_if_interrupted();
 
-/// How far a long job is, on standard error: a bar with rate and remaining time on a terminal, a plain line now and then otherwise.
+/// How far a long job is, on standard error: a bar with rate and remaining time on a terminal, a plain line
+/// now and then otherwise.
 class Progress {
  public:
   Progress(std::string title, int total);

@@ -24,10 +24,12 @@ void run(const RunArguments& arguments) {
   const Config config = arguments.config.config();
   const auto source = arguments.frames.open(arguments.sequence, config);
   if (!source->has_depth())
-    throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint motion` works without",
-                                 arguments.sequence));
+    throw InputError(
+        fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint motion` works without",
+                    arguments.sequence));
   if (config.run.method == "oracle" && !source->has_masks())
-    throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", arguments.sequence));
+    throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt",
+                                 arguments.sequence));
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();
@@ -63,9 +65,11 @@ void run(const RunArguments& arguments) {
 
 void add_run_command(CLI::App& app) {
   const auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Run odometry over a sequence: trajectory, figures and per-frame data");
+  CLI::App* command =
+      app.add_subcommand("run", "Run odometry over a sequence: trajectory, figures and per-frame data");
   command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
-  command->add_option("--out", arguments->out, "Folder for trajectory, frames.csv, summary.json, config and map");
+  command->add_option("--out", arguments->out,
+                      "Folder for trajectory, frames.csv, summary.json, config and map");
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
   command->add_flag("--measure-unit", arguments->measure_unit,
                     "Also time OpenCV's ORB on every frame, the unit in which speed is compared");

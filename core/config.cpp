@@ -1,13 +1,13 @@
 #include "core/config.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <toml++/toml.h>
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
@@ -22,7 +22,8 @@ std::string in_range(const Parameter& p) {
 
 void check_range(const Parameter& p, double value, const std::string& where) {
   if (!(value >= p.min && value <= p.max))
-    throw InputError(fmt::format("{}{} = {} is out of range: it takes a number {}", where, p.key, value, in_range(p)));
+    throw InputError(
+        fmt::format("{}{} = {} is out of range: it takes a number {}", where, p.key, value, in_range(p)));
 }
 
 /// Stores a TOML value in the parameter. `where` opens every complaint.
@@ -54,7 +55,8 @@ Parameter& find_parameter(std::vector<Parameter>& all, std::string_view key, con
 std::string toml_value(const Parameter& p) {
   if (const auto* integer = std::get_if<int*>(&p.value)) return fmt::format("{}", **integer);
   if (const auto* text = std::get_if<std::string*>(&p.value)) return fmt::format("\"{}\"", **text);
-  std::string number = fmt::format("{}", *std::get<double*>(p.value));  // shortest text that reads back the same
+  std::string number =
+      fmt::format("{}", *std::get<double*>(p.value));  // shortest text that reads back the same
   if (number.find_first_of(".e") == std::string::npos) number += ".0";
   return number;
 }
@@ -67,49 +69,76 @@ std::string line_prefix(const std::string& path, const toml::source_region& sour
 
 std::vector<Parameter> parameters(Config& c) {
   std::vector<Parameter> all;
-  const auto number = [&](const char* key, auto* value, double min, double max, const char* unit, const char* help) {
+  const auto number = [&](const char* key, auto* value, double min, double max, const char* unit,
+                          const char* help) {
     all.push_back({key, value, min, max, {}, unit, help});
   };
 
-  all.push_back({"run.method", &c.run.method, 0, 0, {"stillpoint", "paper", "none", "oracle"}, "",
-                 "what is removed: what depth and memory show moving, what the paper finds, nothing, or what the true masks say (a reference)"});
+  all.push_back({"run.method",
+                 &c.run.method,
+                 0,
+                 0,
+                 {"stillpoint", "paper", "none", "oracle"},
+                 "",
+                 "what is removed: what depth and memory show moving, what the paper finds, nothing, or what "
+                 "the true masks say (a reference)"});
   number("run.threads", &c.run.threads, 1, 64, "threads", "worker threads; any number gives the same bytes");
   number("run.seed", &c.run.seed, 0, 1e9, "", "of generated sequences");
 
   MotionConfig& m = c.motion;
   number("motion.max_corners", &m.max_corners, 16, 20000, "corners", "corners followed per direction");
-  number("motion.corner_quality", &m.corner_quality, 1e-5, 1, "", "least corner response, as a share of the best corner's");
+  number("motion.corner_quality", &m.corner_quality, 1e-5, 1, "",
+         "least corner response, as a share of the best corner's");
   number("motion.corner_distance_px", &m.corner_distance_px, 1, 100, "px", "least distance between corners");
   number("motion.flow_window_px", &m.flow_window_px, 5, 101, "px", "side of the Lucas-Kanade window");
   number("motion.flow_levels", &m.flow_levels, 0, 8, "levels", "pyramid levels above the full image");
-  number("motion.flow_max_residual", &m.flow_max_residual, 0.1, 255, "grey levels", "mean absolute residual above which a track is dropped");
-  number("motion.ransac_threshold_px", &m.ransac_threshold_px, 0.1, 50, "px", "reprojection error that makes a track an inlier of the homography");
-  number("motion.ransac_confidence", &m.ransac_confidence, 0.5, 0.999999, "", "probability that RANSAC drew one outlier-free sample");
-  number("motion.ransac_iterations", &m.ransac_iterations, 10, 100000, "samples", "most samples RANSAC draws");
-  number("motion.refine_iterations", &m.refine_iterations, 0, 200, "steps", "most Levenberg-Marquardt steps on eq. (4)");
+  number("motion.flow_max_residual", &m.flow_max_residual, 0.1, 255, "grey levels",
+         "mean absolute residual above which a track is dropped");
+  number("motion.ransac_threshold_px", &m.ransac_threshold_px, 0.1, 50, "px",
+         "reprojection error that makes a track an inlier of the homography");
+  number("motion.ransac_confidence", &m.ransac_confidence, 0.5, 0.999999, "",
+         "probability that RANSAC drew one outlier-free sample");
+  number("motion.ransac_iterations", &m.ransac_iterations, 10, 100000, "samples",
+         "most samples RANSAC draws");
+  number("motion.refine_iterations", &m.refine_iterations, 0, 200, "steps",
+         "most Levenberg-Marquardt steps on eq. (4)");
   number("motion.erode_kernel_px", &m.erode_kernel_px, 1, 99, "px", "side of the square erosion kernel");
   number("motion.erode_iterations", &m.erode_iterations, 0, 20, "times", "how often the erosion is applied");
   number("motion.dilate_kernel_px", &m.dilate_kernel_px, 1, 99, "px", "side of the square dilation kernel");
-  number("motion.dilate_iterations", &m.dilate_iterations, 0, 20, "times", "how often the dilation is applied");
-  number("motion.border_px", &m.border_px, 0, 200, "px", "margin beside the warp's border that counts as having no data");
+  number("motion.dilate_iterations", &m.dilate_iterations, 0, 20, "times",
+         "how often the dilation is applied");
+  number("motion.border_px", &m.border_px, 0, 200, "px",
+         "margin beside the warp's border that counts as having no data");
   number("motion.max_rounds", &m.max_rounds, 1, 20, "rounds", "rounds of removal and a better homography");
-  number("motion.converged_shift_px", &m.converged_shift_px, 0, 10, "px", "rounds stop when no image corner moves more than this under the new homography");
-  number("motion.min_tracks", &m.min_tracks, 4, 10000, "tracks", "fewer static tracks than this and the last homography is kept");
-  number("motion.reference_gap", &m.reference_gap, 1, 100, "frames", "frames between the reference and the target");
+  number("motion.converged_shift_px", &m.converged_shift_px, 0, 10, "px",
+         "rounds stop when no image corner moves more than this under the new homography");
+  number("motion.min_tracks", &m.min_tracks, 4, 10000, "tracks",
+         "fewer static tracks than this and the last homography is kept");
+  number("motion.reference_gap", &m.reference_gap, 1, 100, "frames",
+         "frames between the reference and the target");
 
   DepthMotionConfig& d = c.depth_motion;
-  number("depth_motion.factor", &d.factor, 1, 16, "px", "side of the block of pixels in which motion is judged");
-  number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames", "how far back the nearer reference lies");
-  number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames", "how far back the farther reference lies");
-  number("depth_motion.depth_sigmas", &d.depth_sigmas, 1, 50, "sigma", "depth residual beyond which a pixel counts as moved");
-  number("depth_motion.intensity_sigmas", &d.intensity_sigmas, 1, 50, "sigma", "brightness residual beyond which a pixel counts as moved");
-  number("depth_motion.gradient_share", &d.gradient_share, 0, 5, "", "share of the local gradient a brightness residual may reach");
+  number("depth_motion.factor", &d.factor, 1, 16, "px",
+         "side of the block of pixels in which motion is judged");
+  number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames",
+         "how far back the nearer reference lies");
+  number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames",
+         "how far back the farther reference lies");
+  number("depth_motion.depth_sigmas", &d.depth_sigmas, 1, 50, "sigma",
+         "depth residual beyond which a pixel counts as moved");
+  number("depth_motion.intensity_sigmas", &d.intensity_sigmas, 1, 50, "sigma",
+         "brightness residual beyond which a pixel counts as moved");
+  number("depth_motion.gradient_share", &d.gradient_share, 0, 5, "",
+         "share of the local gradient a brightness residual may reach");
   number("depth_motion.memory", &d.memory, 0, 1, "", "share of the log-odds carried to the next frame");
   number("depth_motion.max_log_odds", &d.max_log_odds, 0.5, 100, "", "where evidence saturates");
   number("depth_motion.segment_px", &d.segment_px, 4, 100, "px", "side of a surface patch, in blocks");
-  number("depth_motion.smoothing", &d.smoothing, 0, 100, "", "weight of neighbours on the same surface against a patch's own evidence");
-  number("depth_motion.moving_log_odds", &d.moving_log_odds, 0.01, 10, "", "log-odds above which a patch moves");
-  number("depth_motion.min_area_share", &d.min_area_share, 0, 0.5, "", "share of the image below which a region is noise");
+  number("depth_motion.smoothing", &d.smoothing, 0, 100, "",
+         "weight of neighbours on the same surface against a patch's own evidence");
+  number("depth_motion.moving_log_odds", &d.moving_log_odds, 0.01, 10, "",
+         "log-odds above which a patch moves");
+  number("depth_motion.min_area_share", &d.min_area_share, 0, 0.5, "",
+         "share of the image below which a region is noise");
   number("depth_motion.margin_px", &d.margin_px, 0, 50, "px", "added about the mask at the end");
 
   FeatureConfig& f = c.features;
@@ -117,41 +146,63 @@ std::vector<Parameter> parameters(Config& c) {
   number("features.levels", &f.levels, 1, 12, "levels", "pyramid levels");
   number("features.scale_factor", &f.scale_factor, 1.05, 2, "", "scale from level to level");
   number("features.fast_threshold", &f.fast_threshold, 1, 200, "grey levels", "FAST threshold");
-  number("features.fast_threshold_low", &f.fast_threshold_low, 1, 200, "grey levels", "FAST threshold where a cell has no corner otherwise");
+  number("features.fast_threshold_low", &f.fast_threshold_low, 1, 200, "grey levels",
+         "FAST threshold where a cell has no corner otherwise");
 
   TrackingConfig& t = c.tracking;
-  number("tracking.search_radius_px", &t.search_radius_px, 1, 200, "px", "matching window about the predicted pixel");
-  number("tracking.search_radius_wide_px", &t.search_radius_wide_px, 1, 400, "px", "the same at the second attempt");
-  number("tracking.map_radius_px", &t.map_radius_px, 0.5, 100, "px", "matching window of map points once the pose is known");
-  number("tracking.match_max_distance", &t.match_max_distance, 1, 256, "bits", "largest distance of ORB descriptors");
+  number("tracking.search_radius_px", &t.search_radius_px, 1, 200, "px",
+         "matching window about the predicted pixel");
+  number("tracking.search_radius_wide_px", &t.search_radius_wide_px, 1, 400, "px",
+         "the same at the second attempt");
+  number("tracking.map_radius_px", &t.map_radius_px, 0.5, 100, "px",
+         "matching window of map points once the pose is known");
+  number("tracking.match_max_distance", &t.match_max_distance, 1, 256, "bits",
+         "largest distance of ORB descriptors");
   number("tracking.match_ratio", &t.match_ratio, 0.1, 1, "", "best over second-best distance");
   number("tracking.min_inliers", &t.min_inliers, 6, 1000, "matches", "fewer inliers and the frame is lost");
-  number("tracking.min_initial_matches", &t.min_initial_matches, 6, 1000, "matches", "fewer and the motion model has failed");
+  number("tracking.min_initial_matches", &t.min_initial_matches, 6, 1000, "matches",
+         "fewer and the motion model has failed");
   number("tracking.pnp_iterations", &t.pnp_iterations, 10, 10000, "samples", "RANSAC samples for EPnP");
   number("tracking.pnp_threshold_px", &t.pnp_threshold_px, 0.5, 50, "px", "inlier threshold for EPnP");
-  number("tracking.refine_iterations", &t.refine_iterations, 1, 100, "steps", "Levenberg-Marquardt steps a round of eq. (5)");
-  number("tracking.refine_rounds", &t.refine_rounds, 1, 10, "rounds", "rounds of eq. (5), outliers told apart again after each");
-  number("tracking.correct_rolling_shutter", &t.correct_rolling_shutter, 0, 1, "", "1 carries features to where their frame's middle row would show them");
-  number("tracking.correct_depth_lag", &t.correct_depth_lag, 0, 1, "", "1 carries depth taken at another time than colour to colour's time");
-  number("tracking.depth_weight", &t.depth_weight, 0, 10, "", "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
+  number("tracking.refine_iterations", &t.refine_iterations, 1, 100, "steps",
+         "Levenberg-Marquardt steps a round of eq. (5)");
+  number("tracking.refine_rounds", &t.refine_rounds, 1, 10, "rounds",
+         "rounds of eq. (5), outliers told apart again after each");
+  number("tracking.correct_rolling_shutter", &t.correct_rolling_shutter, 0, 1, "",
+         "1 carries features to where their frame's middle row would show them");
+  number("tracking.correct_depth_lag", &t.correct_depth_lag, 0, 1, "",
+         "1 carries depth taken at another time than colour to colour's time");
+  number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
+         "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 
   MapConfig& k = c.map;
-  number("map.far_depth_m", &k.far_depth_m, 0.1, 50, "m", "points are made from depth up to here, farther only when few are near");
-  number("map.min_new_points", &k.min_new_points, 0, 5000, "points", "so many nearest points are made however far");
-  number("map.keyframe_max_gap", &k.keyframe_max_gap, 1, 1000, "frames", "after so many frames a keyframe may be made whatever else");
-  number("map.keyframe_min_ratio", &k.keyframe_min_ratio, 0, 1, "", "a keyframe is made when inliers fall below this share of the reference's");
-  number("map.keyframe_min_near", &k.keyframe_min_near, 0, 5000, "features", "or fewer near features than this are tracked");
-  number("map.keyframe_new_near", &k.keyframe_new_near, 0, 5000, "features", "while so many near ones wait to become points");
-  number("map.cull_redundancy", &k.cull_redundancy, 0.1, 1, "", "a keyframe is culled when this share of its points is seen by three others");
-  number("map.min_found_ratio", &k.min_found_ratio, 0, 1, "", "a young point found in less than this share of its sightings is culled");
-  number("map.max_local_keyframes", &k.max_local_keyframes, 1, 500, "keyframes", "covisible keyframes in the local map");
+  number("map.far_depth_m", &k.far_depth_m, 0.1, 50, "m",
+         "points are made from depth up to here, farther only when few are near");
+  number("map.min_new_points", &k.min_new_points, 0, 5000, "points",
+         "so many nearest points are made however far");
+  number("map.keyframe_max_gap", &k.keyframe_max_gap, 1, 1000, "frames",
+         "after so many frames a keyframe may be made whatever else");
+  number("map.keyframe_min_ratio", &k.keyframe_min_ratio, 0, 1, "",
+         "a keyframe is made when inliers fall below this share of the reference's");
+  number("map.keyframe_min_near", &k.keyframe_min_near, 0, 5000, "features",
+         "or fewer near features than this are tracked");
+  number("map.keyframe_new_near", &k.keyframe_new_near, 0, 5000, "features",
+         "while so many near ones wait to become points");
+  number("map.cull_redundancy", &k.cull_redundancy, 0.1, 1, "",
+         "a keyframe is culled when this share of its points is seen by three others");
+  number("map.min_found_ratio", &k.min_found_ratio, 0, 1, "",
+         "a young point found in less than this share of its sightings is culled");
+  number("map.max_local_keyframes", &k.max_local_keyframes, 1, 500, "keyframes",
+         "covisible keyframes in the local map");
   number("map.max_keyframes", &k.max_keyframes, 2, 10000, "keyframes", "beyond them the oldest retires");
 
   BundleConfig& b = c.bundle;
   number("bundle.max_keyframes", &b.max_keyframes, 1, 100, "keyframes", "local keyframes refined");
-  number("bundle.max_fixed_keyframes", &b.max_fixed_keyframes, 1, 200, "keyframes", "keyframes that share their points, held fixed");
+  number("bundle.max_fixed_keyframes", &b.max_fixed_keyframes, 1, 200, "keyframes",
+         "keyframes that share their points, held fixed");
   number("bundle.iterations", &b.iterations, 1, 100, "steps", "most Levenberg-Marquardt steps");
-  number("bundle.apply_after_frames", &b.apply_after_frames, 0, 10, "frames", "how long after its keyframe a result enters the map");
+  number("bundle.apply_after_frames", &b.apply_after_frames, 0, 10, "frames",
+         "how long after its keyframe a result enters the map");
   return all;
 }
 
@@ -166,7 +217,8 @@ Config read_config(const std::string& path) {
   try {
     table = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
-    throw InputError(line_prefix(path, error.source()) + "not valid TOML: " + std::string(error.description()));
+    throw InputError(line_prefix(path, error.source()) +
+                     "not valid TOML: " + std::string(error.description()));
   }
 
   Config config;
@@ -193,8 +245,8 @@ Config load_config(const std::string& preset_or_path) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, none))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
-  throw InputError(fmt::format("there is no preset '{}'; the presets are: {} (or give a .toml file)", preset_or_path,
-                               fmt::join(names, ", ")));
+  throw InputError(fmt::format("there is no preset '{}'; the presets are: {} (or give a .toml file)",
+                               preset_or_path, fmt::join(names, ", ")));
 }
 
 void set_parameter(Config& config, std::string_view assignment) {

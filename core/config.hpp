@@ -10,83 +10,89 @@ namespace stillpoint {
 
 /// METHOD.md §1: what moves between two frames.
 struct MotionConfig {
-  int max_corners = 600;                ///< Shi-Tomasi corners followed per direction
-  double corner_quality = 0.01;         ///< least corner response, as a share of the best corner's
-  double corner_distance_px = 12.0;     ///< least distance between corners
-  int flow_window_px = 21;              ///< side of the Lucas-Kanade window
-  int flow_levels = 3;                  ///< pyramid levels above the full image
-  double flow_max_residual = 20.0;      ///< mean absolute grey-level residual above which a track is dropped
-  double ransac_threshold_px = 2.0;     ///< reprojection error that makes a track an inlier of the homography
-  double ransac_confidence = 0.995;     ///< probability that RANSAC drew one outlier-free sample
-  int ransac_iterations = 2000;         ///< most samples RANSAC draws
-  int refine_iterations = 20;           ///< most Levenberg-Marquardt steps on eq. (4)
-  int erode_kernel_px = 4;              ///< side of the square erosion kernel
-  int erode_iterations = 2;             ///< times the erosion is applied
-  int dilate_kernel_px = 16;            ///< side of the square dilation kernel
-  int dilate_iterations = 1;            ///< times the dilation is applied
-  int border_px = 3;                    ///< margin beside the warp's border that counts as having no data
-  int max_rounds = 3;                   ///< rounds of removal and a better homography
-  double converged_shift_px = 0.1;      ///< rounds stop when no image corner moves more than this under the new H
-  int min_tracks = 12;                  ///< fewer static tracks than this and the round keeps the last homography
-  int reference_gap = 1;                ///< frames between the reference and the target; 1 as in the paper
+  int max_corners = 600;             ///< Shi-Tomasi corners followed per direction
+  double corner_quality = 0.01;      ///< least corner response, as a share of the best corner's
+  double corner_distance_px = 12.0;  ///< least distance between corners
+  int flow_window_px = 21;           ///< side of the Lucas-Kanade window
+  int flow_levels = 3;               ///< pyramid levels above the full image
+  double flow_max_residual = 20.0;   ///< mean absolute grey-level residual above which a track is dropped
+  double ransac_threshold_px = 2.0;  ///< reprojection error that makes a track an inlier of the homography
+  double ransac_confidence = 0.995;  ///< probability that RANSAC drew one outlier-free sample
+  int ransac_iterations = 2000;      ///< most samples RANSAC draws
+  int refine_iterations = 20;        ///< most Levenberg-Marquardt steps on eq. (4)
+  int erode_kernel_px = 4;           ///< side of the square erosion kernel
+  int erode_iterations = 2;          ///< times the erosion is applied
+  int dilate_kernel_px = 16;         ///< side of the square dilation kernel
+  int dilate_iterations = 1;         ///< times the dilation is applied
+  int border_px = 3;                 ///< margin beside the warp's border that counts as having no data
+  int max_rounds = 3;                ///< rounds of removal and a better homography
+  double converged_shift_px = 0.1;  ///< rounds stop when no image corner moves more than this under the new H
+  int min_tracks = 12;              ///< fewer static tracks than this and the round keeps the last homography
+  int reference_gap = 1;            ///< frames between the reference and the target; 1 as in the paper
 };
 
 /// Method `stillpoint`: what moves where there is depth.
 struct DepthMotionConfig {
-  int factor = 4;                       ///< full-size pixels a side of a pixel in which motion is judged
-  int near_reference = 2;               ///< frames back to the nearer reference
-  int far_reference = 10;               ///< frames back to the farther one: for slow movers
-  double depth_sigmas = 4.0;            ///< depth residual beyond which a pixel counts as moved, standard deviations
-  double intensity_sigmas = 4.0;        ///< the same of brightness
-  double gradient_share = 0.75;         ///< of the local gradient that a brightness residual may reach for want of exact pixels
-  double memory = 0.9;                  ///< share of the log-odds carried to the next frame
-  double max_log_odds = 4.0;            ///< evidence saturates here, so that a change of mind stays possible
-  int segment_px = 10;                  ///< side of a surface patch, small pixels
-  double smoothing = 0.6;               ///< weight of neighbours on the same surface against a patch's own evidence
-  double moving_log_odds = 0.35;        ///< above it a patch moves
-  double min_area_share = 0.0015;       ///< smaller regions are noise, share of the image
-  int margin_px = 2;                    ///< added about the mask at the end
+  int factor = 4;             ///< full-size pixels a side of a pixel in which motion is judged
+  int near_reference = 2;     ///< frames back to the nearer reference
+  int far_reference = 10;     ///< frames back to the farther one: for slow movers
+  double depth_sigmas = 4.0;  ///< depth residual beyond which a pixel counts as moved, standard deviations
+  double intensity_sigmas = 4.0;  ///< the same of brightness
+  double gradient_share =
+      0.75;  ///< of the local gradient that a brightness residual may reach for want of exact pixels
+  double memory = 0.9;            ///< share of the log-odds carried to the next frame
+  double max_log_odds = 4.0;      ///< evidence saturates here, so that a change of mind stays possible
+  int segment_px = 10;            ///< side of a surface patch, small pixels
+  double smoothing = 0.6;         ///< weight of neighbours on the same surface against a patch's own evidence
+  double moving_log_odds = 0.35;  ///< above it a patch moves
+  double min_area_share = 0.0015;  ///< smaller regions are noise, share of the image
+  int margin_px = 2;               ///< added about the mask at the end
 };
 
 /// ORB features spread over the image.
 struct FeatureConfig {
-  int count = 1000;                 ///< features wanted a frame
-  int levels = 8;                   ///< pyramid levels
-  double scale_factor = 1.2;        ///< from level to level
-  int fast_threshold = 20;          ///< FAST threshold, grey levels
-  int fast_threshold_low = 7;       ///< where a cell has no corner at fast_threshold
+  int count = 1000;            ///< features wanted a frame
+  int levels = 8;              ///< pyramid levels
+  double scale_factor = 1.2;   ///< from level to level
+  int fast_threshold = 20;     ///< FAST threshold, grey levels
+  int fast_threshold_low = 7;  ///< where a cell has no corner at fast_threshold
 };
 
 /// Tracking against the local map.
 struct TrackingConfig {
-  double search_radius_px = 15.0;         ///< matching window at pyramid level 0, motion model predicted
-  double search_radius_wide_px = 30.0;    ///< second attempt
-  double map_radius_px = 4.0;             ///< matching window of local map points once the pose is known
-  int match_max_distance = 100;           ///< largest ORB distance, bits of 256
-  double match_ratio = 0.8;               ///< best over second-best distance, same level
-  int min_inliers = 20;                   ///< fewer inliers than this and the frame is lost
-  int min_initial_matches = 15;           ///< fewer and the motion model has failed
-  int pnp_iterations = 200;               ///< RANSAC samples for EPnP
-  double pnp_threshold_px = 4.0;          ///< inlier threshold for EPnP at level 0
-  int refine_iterations = 10;             ///< Levenberg-Marquardt steps a round of eq. (5)
-  int refine_rounds = 4;                  ///< rounds, outliers reclassified after each
-  int correct_rolling_shutter = 1;        ///< 1: features are carried to where their frame's middle row would show them
-  int correct_depth_lag = 1;              ///< 1: depth taken at another time than colour is carried to colour's time
-  double depth_weight = 1.0;              ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
+  double search_radius_px = 15.0;       ///< matching window at pyramid level 0, motion model predicted
+  double search_radius_wide_px = 30.0;  ///< second attempt
+  double map_radius_px = 4.0;           ///< matching window of local map points once the pose is known
+  int match_max_distance = 100;         ///< largest ORB distance, bits of 256
+  double match_ratio = 0.8;             ///< best over second-best distance, same level
+  int min_inliers = 20;                 ///< fewer inliers than this and the frame is lost
+  int min_initial_matches = 15;         ///< fewer and the motion model has failed
+  int pnp_iterations = 200;             ///< RANSAC samples for EPnP
+  double pnp_threshold_px = 4.0;        ///< inlier threshold for EPnP at level 0
+  int refine_iterations = 10;           ///< Levenberg-Marquardt steps a round of eq. (5)
+  int refine_rounds = 4;                ///< rounds, outliers reclassified after each
+  int correct_rolling_shutter =
+      1;                      ///< 1: features are carried to where their frame's middle row would show them
+  int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
+  double depth_weight =
+      1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
 };
 
 /// The local map and its keyframes.
 struct MapConfig {
-  double far_depth_m = 3.0;          ///< points are made from depth up to here, beyond only if few are near
-  int min_new_points = 100;          ///< so many nearest points are made however far
-  int keyframe_max_gap = 30;         ///< frames after which a keyframe may be made whatever else
-  double keyframe_min_ratio = 0.75;  ///< a keyframe is made when inliers fall below this share of the reference's
-  int keyframe_min_near = 100;       ///< … or fewer near features than this are tracked while `keyframe_new_near` wait
-  int keyframe_new_near = 70;        ///< near features without a map point that make a keyframe worthwhile
-  double cull_redundancy = 0.9;      ///< a keyframe is culled when this share of its points is seen by three others
-  double min_found_ratio = 0.25;     ///< a young point found in less than this share of its sightings is culled
-  int max_local_keyframes = 20;      ///< covisible keyframes in the local map
-  int max_keyframes = 100;           ///< beyond them the oldest retires: what keeps memory flat
+  double far_depth_m = 3.0;   ///< points are made from depth up to here, beyond only if few are near
+  int min_new_points = 100;   ///< so many nearest points are made however far
+  int keyframe_max_gap = 30;  ///< frames after which a keyframe may be made whatever else
+  double keyframe_min_ratio =
+      0.75;  ///< a keyframe is made when inliers fall below this share of the reference's
+  int keyframe_min_near =
+      100;  ///< … or fewer near features than this are tracked while `keyframe_new_near` wait
+  int keyframe_new_near = 70;  ///< near features without a map point that make a keyframe worthwhile
+  double cull_redundancy =
+      0.9;  ///< a keyframe is culled when this share of its points is seen by three others
+  double min_found_ratio = 0.25;  ///< a young point found in less than this share of its sightings is culled
+  int max_local_keyframes = 20;   ///< covisible keyframes in the local map
+  int max_keyframes = 100;        ///< beyond them the oldest retires: what keeps memory flat
 };
 
 /// Local bundle adjustment.
@@ -129,7 +135,8 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> parameters(Config& config);
 
 /// Reads TOML over the defaults; keys not given keep their default.
-/// @throws InputError with file and line: unreadable, not TOML, an unknown key, a wrong type or a value out of range.
+/// @throws InputError with file and line: unreadable, not TOML, an unknown key, a wrong type or a value out
+/// of range.
 [[nodiscard]] Config read_config(const std::string& path);
 
 /// A preset by name (`assets/presets/NAME.toml`), or a TOML file by path.
@@ -140,7 +147,8 @@ struct Parameter {
 /// @throws InputError for an unknown key, a wrong type or a value out of range.
 void set_parameter(Config& config, std::string_view assignment);
 
-/// The config as TOML, every key with its unit and meaning as a comment; read_config reads it back to the same.
+/// The config as TOML, every key with its unit and meaning as a comment; read_config reads it back to the
+/// same.
 [[nodiscard]] std::string to_toml(const Config& config);
 
 }  // namespace stillpoint

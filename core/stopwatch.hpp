@@ -4,7 +4,8 @@
 
 namespace stillpoint {
 
-/// Milliseconds of wall time since it was made or last restarted. For the timing figures; no result depends on it.
+/// Milliseconds of wall time since it was made or last restarted. For the timing figures; no result depends
+/// on it.
 class Stopwatch {
  public:
   [[nodiscard]] double milliseconds() const {

@@ -1,10 +1,10 @@
 #include "core/geometry/camera.hpp"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
-#include <toml++/toml.h>
 
 #include "core/error.hpp"
 
@@ -24,8 +24,8 @@ Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2
   return camera;
 }
 
-/// The first Kinect's and the Xtion's colour sensor, which TUM's and Bonn's sequences were filmed with, takes nearly the
-/// whole time between frames to read an image.
+/// The first Kinect's and the Xtion's colour sensor, which TUM's and Bonn's sequences were filmed with, takes
+/// nearly the whole time between frames to read an image.
 Camera with_kinect_readout(Camera camera) {
   camera.readout_s = 0.030;
   return camera;
@@ -68,14 +68,15 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
 const std::vector<Camera>& known_cameras() {
   // freiburg2's depth reads about 4 % short at 5000 per metre; 5208 is what ORB-SLAM2 uses.
   static const std::vector<Camera> cameras = {
-      with_kinect_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989), 0.262383,
-                                          -0.953104, -0.005358, 0.002628, 1.163314)),
-      with_kinect_readout(with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0),
-                                          0.231222, -0.784899, -0.003257, -0.000105, 0.917205)),
+      with_kinect_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989),
+                                          0.262383, -0.953104, -0.005358, 0.002628, 1.163314)),
+      with_kinect_readout(
+          with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0), 0.231222,
+                          -0.784899, -0.003257, -0.000105, 0.917205)),
       with_kinect_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6)),
       make("icl_nuim", 481.20, 480.00, 319.50, 239.50),
-      with_kinect_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903,
-                                          -0.099343, -0.000730, -0.000144, 0.0)),
+      with_kinect_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098),
+                                          0.039903, -0.099343, -0.000730, -0.000144, 0.0)),
       make("generated", 535.4, 539.2, 320.1, 247.6),
       make("ros_default", 525.0, 525.0, 319.5, 239.5),
   };
@@ -115,9 +116,17 @@ Camera read_camera(const std::string& path) {
   }
   Camera camera;
   camera.name = path;
-  const std::pair<const char*, double*> reals[] = {
-      {"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}, {"k1", &camera.k1},
-      {"k2", &camera.k2}, {"p1", &camera.p1}, {"p2", &camera.p2}, {"k3", &camera.k3}, {"depth_scale", &camera.depth_scale}, {"readout_s", &camera.readout_s}};
+  const std::pair<const char*, double*> reals[] = {{"fx", &camera.fx},
+                                                   {"fy", &camera.fy},
+                                                   {"cx", &camera.cx},
+                                                   {"cy", &camera.cy},
+                                                   {"k1", &camera.k1},
+                                                   {"k2", &camera.k2},
+                                                   {"p1", &camera.p1},
+                                                   {"p2", &camera.p2},
+                                                   {"k3", &camera.k3},
+                                                   {"depth_scale", &camera.depth_scale},
+                                                   {"readout_s", &camera.readout_s}};
   const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
   for (auto&& [key, node] : table) {
     const std::string where = fmt::format("{}:{}: {}", path, node.source().begin.line, key.str());
@@ -136,7 +145,8 @@ Camera read_camera(const std::string& path) {
     for (auto& [name, target] : integers)
       if (key.str() == name) {
         const auto value = node.value_exact<std::int64_t>();
-        if (!value || *value < 32 || *value > 16384) throw InputError(where + " takes a whole number of px from 32 to 16384");
+        if (!value || *value < 32 || *value > 16384)
+          throw InputError(where + " takes a whole number of px from 32 to 16384");
         *target = static_cast<int>(*value), known = true;
       }
     if (!known) throw InputError(where + " is no key of a camera");
@@ -145,7 +155,8 @@ Camera read_camera(const std::string& path) {
     if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));
   if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
-  if (std::abs(camera.readout_s) > 0.2) throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
+  if (std::abs(camera.readout_s) > 0.2)
+    throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
   return camera;
 }
 

@@ -14,12 +14,13 @@ namespace stillpoint {
 /// Images are shown as they are; geometry uses undistorted pixels (Camera::undistort).
 struct Camera {
   std::string name = "ros_default";
-  int width = 640;   ///< px
-  int height = 480;  ///< px
+  int width = 640;                                        ///< px
+  int height = 480;                                       ///< px
   double fx = 525.0, fy = 525.0, cx = 319.5, cy = 239.5;  ///< px
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;          ///< distortion, OpenCV's order and meaning
   double depth_scale = 5000.0;                            ///< depth image units a metre
-  double readout_s = 0.0;  ///< s from the first row's exposure to the last one's; 0 = global shutter. Stamps are the middle row's
+  double readout_s = 0.0;  ///< s from the first row's exposure to the last one's; 0 = global shutter. Stamps
+                           ///< are the middle row's
 
   [[nodiscard]] bool has_distortion() const;
 
@@ -56,8 +57,10 @@ struct Camera {
 /// The camera a folder's name speaks of ("…freiburg1…", "fr2_desk", …), or nothing.
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
-/// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale, readout_s.
-/// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of range.
+/// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
+/// readout_s.
+/// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
+/// range.
 [[nodiscard]] Camera read_camera(const std::string& path);
 
 /// `NAME|FILE.toml` as given on the command line.

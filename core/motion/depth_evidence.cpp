@@ -11,11 +11,11 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kMinIntensitySigma = 2.0F;  // grey levels: no camera is better
 // Log-odds a pixel gets from one reference.
-constexpr float kSeenThrough = 1.2F;   // free space where the surface is now
-constexpr float kStepsBack = 0.5F;     // a surface nearer by little: most likely the same one, moving off
+constexpr float kSeenThrough = 1.2F;  // free space where the surface is now
+constexpr float kStepsBack = 0.5F;    // a surface nearer by little: most likely the same one, moving off
 constexpr float kOtherBrightness = 0.6F;
-constexpr float kSameDepth = -0.25F;   // weak: the middle of a mover agrees with itself
-constexpr float kSameTexture = -0.4F;  // a textured pixel that looks the same does stand still
+constexpr float kSameDepth = -0.25F;     // weak: the middle of a mover agrees with itself
+constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same does stand still
 constexpr float kStepBackLimit = 0.15F;  // m: a surface farther off than this was another one
 
 /// Where a pixel of the current view lies in the reference.
@@ -30,7 +30,8 @@ class Carrier {
  public:
   Carrier(const Camera& camera, const Pose& other_from_current) : camera_(camera) {
     for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) r_[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(other_from_current.linear()(r, c));
+      for (int c = 0; c < 3; ++c)
+        r_[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(other_from_current.linear()(r, c));
       t_[static_cast<std::size_t>(r)] = static_cast<float>(other_from_current.translation()(r));
     }
     fx_ = static_cast<float>(camera.fx), fy_ = static_cast<float>(camera.fy);
@@ -44,7 +45,8 @@ class Carrier {
     if (c.z < 0.1F) return c;
     c.u = fx_ * (r_[0] * px + r_[1] * py + r_[2] * z + t_[0]) / c.z + cx_;
     c.v = fy_ * (r_[3] * px + r_[4] * py + r_[5] * z + t_[1]) / c.z + cy_;
-    c.inside = c.u >= 1 && c.v >= 1 && c.u < static_cast<float>(camera_.width - 2) && c.v < static_cast<float>(camera_.height - 2);
+    c.inside = c.u >= 1 && c.v >= 1 && c.u < static_cast<float>(camera_.width - 2) &&
+               c.v < static_cast<float>(camera_.height - 2);
     return c;
   }
 
@@ -55,8 +57,8 @@ class Carrier {
   float fx_, fy_, cx_, cy_;
 };
 
-/// Of the nine measurements about a pixel, the one nearest to what is expected; 0 when there is none. Edges lie a
-/// pixel off easily, and then the neighbour still has the surface.
+/// Of the nine measurements about a pixel, the one nearest to what is expected; 0 when there is none. Edges
+/// lie a pixel off easily, and then the neighbour still has the surface.
 float nearest_depth(const cv::Mat& depth, int x, int y, float expected) {
   float best = 0.0F, best_difference = std::numeric_limits<float>::max();
   for (int dy = -1; dy <= 1; ++dy) {
@@ -85,8 +87,8 @@ float median_of(std::vector<float>& values) {
 }
 
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
-cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, const DepthMotionConfig& config,
-                      ReferenceEvidence& evidence) {
+cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
+                      const DepthMotionConfig& config, ReferenceEvidence& evidence) {
   const cv::Size size = current.depth.size();
   evidence.depth_residual = cv::Mat(size, CV_32FC1, cv::Scalar(kUnknown));
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
@@ -99,7 +101,8 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
       if (z <= 0) continue;
       const Carried there = carry(x, y, z);
       if (!there.inside) continue;
-      const float measured = nearest_depth(reference.view->depth, cvRound(there.u), cvRound(there.v), there.z);
+      const float measured =
+          nearest_depth(reference.view->depth, cvRound(there.u), cvRound(there.v), there.z);
       if (measured <= 0) continue;
       const float sigma = std::hypot(depth_sigma(z), depth_sigma(measured));
       const float residual = (measured - there.z) / sigma;
@@ -111,7 +114,8 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
         if (there.z - measured < kStepBackLimit) odds = kStepsBack;
       } else {
         odds = kSameDepth;
-        brightness.at<float>(y, x) = current.gray.at<float>(y, x) - bilinear(reference.view->gray, there.u, there.v);
+        brightness.at<float>(y, x) =
+            current.gray.at<float>(y, x) - bilinear(reference.view->gray, there.u, there.v);
       }
     }
   return brightness;
@@ -126,10 +130,12 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   ReferenceEvidence evidence;
   const cv::Mat brightness = compare_depth(current, reference, config, evidence);
 
-  // Exposure may have changed between the two: the median difference is taken off; what spreads about it is noise.
+  // Exposure may have changed between the two: the median difference is taken off; what spreads about it is
+  // noise.
   std::vector<float> values;
   for (int i = 0; i < static_cast<int>(brightness.total()); i += 3)
-    if (const float b = brightness.at<float>(i / brightness.cols, i % brightness.cols); !std::isnan(b)) values.push_back(b);
+    if (const float b = brightness.at<float>(i / brightness.cols, i % brightness.cols); !std::isnan(b))
+      values.push_back(b);
   const float shift = median_of(values);
   for (float& value : values) value = std::abs(value - shift);
   const float sigma = std::max(kMinIntensitySigma, 1.4826F * median_of(values));
@@ -171,15 +177,18 @@ cv::Mat carry_memory(const RgbdView& current, const MotionMemory& memory, const 
       const int u = cvRound(there.u), v = cvRound(there.v);
       const float tolerance = kLikeDepth + kDepthShare * z;
       float odds = 0.0F;
-      if (std::abs(memory.view->depth.at<float>(v, u) - there.z) < tolerance) odds = memory.log_odds.at<float>(v, u);
-      // What moved may come from beside; it is remembered as moving wherever it steps, if nothing surer is known.
+      if (std::abs(memory.view->depth.at<float>(v, u) - there.z) < tolerance)
+        odds = memory.log_odds.at<float>(v, u);
+      // What moved may come from beside; it is remembered as moving wherever it steps, if nothing surer is
+      // known.
       if (odds <= 0)
         for (int dy = -kReach; dy <= kReach; ++dy)
           for (int dx = -kReach; dx <= kReach; ++dx) {
             const int px = u + dx, py = v + dy;
             if (px < 0 || py < 0 || px >= prior.cols || py >= prior.rows) continue;
             const float near = memory.log_odds.at<float>(py, px);
-            if (near > odds && near > 0 && std::abs(memory.view->depth.at<float>(py, px) - there.z) < 0.5F * tolerance)
+            if (near > odds && near > 0 &&
+                std::abs(memory.view->depth.at<float>(py, px) - there.z) < 0.5F * tolerance)
               odds = near;
           }
       prior.at<float>(y, x) = keep * odds;

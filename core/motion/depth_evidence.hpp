@@ -7,7 +7,8 @@ namespace stillpoint {
 // The per-pixel part of detect_depth_motion; see there.
 
 /// Carries every pixel of `current` into the reference and compares depth, then brightness.
-[[nodiscard]] ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
+[[nodiscard]] ReferenceEvidence compare_with_reference(const RgbdView& current,
+                                                       const ReferenceView& reference,
                                                        const DepthMotionConfig& config);
 
 /// The log-odds of the frame before, brought to where they belong now: by the camera's motion for what stands

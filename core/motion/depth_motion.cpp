@@ -16,7 +16,8 @@ cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments
   cv::Mat mask = cv::Mat::zeros(labels.size(), CV_8UC1);
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label >= 0 && segments[static_cast<std::size_t>(label)].moving)
+      if (const int label = labels.at<int>(y, x);
+          label >= 0 && segments[static_cast<std::size_t>(label)].moving)
         mask.at<uchar>(y, x) = 255;
   return mask;
 }
@@ -26,14 +27,15 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
   const double least = min_area_share * static_cast<double>(mask.total());
   std::vector<std::uint8_t> keep(static_cast<std::size_t>(count), 0);
-  for (int i = 1; i < count; ++i) keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
+  for (int i = 1; i < count; ++i)
+    keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
   for (int y = 0; y < mask.rows; ++y)
     for (int x = 0; x < mask.cols; ++x)
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// The small mask at full size, its outline fitted to the depth image: about an edge a pixel goes with the small
-/// neighbour whose depth is most like its own.
+/// The small mask at full size, its outline fitted to the depth image: about an edge a pixel goes with the
+/// small neighbour whose depth is most like its own.
 cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
   cv::Mat edge, low, high;
   cv::erode(small_mask, low, cv::Mat());
@@ -90,7 +92,9 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
     const int side = 2 * config.margin_px + 1;
     cv::dilate(trace.mask, trace.mask, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   }
-  trace.mask_share = static_cast<double>(cv::countNonZero(trace.mask)) / static_cast<double>(trace.mask.total());
+  LabelledRegions found = find_regions(trace.mask);
+  trace.regions = std::move(found.regions);
+  trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
   // What a patch was found to be is what its pixels are remembered as.

@@ -12,9 +12,10 @@
 
 namespace stillpoint {
 
-// What moves, judged where there is depth: every pixel is carried by the camera's own motion into frames a moment
-// back and some tenths of a second back, and must be found there, as far away and as bright as it is now. What was seen *through*
-// before is moving for certain; so is what the noise of depth and brightness cannot explain. Evidence adds up over the frames.
+// What moves, judged where there is depth: every pixel is carried by the camera's own motion into frames a
+// moment back and some tenths of a second back, and must be found there, as far away and as bright as it is
+// now. What was seen *through* before is moving for certain; so is what the noise of depth and brightness
+// cannot explain. Evidence adds up over the frames.
 
 /// An earlier frame to compare with.
 struct ReferenceView {
@@ -24,31 +25,32 @@ struct ReferenceView {
 
 /// What comparing with one reference says of each pixel. Small images, CV_32FC1.
 struct ReferenceEvidence {
-  cv::Mat depth_residual;      ///< standard deviations: measured less expected depth there; NaN = cannot be compared
-  cv::Mat intensity_residual;  ///< grey levels beyond what gradient explains; NaN = cannot be compared
-  cv::Mat log_odds;            ///< of moving; 0 = says nothing
+  cv::Mat
+      depth_residual;  ///< standard deviations: measured less expected depth there; NaN = cannot be compared
+  cv::Mat intensity_residual;    ///< grey levels beyond what gradient explains; NaN = cannot be compared
+  cv::Mat log_odds;              ///< of moving; 0 = says nothing
   double intensity_sigma = 0.0;  ///< grey levels, estimated from this pair
 };
 
 /// A patch of one surface, and how likely it moves.
 struct Segment {
-  cv::Point2f centre;       ///< px, small image
-  float depth = 0.0F;       ///< m
+  cv::Point2f centre;  ///< px, small image
+  float depth = 0.0F;  ///< m
   int pixels = 0;
-  float evidence = 0.0F;    ///< mean log-odds of its pixels
-  float log_odds = 0.0F;    ///< after listening to the neighbours on the same surface
+  float evidence = 0.0F;  ///< mean log-odds of its pixels
+  float log_odds = 0.0F;  ///< after listening to the neighbours on the same surface
   bool moving = false;
 };
 
 /// What depth-aware motion detection saw, stage by stage.
 struct DepthMotionTrace {
   std::vector<ReferenceEvidence> references;
-  cv::Mat prior;            ///< CV_32FC1 log-odds remembered from the frame before, carried along
-  cv::Mat log_odds;         ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
-  cv::Mat labels;           ///< CV_32SC1: segment of each pixel, -1 = no depth
+  cv::Mat prior;     ///< CV_32FC1 log-odds remembered from the frame before, carried along
+  cv::Mat log_odds;  ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
+  cv::Mat labels;    ///< CV_32SC1: segment of each pixel, -1 = no depth
   std::vector<Segment> segments;
-  cv::Mat small_mask;       ///< CV_8UC1, small
-  cv::Mat mask;             ///< CV_8UC1, full size: 255 = moving
+  cv::Mat small_mask;  ///< CV_8UC1, small
+  cv::Mat mask;        ///< CV_8UC1, full size: 255 = moving
   std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   std::string note;         ///< why there is no mask; empty when all is well
@@ -66,10 +68,12 @@ struct MotionMemory {
 /// @param full_depth CV_32FC1, m: the frame's own, to which the mask's outline is fitted
 [[nodiscard]] DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& full_depth,
                                                    const std::vector<ReferenceView>& references,
-                                                   const MotionMemory* memory, const Pose& previous_from_current,
+                                                   const MotionMemory* memory,
+                                                   const Pose& previous_from_current,
                                                    const DepthMotionConfig& config);
 
-/// Standard deviation (m) of a Kinect-like sensor's depth at z metres (Khoshelham & Oude Elberink 2012; Nguyen et al. 2012).
+/// Standard deviation (m) of a Kinect-like sensor's depth at z metres (Khoshelham & Oude Elberink 2012;
+/// Nguyen et al. 2012).
 [[nodiscard]] float depth_sigma(float z);
 
 }  // namespace stillpoint

@@ -35,15 +35,18 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
   view.factor = factor;
   const cv::Size size(gray.cols / factor, gray.rows / factor);
   cv::Mat small;
-  cv::resize(gray(cv::Rect(0, 0, size.width * factor, size.height * factor)), small, size, 0, 0, cv::INTER_AREA);
+  cv::resize(gray(cv::Rect(0, 0, size.width * factor, size.height * factor)), small, size, 0, 0,
+             cv::INTER_AREA);
   small.convertTo(view.gray, CV_32F);
   view.gradient = steepest_neighbour(view.gray);
   view.depth = cv::Mat::zeros(size, CV_32FC1);
   for (int y = 0; y < size.height && !depth.empty(); ++y)
-    for (int x = 0; x < size.width; ++x) view.depth.at<float>(y, x) = block_depth(depth, x * factor, y * factor, factor);
+    for (int x = 0; x < size.width; ++x)
+      view.depth.at<float>(y, x) = block_depth(depth, x * factor, y * factor, factor);
   view.camera = camera.scaled_to(gray.cols, gray.rows);
   view.camera.fx /= factor, view.camera.fy /= factor;
-  view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5, view.camera.cy = (view.camera.cy + 0.5) / factor - 0.5;
+  view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5,
+  view.camera.cy = (view.camera.cy + 0.5) / factor - 0.5;
   view.camera.width = size.width, view.camera.height = size.height;
   return view;
 }

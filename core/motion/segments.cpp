@@ -7,8 +7,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kRounds = 3;           // SLIC has settled by then
-constexpr float kDepthScale = 0.05F; // share of the distance that weighs as much as a patch's side
+constexpr int kRounds = 3;            // SLIC has settled by then
+constexpr float kDepthScale = 0.05F;  // share of the distance that weighs as much as a patch's side
 constexpr int kRelaxations = 15;
 
 struct Sum {
@@ -50,7 +50,8 @@ void assign(const RgbdView& view, const std::vector<Segment>& segments, int side
         for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r)
           for (int c = std::max(0, column - 1); c <= std::min(columns - 1, column + 1); ++c) {
             const int candidate = r * columns + c;
-            const float d = distance(segments[static_cast<std::size_t>(candidate)], x, y, z, static_cast<float>(side));
+            const float d =
+                distance(segments[static_cast<std::size_t>(candidate)], x, y, z, static_cast<float>(side));
             if (d < best_distance) best = candidate, best_distance = d;
           }
       }
@@ -64,7 +65,8 @@ std::map<std::pair<int, int>, int> shared_boundaries(const RgbdView& view, const
   const auto look = [&](int y, int x, int y2, int x2) {
     const int a = labels.at<int>(y, x), b = labels.at<int>(y2, x2);
     if (a < 0 || b < 0 || a == b) return;
-    if (same_surface(view.depth.at<float>(y, x), view.depth.at<float>(y2, x2))) ++shared[{std::min(a, b), std::max(a, b)}];
+    if (same_surface(view.depth.at<float>(y, x), view.depth.at<float>(y2, x2)))
+      ++shared[{std::min(a, b), std::max(a, b)}];
   };
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
@@ -76,7 +78,8 @@ std::map<std::pair<int, int>, int> shared_boundaries(const RgbdView& view, const
 
 }  // namespace
 
-std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionConfig& config, cv::Mat& labels) {
+std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionConfig& config,
+                                      cv::Mat& labels) {
   std::vector<Segment> segments = seeds(view, config.segment_px);
   labels = cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1));
   for (int round = 0; round < kRounds; ++round) {
@@ -117,7 +120,8 @@ void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat
   std::vector<std::vector<Neighbour>> neighbours(segments.size());
   for (const auto& [pair, boundary] : shared_boundaries(view, labels)) {
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const float weight = static_cast<float>(config.smoothing) * static_cast<float>(boundary) / static_cast<float>(config.segment_px);
+    const float weight = static_cast<float>(config.smoothing) * static_cast<float>(boundary) /
+                         static_cast<float>(config.segment_px);
     neighbours[a].push_back({b, weight});
     neighbours[b].push_back({a, weight});
   }

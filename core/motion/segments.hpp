@@ -4,10 +4,11 @@
 
 namespace stillpoint {
 
-/// Patches of one surface: pixels grouped by place and depth, about config.segment_px a side (SLIC, Achanta et al.
-/// 2012, with depth for colour).
+/// Patches of one surface: pixels grouped by place and depth, about config.segment_px a side (SLIC, Achanta
+/// et al. 2012, with depth for colour).
 /// @param labels receives CV_32SC1: the patch of each pixel, -1 where there is no depth
-[[nodiscard]] std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionConfig& config, cv::Mat& labels);
+[[nodiscard]] std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionConfig& config,
+                                                    cv::Mat& labels);
 
 /// Averages each pixel's log-odds over its patch, lets patches that continue into each other on one surface
 /// agree, and decides which move.

@@ -14,8 +14,8 @@ namespace {
 
 using PoseBlock = std::array<double, 7>;  // unit quaternion x y z w, then translation: camera_from_world
 
-/// camera_from_world moved by exp(ξ^) from the left. Costs give their Jacobian by ξ in the first six columns, so the
-/// manifold's own Jacobian only selects them.
+/// camera_from_world moved by exp(ξ^) from the left. Costs give their Jacobian by ξ in the first six columns,
+/// so the manifold's own Jacobian only selects them.
 class PoseManifold : public ceres::Manifold {
  public:
   [[nodiscard]] int AmbientSize() const override { return 7; }
@@ -140,7 +140,8 @@ double rms(const BundleProblem& problem, const std::vector<std::uint8_t>& outlie
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// One Levenberg-Marquardt run over the edges that are no outliers; moves views and points. False if it failed.
+/// One Levenberg-Marquardt run over the edges that are no outliers; moves views and points. False if it
+/// failed.
 bool solve_once(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
                 double depth_weight, bool robust, int max_iterations, int& iterations) {
   std::vector<PoseBlock> poses;
@@ -168,9 +169,9 @@ bool solve_once(BundleProblem& problem, const std::vector<std::uint8_t>& outlier
     if (outlier[i]) continue;
     const auto& edge = problem.edges[i];
     const bool depth = edge.depth > 0 && depth_weight > 0;
-    ceres::CostFunction* cost = depth
-        ? static_cast<ceres::CostFunction*>(new ReprojectionCost<3>(camera, edge, depth_weight))
-        : new ReprojectionCost<2>(camera, edge, depth_weight);
+    ceres::CostFunction* cost =
+        depth ? static_cast<ceres::CostFunction*>(new ReprojectionCost<3>(camera, edge, depth_weight))
+              : new ReprojectionCost<2>(camera, edge, depth_weight);
     ceres_problem.AddResidualBlock(cost, robust ? (depth ? &depth_loss : &pixel_loss) : nullptr,
                                    poses[static_cast<std::size_t>(edge.view)].data(),
                                    problem.points[static_cast<std::size_t>(edge.point)].position.data());
@@ -234,7 +235,8 @@ BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Confi
       if (view == view_of.end()) continue;
       const FeatureSet& features = *map.keyframe(o.keyframe).features;
       const auto f = static_cast<std::size_t>(o.feature);
-      problem.edges.push_back({view->second, index,
+      problem.edges.push_back({view->second,
+                               index,
                                {features.undistorted[f].x, features.undistorted[f].y},
                                features.depth[f],
                                scales[static_cast<std::size_t>(features.keypoints[f].octave)]});
@@ -249,21 +251,24 @@ BundleSolution solve_bundle(BundleProblem problem, const Camera& camera, const B
   solution.outlier.assign(problem.edges.size(), 0);
   solution.problem = std::move(problem);
   BundleProblem& moved = solution.problem;
-  const bool any_free = std::any_of(moved.views.begin(), moved.views.end(), [](const auto& v) { return !v.fixed; });
+  const bool any_free =
+      std::any_of(moved.views.begin(), moved.views.end(), [](const auto& v) { return !v.fixed; });
   if (!any_free || moved.edges.empty()) return solution;
   solution.initial_rms_px = rms(moved, solution.outlier, camera);
 
   const auto mark_outliers = [&] {
     for (std::size_t i = 0; i < moved.edges.size(); ++i) {
       const bool depth = moved.edges[i].depth > 0 && depth_weight > 0;
-      solution.outlier[i] =
-          edge_error(moved, moved.edges[i], camera, depth_weight).chi2 > (depth ? kChi2PixelDepth : kChi2Pixel);
+      solution.outlier[i] = edge_error(moved, moved.edges[i], camera, depth_weight).chi2 >
+                            (depth ? kChi2PixelDepth : kChi2Pixel);
     }
   };
   const int half = std::max(1, config.iterations / 2);
-  if (!solve_once(moved, solution.outlier, camera, depth_weight, true, half, solution.iterations)) return solution;
+  if (!solve_once(moved, solution.outlier, camera, depth_weight, true, half, solution.iterations))
+    return solution;
   mark_outliers();
-  if (!solve_once(moved, solution.outlier, camera, depth_weight, false, config.iterations, solution.iterations))
+  if (!solve_once(moved, solution.outlier, camera, depth_weight, false, config.iterations,
+                  solution.iterations))
     return solution;
   mark_outliers();
   solution.rms_px = rms(moved, solution.outlier, camera);
@@ -275,7 +280,8 @@ void apply_bundle(const BundleSolution& solution, LocalMap& map) {
   if (!solution.usable) return;
   const BundleProblem& problem = solution.problem;
   for (const auto& view : problem.views)
-    if (!view.fixed && map.has_keyframe(view.keyframe)) map.keyframe(view.keyframe).camera_from_world = view.camera_from_world;
+    if (!view.fixed && map.has_keyframe(view.keyframe))
+      map.keyframe(view.keyframe).camera_from_world = view.camera_from_world;
   for (const auto& point : problem.points)
     if (map.has_point(point.point)) map.point(point.point).position = point.position;
   for (std::size_t i = 0; i < problem.edges.size(); ++i) {

@@ -8,7 +8,8 @@
 
 namespace stillpoint {
 
-/// A local bundle adjustment, cut out of the map: METHOD.md §2.4. Plain data, so that it can be solved beside tracking.
+/// A local bundle adjustment, cut out of the map: METHOD.md §2.4. Plain data, so that it can be solved beside
+/// tracking.
 struct BundleProblem {
   struct View {
     int keyframe = kNone;
@@ -20,9 +21,9 @@ struct BundleProblem {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   };
   struct Edge {
-    int view = 0, point = 0;     ///< indices into the vectors below
+    int view = 0, point = 0;                          ///< indices into the vectors below
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< px, undistorted
-    double depth = 0.0;          ///< m; 0 = none
+    double depth = 0.0;                               ///< m; 0 = none
     double sigma_px = 1.0;
   };
   std::vector<View> views;
@@ -31,22 +32,24 @@ struct BundleProblem {
 };
 
 struct BundleSolution {
-  BundleProblem problem;                     ///< views and points moved to where they fit best
-  std::vector<std::uint8_t> outlier;         ///< one an edge, by χ² at the end
-  double initial_rms_px = 0.0, rms_px = 0.0; ///< of all edges before, of the inliers after
-  int iterations = 0;                        ///< successful Levenberg-Marquardt steps
-  bool usable = false;                       ///< false: nothing to adjust, or the solver failed; the map stays as it is
+  BundleProblem problem;                      ///< views and points moved to where they fit best
+  std::vector<std::uint8_t> outlier;          ///< one an edge, by χ² at the end
+  double initial_rms_px = 0.0, rms_px = 0.0;  ///< of all edges before, of the inliers after
+  int iterations = 0;                         ///< successful Levenberg-Marquardt steps
+  bool usable = false;  ///< false: nothing to adjust, or the solver failed; the map stays as it is
 };
 
-/// The keyframe, its most covisible neighbours, the points they see, and as fixed views the other keyframes that see those points.
+/// The keyframe, its most covisible neighbours, the points they see, and as fixed views the other keyframes
+/// that see those points.
 [[nodiscard]] BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Config& config);
 
 /// Minimises the robust reprojection error over free views and points with Ceres (Levenberg-Marquardt, Schur
 /// complement), first with all edges under Huber's loss, then without the outliers. Deterministic.
-[[nodiscard]] BundleSolution solve_bundle(BundleProblem problem, const Camera& camera, const BundleConfig& config,
-                                          double depth_weight);
+[[nodiscard]] BundleSolution solve_bundle(BundleProblem problem, const Camera& camera,
+                                          const BundleConfig& config, double depth_weight);
 
-/// Carries a solution back: poses, points, and outlying observations taken away. What has left the map meanwhile is passed over.
+/// Carries a solution back: poses, points, and outlying observations taken away. What has left the map
+/// meanwhile is passed over.
 void apply_bundle(const BundleSolution& solution, LocalMap& map);
 
 }  // namespace stillpoint

@@ -13,7 +13,8 @@ constexpr int kCell = 80;              // px: a part of the image that shares it
 constexpr double kFairShare = 6.0;     // observations a part may have before they weigh less each
 constexpr double kNearestShare = 0.3;  // of a vote, for what is much nearer than the rest
 constexpr double kBoundPx = 1.5;       // at octave 0: beyond it an observation disagrees, however far
-constexpr double kRigidTolerance = 0.01;  // m, and this share of the distance: three points of one rigid scene
+constexpr double kRigidTolerance =
+    0.01;  // m, and this share of the distance: three points of one rigid scene
 constexpr double kRigidShare = 0.02;
 
 std::vector<double> weights_by_place(const Camera& camera, const std::vector<PoseObservation>& observations) {
@@ -50,8 +51,8 @@ double truncated(const Camera& camera, const PoseObservation& o, const Pose& pos
   return std::min(1.0, (camera.project(p) - o.pixel).squaredNorm() / (bound * bound));
 }
 
-double cost_of(const Camera& camera, const std::vector<PoseObservation>& observations, const std::vector<double>& weights,
-               const Pose& pose, double give_up) {
+double cost_of(const Camera& camera, const std::vector<PoseObservation>& observations,
+               const std::vector<double>& weights, const Pose& pose, double give_up) {
   double cost = 0.0;
   for (std::size_t i = 0; i < observations.size() && cost < give_up; ++i)
     cost += weights[i] * truncated(camera, observations[i], pose);
@@ -60,7 +61,8 @@ double cost_of(const Camera& camera, const std::vector<PoseObservation>& observa
 
 /// The rigid motion that lays three points on three others (Kabsch).
 Pose align_three(const std::array<Eigen::Vector3d, 3>& from, const std::array<Eigen::Vector3d, 3>& to) {
-  const Eigen::Vector3d from_mean = (from[0] + from[1] + from[2]) / 3.0, to_mean = (to[0] + to[1] + to[2]) / 3.0;
+  const Eigen::Vector3d from_mean = (from[0] + from[1] + from[2]) / 3.0,
+                        to_mean = (to[0] + to[1] + to[2]) / 3.0;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < 3; ++i) spread += (to[i] - to_mean) * (from[i] - from_mean).transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -72,7 +74,8 @@ Pose align_three(const std::array<Eigen::Vector3d, 3>& from, const std::array<Ei
   return pose;
 }
 
-/// Three points keep their distances only if they move together: mixed samples are refused before they cost anything.
+/// Three points keep their distances only if they move together: mixed samples are refused before they cost
+/// anything.
 bool rigid(const std::array<Eigen::Vector3d, 3>& world, const std::array<Eigen::Vector3d, 3>& camera) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
@@ -104,7 +107,8 @@ Pose polished(const Camera& camera, const std::vector<PoseObservation>& observat
 
 Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
                          const std::vector<Pose>& guesses, int samples, std::uint32_t seed) {
-  constexpr double kPromising = 1.25;  // a rough sample this much worse than the best may still polish to better
+  constexpr double kPromising =
+      1.25;  // a rough sample this much worse than the best may still polish to better
   Consensus best;
   best.cost = std::numeric_limits<double>::infinity();
   if (observations.empty()) return best;
@@ -134,7 +138,8 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
     }
     if (!rigid(world, in_camera)) continue;
     const Pose rough = align_three(world, in_camera);
-    if (cost_of(camera, observations, weights, rough, kPromising * best.cost) >= kPromising * best.cost) continue;
+    if (cost_of(camera, observations, weights, rough, kPromising * best.cost) >= kPromising * best.cost)
+      continue;
     offer(polished(camera, observations, rough), true);
   }
   for (const PoseObservation& o : observations) {

@@ -33,7 +33,9 @@ void FeatureSet::build_index(int width, int height) {
 void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave,
                       std::vector<int>& found) const {
   if (columns_ == 0) return;
-  const auto column = [&](float x) { return std::clamp(static_cast<int>(std::floor(x / kCell)), 0, columns_ - 1); };
+  const auto column = [&](float x) {
+    return std::clamp(static_cast<int>(std::floor(x / kCell)), 0, columns_ - 1);
+  };
   const auto row = [&](float y) { return std::clamp(static_cast<int>(std::floor(y / kCell)), 0, rows_ - 1); };
   const int first_column = column(pixel.x - radius), last_column = column(pixel.x + radius);
   for (int r = row(pixel.y - radius); r <= row(pixel.y + radius); ++r) {
@@ -75,11 +77,13 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Ma
   return result;
 }
 
-std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const std::vector<cv::Point2f>& undistorted,
-                            const cv::Mat& depth, const Camera& camera, const Pose& then_from_now) {
+std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
+                            const std::vector<cv::Point2f>& undistorted, const cv::Mat& depth,
+                            const Camera& camera, const Pose& then_from_now) {
   std::vector<float> result = depth_at(pixels, depth);
   if (depth.empty()) return result;
-  // The first reading is near enough to tell where the point was seen then; distortion is the same over so few pixels.
+  // The first reading is near enough to tell where the point was seen then; distortion is the same over so
+  // few pixels.
   std::vector<cv::Point2f> then(pixels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
@@ -94,7 +98,8 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const std::v
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
     const cv::Point2f pixel = undistorted[i] + then[i] - pixels[i];
-    const double z = measured[i] > 0 ? (now_from_then * camera.back_project({pixel.x, pixel.y}, measured[i])).z() : 0.0;
+    const double z =
+        measured[i] > 0 ? (now_from_then * camera.back_project({pixel.x, pixel.y}, measured[i])).z() : 0.0;
     result[i] = z > 0 ? static_cast<float>(z) : 0.0F;
   }
   return result;

@@ -18,37 +18,40 @@ using Descriptor = std::array<std::uint64_t, 4>;
 
 /// The features of one frame, and an index to find them by place. Immutable once built.
 struct FeatureSet {
-  std::vector<cv::KeyPoint> keypoints;      ///< pixel in the image as it is, octave, angle (deg), response
-  std::vector<cv::Point2f> undistorted;     ///< the same pixels as a pinhole would see them, px
+  std::vector<cv::KeyPoint> keypoints;   ///< pixel in the image as it is, octave, angle (deg), response
+  std::vector<cv::Point2f> undistorted;  ///< the same pixels as a pinhole would see them, px
   std::vector<Descriptor> descriptors;
-  std::vector<float> depth;                 ///< m; 0 where the frame has no measurement
+  std::vector<float> depth;  ///< m; 0 where the frame has no measurement
 
   [[nodiscard]] int size() const { return static_cast<int>(keypoints.size()); }
 
   /// Sorts the features into the place index; called once, when the vectors above are complete.
   void build_index(int width, int height);
 
-  /// Appends to `found` the features within `radius` px (a square window, as the field does) of an undistorted
-  /// pixel, of octaves `min_octave` to `max_octave`, in order of the index cells.
-  void find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave, std::vector<int>& found) const;
+  /// Appends to `found` the features within `radius` px (a square window, as the field does) of an
+  /// undistorted pixel, of octaves `min_octave` to `max_octave`, in order of the index cells.
+  void find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave,
+            std::vector<int>& found) const;
 
  private:
   static constexpr int kCell = 16;  // px; a few features a cell
   int columns_ = 0, rows_ = 0;
-  std::vector<int> cell_start_;    // CSR: first entry of each cell in cell_features_
+  std::vector<int> cell_start_;  // CSR: first entry of each cell in cell_features_
   std::vector<int> cell_features_;
 };
 
 /// The features of `all` for which keep[i] is non-zero, undistorted and indexed anew.
-[[nodiscard]] FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height);
+[[nodiscard]] FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width,
+                                int height);
 
 /// Reads each pixel's depth (m) from a CV_32FC1 image; 0 where the image is empty or has no measurement.
 [[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Mat& depth);
 
-/// The same from a depth image taken a moment before or after, when the camera stood elsewhere: each pixel is looked up where
-/// its point was seen then, and its depth brought back to now.
+/// The same from a depth image taken a moment before or after, when the camera stood elsewhere: each pixel is
+/// looked up where its point was seen then, and its depth brought back to now.
 /// @param pixels in the image as it is; @param undistorted the same ones as a pinhole would see them
-[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const std::vector<cv::Point2f>& undistorted,
-                                          const cv::Mat& depth, const Camera& camera, const Pose& then_from_now);
+[[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
+                                          const std::vector<cv::Point2f>& undistorted, const cv::Mat& depth,
+                                          const Camera& camera, const Pose& then_from_now);
 
 }  // namespace stillpoint

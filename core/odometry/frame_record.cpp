@@ -4,21 +4,30 @@ namespace stillpoint {
 
 std::string_view to_string(FrameStatus status) {
   switch (status) {
-    case FrameStatus::initialised: return "initialised";
-    case FrameStatus::tracked: return "tracked";
-    case FrameStatus::relocalised: return "relocalised";
-    case FrameStatus::lost: return "lost";
-    case FrameStatus::unreadable: return "unreadable";
+    case FrameStatus::initialised:
+      return "initialised";
+    case FrameStatus::tracked:
+      return "tracked";
+    case FrameStatus::relocalised:
+      return "relocalised";
+    case FrameStatus::lost:
+      return "lost";
+    case FrameStatus::unreadable:
+      return "unreadable";
   }
   return "";
 }
 
 std::string_view to_string(PoseStart start) {
   switch (start) {
-    case PoseStart::none: return "none";
-    case PoseStart::motion_model: return "motion model";
-    case PoseStart::wide_search: return "wide search";
-    case PoseStart::epnp: return "EPnP";
+    case PoseStart::none:
+      return "none";
+    case PoseStart::motion_model:
+      return "motion model";
+    case PoseStart::wide_search:
+      return "wide search";
+    case PoseStart::epnp:
+      return "EPnP";
   }
   return "";
 }

@@ -30,10 +30,10 @@ enum class FeatureFate : std::uint8_t {
 };
 
 struct FeatureRecord {
-  cv::Point2f pixel;                          ///< px, in the image as it is
-  float depth = 0.0F;                         ///< m, 0 = none
-  float residual_px = 0.0F;                   ///< reprojection residual under the final pose; 0 when unmatched
-  int map_point = kNone;                      ///< id; kNone when unmatched or removed
+  cv::Point2f pixel;         ///< px, in the image as it is
+  float depth = 0.0F;        ///< m, 0 = none
+  float residual_px = 0.0F;  ///< reprojection residual under the final pose; 0 when unmatched
+  int map_point = kNone;     ///< id; kNone when unmatched or removed
   std::uint8_t octave = 0;
   FeatureFate fate = FeatureFate::unmatched;
 };
@@ -45,13 +45,13 @@ enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp };
 
 /// What each stage took, in milliseconds of wall time. For reading only: no result depends on it.
 struct StageTimes {
-  double motion = 0.0;     ///< METHOD.md §1, beside feature extraction where threads allow
-  double features = 0.0;   ///< ORB
-  double matching = 0.0;   ///< both searches against the map
-  double pose = 0.0;       ///< EPnP and refinement
-  double mapping = 0.0;    ///< keyframe, new points, fusion, culling
-  double bundle = 0.0;     ///< waiting for and applying bundle adjustment
-  double total = 0.0;      ///< the whole frame
+  double motion = 0.0;    ///< METHOD.md §1, beside feature extraction where threads allow
+  double features = 0.0;  ///< ORB
+  double matching = 0.0;  ///< both searches against the map
+  double pose = 0.0;      ///< EPnP and refinement
+  double mapping = 0.0;   ///< keyframe, new points, fusion, culling
+  double bundle = 0.0;    ///< waiting for and applying bundle adjustment
+  double total = 0.0;     ///< the whole frame
 };
 
 /// Everything a frame leaves behind but images: those can be computed again from the frames.
@@ -59,7 +59,7 @@ struct FrameRecord {
   int index = 0;
   double timestamp = 0.0;  ///< s
   FrameStatus status = FrameStatus::lost;
-  std::string note;        ///< why it is lost, or what was wrong with its images; empty when all is well
+  std::string note;  ///< why it is lost, or what was wrong with its images; empty when all is well
   Pose world_from_camera = Pose::Identity();  ///< estimated, or predicted when lost
   bool estimated = false;                     ///< the pose was measured, not predicted
   int reference_keyframe = kNone;             ///< the keyframe this frame shares most with
@@ -69,18 +69,19 @@ struct FrameRecord {
   int features_found = 0, features_removed = 0, features_kept = 0;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   int motion_rounds = 0;
-  int static_tracks = 0;    ///< flow tracks that agree with the forward homography
+  int static_tracks = 0;  ///< flow tracks that agree with the forward homography
   double homography_rms_px = 0.0;
 
-  int matches = 0;          ///< features matched to map points
-  int inliers = 0;          ///< … that agree with the pose
-  double rms_px = 0.0;      ///< reprojection, inliers
+  int matches = 0;      ///< features matched to map points
+  int inliers = 0;      ///< … that agree with the pose
+  double rms_px = 0.0;  ///< reprojection, inliers
   int refine_iterations = 0;
 
   bool keyframe = false;
   int new_points = 0, fused_points = 0, culled_points = 0, culled_keyframes = 0;
   int map_points = 0, map_keyframes = 0;  ///< after the frame
-  double bundle_rms_before_px = 0.0, bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
+  double bundle_rms_before_px = 0.0,
+         bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
   int bundle_iterations = 0;
 
   StageTimes ms;

@@ -11,7 +11,8 @@ std::vector<std::pair<int, int>> by_weight(const std::map<int, int>& counts, int
   std::vector<std::pair<int, int>> order;
   for (const auto& [keyframe, shared] : counts)
     if (shared >= min_shared) order.emplace_back(keyframe, shared);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   return order;
 }
 

@@ -26,10 +26,11 @@ struct MapPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Descriptor descriptor{};                             ///< the observation's nearest to all the others
   std::vector<Observation> observations;               ///< in the order they were made
-  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< mean unit vector from the cameras to the point
+  Eigen::Vector3d viewing_direction =
+      Eigen::Vector3d::Zero();                    ///< mean unit vector from the cameras to the point
   double min_distance = 0.0, max_distance = 0.0;  ///< m: where its scale lies within the pyramid
-  int visible = 1;           ///< frames whose view should hold it
-  int found = 1;             ///< … and in which it was matched as an inlier
+  int visible = 1;                                ///< frames whose view should hold it
+  int found = 1;                                  ///< … and in which it was matched as an inlier
   int born_keyframe = kNone;
 };
 
@@ -47,7 +48,7 @@ struct Keyframe {
 struct RetiredKeyframe {
   int id = kNone, frame_index = 0;
   double timestamp = 0.0;
-  int anchor = kNone;         ///< keyframe it hangs on; kNone: `camera_from_anchor` is camera_from_world
+  int anchor = kNone;  ///< keyframe it hangs on; kNone: `camera_from_anchor` is camera_from_world
   Pose camera_from_anchor = Pose::Identity();
 };
 

@@ -8,14 +8,14 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kFuseRadiusPx = 3.0;   // at octave 0: both poses are known, so little is searched
-constexpr int kFuseMaxDistance = 50;    // bits: the same corner, not one like it
+constexpr double kFuseRadiusPx = 3.0;  // at octave 0: both poses are known, so little is searched
+constexpr int kFuseMaxDistance = 50;   // bits: the same corner, not one like it
 constexpr int kFuseNeighbours = 10;
 constexpr double kFuseChi2 = 5.991;
 
 /// Looks for points in a keyframe; joins those found with what the keyframe has there.
-int fuse_into(LocalMap& map, const std::vector<int>& points, int keyframe_id, const Camera& camera, const Config& config,
-              const std::vector<double>& scales) {
+int fuse_into(LocalMap& map, const std::vector<int>& points, int keyframe_id, const Camera& camera,
+              const Config& config, const std::vector<double>& scales) {
   int fused = 0;
   std::vector<int> near;
   for (const int id : points) {
@@ -69,7 +69,8 @@ int create_points(LocalMap& map, int keyframe_id, const Camera& camera, const Co
   const FeatureSet& features = *keyframe.features;
   std::vector<std::pair<float, int>> by_depth;
   for (int i = 0; i < features.size(); ++i)
-    if (features.depth[static_cast<std::size_t>(i)] > 0) by_depth.emplace_back(features.depth[static_cast<std::size_t>(i)], i);
+    if (features.depth[static_cast<std::size_t>(i)] > 0)
+      by_depth.emplace_back(features.depth[static_cast<std::size_t>(i)], i);
   std::sort(by_depth.begin(), by_depth.end());
 
   const Pose world_from_camera = keyframe.camera_from_world.inverse();
@@ -106,7 +107,8 @@ int fuse_neighbours(LocalMap& map, int keyframe_id, const Camera& camera, const 
 int cull_points(LocalMap& map, int newest_keyframe, const Config& config) {
   constexpr int kYoung = 3;  // keyframes: older points have proved themselves
   std::vector<int> young;
-  for (auto it = map.keyframes().rbegin(); it != map.keyframes().rend() && it->first > newest_keyframe - kYoung - 1; ++it)
+  for (auto it = map.keyframes().rbegin();
+       it != map.keyframes().rend() && it->first > newest_keyframe - kYoung - 1; ++it)
     for (const int point : points_of(it->second))
       if (map.point(point).born_keyframe >= newest_keyframe - kYoung) young.push_back(point);
   std::sort(young.begin(), young.end());
@@ -139,7 +141,8 @@ int cull_keyframes(LocalMap& map, int newest_keyframe, const Config& config) {
       int others = 0;
       for (const Observation& o : map.point(keyframe.points[f]).observations)
         if (o.keyframe != id &&
-            map.keyframe(o.keyframe).features->keypoints[static_cast<std::size_t>(o.feature)].octave <= octave + 1)
+            map.keyframe(o.keyframe).features->keypoints[static_cast<std::size_t>(o.feature)].octave <=
+                octave + 1)
           ++others;
       if (others >= kSeenByOthers) ++redundant;
     }

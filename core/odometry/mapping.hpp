@@ -8,8 +8,8 @@ namespace stillpoint {
 
 // What happens to the map at a keyframe, step by step; each returns how much it did.
 
-/// Points for the keyframe's features that have depth and none yet: all up to map.far_depth_m, and beyond it the
-/// nearest until map.min_new_points are there.
+/// Points for the keyframe's features that have depth and none yet: all up to map.far_depth_m, and beyond it
+/// the nearest until map.min_new_points are there.
 int create_points(LocalMap& map, int keyframe, const Camera& camera, const Config& config);
 
 /// Joins points that are the same: the keyframe's points looked for in its neighbours, and theirs in it.
@@ -18,7 +18,8 @@ int fuse_neighbours(LocalMap& map, int keyframe, const Camera& camera, const Con
 /// Removes young points that were seldom found where they should have been, or that no second keyframe sees.
 int cull_points(LocalMap& map, int newest_keyframe, const Config& config);
 
-/// Retires keyframes most of whose points three others see at least as finely; and the oldest beyond map.max_keyframes.
+/// Retires keyframes most of whose points three others see at least as finely; and the oldest beyond
+/// map.max_keyframes.
 int cull_keyframes(LocalMap& map, int newest_keyframe, const Config& config);
 
 }  // namespace stillpoint

@@ -23,7 +23,8 @@ struct Best {
   }
 
   [[nodiscard]] bool ambiguous(double ratio, bool any_octave) const {
-    return second_distance <= 256 && (any_octave || octave == second_octave) && distance > ratio * second_distance;
+    return second_distance <= 256 && (any_octave || octave == second_octave) &&
+           distance > ratio * second_distance;
   }
 };
 
@@ -43,7 +44,8 @@ class Assignment {
 
   [[nodiscard]] std::vector<Match> matches() const {
     std::vector<Match> result;
-    std::copy_if(best_.begin(), best_.end(), std::back_inserter(result), [](const Match& m) { return m.point != kNone; });
+    std::copy_if(best_.begin(), best_.end(), std::back_inserter(result),
+                 [](const Match& m) { return m.point != kNone; });
     return result;
   }
 
@@ -64,7 +66,8 @@ std::vector<Match> match_in_windows(const FeatureSet& features, const std::vecto
     Best best;
     for (const int i : near) {
       const auto f = static_cast<std::size_t>(i);
-      best.offer(i, descriptor_distance(*candidate.descriptor, features.descriptors[f]), features.keypoints[f].octave);
+      best.offer(i, descriptor_distance(*candidate.descriptor, features.descriptors[f]),
+                 features.keypoints[f].octave);
     }
     if (best.feature != kNone && best.distance <= max_distance && !best.ambiguous(ratio, false))
       assignment.claim(candidate, best);
@@ -79,7 +82,8 @@ std::vector<Match> match_everywhere(const FeatureSet& features, const std::vecto
     Best best;
     for (int i = 0; i < features.size(); ++i) {
       const auto f = static_cast<std::size_t>(i);
-      best.offer(i, descriptor_distance(*candidate.descriptor, features.descriptors[f]), features.keypoints[f].octave);
+      best.offer(i, descriptor_distance(*candidate.descriptor, features.descriptors[f]),
+                 features.keypoints[f].octave);
     }
     if (best.feature != kNone && best.distance <= max_distance && !best.ambiguous(ratio, true))
       assignment.claim(candidate, best);
@@ -89,12 +93,15 @@ std::vector<Match> match_everywhere(const FeatureSet& features, const std::vecto
 
 std::vector<Match> consistently_turned(const std::vector<Match>& matches) {
   constexpr int kBins = 30;
-  const auto bin = [](const Match& m) { return static_cast<std::size_t>(cvRound(m.turned * kBins / 360.0F) % kBins); };
+  const auto bin = [](const Match& m) {
+    return static_cast<std::size_t>(cvRound(m.turned * kBins / 360.0F) % kBins);
+  };
   std::array<int, kBins> counts{};
   for (const Match& m : matches) ++counts[bin(m)];
   std::array<std::size_t, kBins> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return counts[a] > counts[b]; });
   std::array<bool, kBins> keep{};
   for (int rank = 0; rank < 3; ++rank) {
     const std::size_t b = order[static_cast<std::size_t>(rank)];
@@ -102,25 +109,29 @@ std::vector<Match> consistently_turned(const std::vector<Match>& matches) {
     keep[b] = counts[b] * 10 >= counts[order[0]];
   }
   std::vector<Match> kept;
-  std::copy_if(matches.begin(), matches.end(), std::back_inserter(kept), [&](const Match& m) { return keep[bin(m)]; });
+  std::copy_if(matches.begin(), matches.end(), std::back_inserter(kept),
+               [&](const Match& m) { return keep[bin(m)]; });
   return kept;
 }
 
 Projection project_point(const MapPoint& point, const Camera& camera, const Pose& camera_from_world,
                          const FeatureConfig& config) {
-  constexpr double kMaxViewingAngleCosine = 0.5;  // 60 degrees off the mean direction a patch is not recognised
+  constexpr double kMaxViewingAngleCosine =
+      0.5;  // 60 degrees off the mean direction a patch is not recognised
   Projection result;
   const Eigen::Vector3d p = camera_from_world * point.position;
   if (p.z() < 0.05) return result;
   const Eigen::Vector2d pixel = camera.project(p);
-  if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= camera.width || pixel.y() >= camera.height) return result;
+  if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= camera.width || pixel.y() >= camera.height)
+    return result;
   result.distance = p.norm();
   // The pyramid's ends reach a little beyond: the octave is only a guess to within one.
   if (result.distance < 0.8 * point.min_distance || result.distance > 1.2 * point.max_distance) return result;
   const Eigen::Vector3d direction = camera_from_world.linear().transpose() * p / result.distance;
   if (direction.dot(point.viewing_direction) < kMaxViewingAngleCosine) return result;
   result.pixel = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-  const double octave = std::ceil(std::log(point.max_distance / result.distance) / std::log(config.scale_factor));
+  const double octave =
+      std::ceil(std::log(point.max_distance / result.distance) / std::log(config.scale_factor));
   result.octave = std::clamp(static_cast<int>(octave), 0, config.levels - 1);
   result.visible = true;
   return result;

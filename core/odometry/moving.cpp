@@ -1,5 +1,5 @@
-// Method `stillpoint`'s part of Odometry: what is remembered to move, what moves under a first pose, and what the next
-// frame is to know of it.
+// Method `stillpoint`'s part of Odometry: what is remembered to move, what moves under a first pose, and what
+// the next frame is to know of it.
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
@@ -12,12 +12,14 @@ namespace stillpoint {
 
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
-  view_ = std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+  view_ = std::make_shared<const RgbdView>(
+      make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   cv::Mat mask;
   if (memory_ && !past_views_.empty()) {
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
     const cv::Mat prior = carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion);
-    cv::resize(prior > config_.depth_motion.moving_log_odds, mask, frame.gray.size(), 0, 0, cv::INTER_NEAREST);
+    cv::resize(prior > config_.depth_motion.moving_log_odds, mask, frame.gray.size(), 0, 0,
+               cv::INTER_NEAREST);
   }
   record.ms.motion += watch.milliseconds();
   return mask;
@@ -26,10 +28,12 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
 void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
   if (!frame.has_depth()) return;
   const Stopwatch watch;
-  const Pose previous_from_current =
-      past_views_.empty() ? Pose::Identity() : past_views_.back().camera_from_world * camera_from_world.inverse();
-  result.depth_motion = detect_depth_motion(*view_, frame.depth, reference_views(frame.index, camera_from_world),
-                                            memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
+  const Pose previous_from_current = past_views_.empty()
+                                         ? Pose::Identity()
+                                         : past_views_.back().camera_from_world * camera_from_world.inverse();
+  result.depth_motion =
+      detect_depth_motion(*view_, frame.depth, reference_views(frame.index, camera_from_world),
+                          memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
   result.mask = result.depth_motion.mask;
   result.record.mask_share = result.depth_motion.mask_share;
   purge_moving_points(frame, result.mask, camera_from_world);
@@ -39,11 +43,13 @@ void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world,
 void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
   if (!result.record.estimated || !frame.has_depth()) return;
   if (!view_)
-    view_ = std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+    view_ = std::make_shared<const RgbdView>(
+        make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   const cv::Mat& log_odds = result.depth_motion.log_odds;
   memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
   past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});
-  while (past_views_.size() > 1 && past_views_[1].frame_index <= frame.index - config_.depth_motion.far_reference)
+  while (past_views_.size() > 1 &&
+         past_views_[1].frame_index <= frame.index - config_.depth_motion.far_reference)
     past_views_.pop_front();
   view_.reset();
 }

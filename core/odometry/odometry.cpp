@@ -16,7 +16,10 @@ constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to tr
 }  // namespace
 
 Odometry::Odometry(const Camera& camera, const Config& config)
-    : camera_(camera), config_(config), extractor_(config.features), scales_(octave_scales(config.features)) {}
+    : camera_(camera),
+      config_(config),
+      extractor_(config.features),
+      scales_(octave_scales(config.features)) {}
 
 FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   FrameResult result;
@@ -78,7 +81,8 @@ void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult
   if (config_.run.method == "oracle") {
     if (known_mask.size() != frame.gray.size()) return;
     result.mask = known_mask;
-    result.record.mask_share = static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
+    result.record.mask_share =
+        static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
     return;
   }
   const Stopwatch watch;
@@ -90,8 +94,8 @@ void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult
       result.record.mask_share = round.mask_share;
       result.record.motion_rounds = static_cast<int>(result.motion.rounds.size());
       result.record.homography_rms_px = round.forward.homography.refined_error_px;
-      result.record.static_tracks = static_cast<int>(
-          std::count_if(round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
+      result.record.static_tracks = static_cast<int>(std::count_if(
+          round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
     }
   }
   references_.push_back(target);
@@ -143,8 +147,9 @@ Odometry::Current Odometry::initialise(const Frame& frame, const OrbFeatures& fo
   const auto& depth = current.features->depth;
   const auto with_depth = std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; });
   if (with_depth < kMinFeaturesToBegin) {
-    mark_lost(record, FrameStatus::lost,
-              fmt::format("only {} features with depth; a map begins with {}", with_depth, kMinFeaturesToBegin));
+    mark_lost(
+        record, FrameStatus::lost,
+        fmt::format("only {} features with depth; a map begins with {}", with_depth, kMinFeaturesToBegin));
     return current;
   }
   record.status = FrameStatus::initialised;
@@ -162,7 +167,8 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
   Pose start = predicted_camera_from_world();
   Vector6d velocity = velocity_;
   if (finds_movers_by_pose || !taken_at_once) {
-    // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only then.
+    // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only
+    // then.
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
     Current first = remove_moving(frame, found, result.mask, velocity_, record);
     first.camera_from_world = start;
@@ -204,7 +210,8 @@ void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) 
   record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
   record.estimated = true;
   const Pose last = last_camera_from_world();
-  velocity_ = was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
+  velocity_ =
+      was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
   if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
   remember(current, record);
@@ -218,7 +225,8 @@ bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const 
     if (features.depth[i] <= 0 || features.depth[i] > config_.map.far_depth_m) continue;
     ++(current.points[i] != kNone ? near_tracked : near_new);
   }
-  const bool near_wanted = near_tracked < config_.map.keyframe_min_near && near_new > config_.map.keyframe_new_near;
+  const bool near_wanted =
+      near_tracked < config_.map.keyframe_min_near && near_new > config_.map.keyframe_new_near;
 
   const auto observers = map_.observers(current.points);
   if (observers.empty()) return false;
@@ -226,7 +234,8 @@ bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const 
   const int proven = map_.keyframes().size() <= 2 ? 1 : 2;
   int reference_points = 0;
   for (const int point : map_.keyframe(observers.front().first).points)
-    if (point != kNone && static_cast<int>(map_.point(point).observations.size()) >= proven) ++reference_points;
+    if (point != kNone && static_cast<int>(map_.point(point).observations.size()) >= proven)
+      ++reference_points;
   const bool few_left = record.inliers < config_.map.keyframe_min_ratio * reference_points;
   const bool long_ago = frame.index - last_keyframe_frame_ >= config_.map.keyframe_max_gap;
   return few_left || near_wanted || (long_ago && near_new > config_.map.keyframe_new_near);
@@ -261,10 +270,12 @@ void Odometry::add_keyframe(const Frame& frame, Current& current, FrameRecord& r
                 weight = config_.tracking.depth_weight]() mutable {
     return solve_bundle(std::move(problem), camera, bundle, weight);
   };
-  // When the result enters the map is fixed by the frame's number, so that threads change nothing but the time.
+  // When the result enters the map is fixed by the frame's number, so that threads change nothing but the
+  // time.
   pending_ = PendingBundle{
-      std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, std::move(solve)).share(), id,
-      frame.index + config_.bundle.apply_after_frames};
+      std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, std::move(solve))
+          .share(),
+      id, frame.index + config_.bundle.apply_after_frames};
   if (config_.bundle.apply_after_frames == 0) {
     apply_due_bundle(record, true);
     current.camera_from_world = map_.pose_of(id);
@@ -308,7 +319,9 @@ Pose Odometry::last_camera_from_world() const {
 }
 
 double Odometry::depth_lag(const Frame& frame) const {
-  return config_.tracking.correct_depth_lag != 0 && frame.has_depth() ? frame.depth_timestamp - frame.timestamp : 0.0;
+  return config_.tracking.correct_depth_lag != 0 && frame.has_depth()
+             ? frame.depth_timestamp - frame.timestamp
+             : 0.0;
 }
 
 double Odometry::elapsed() const {

@@ -23,13 +23,14 @@ namespace stillpoint {
 /// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
 struct FrameResult {
   FrameRecord record;
-  MotionTrace motion;  ///< what the method's motion stage saw; without rounds where it has none
+  MotionTrace motion;             ///< what the method's motion stage saw; without rounds where it has none
   DepthMotionTrace depth_motion;  ///< the same of method `stillpoint`; without references where it has none
-  cv::Mat mask;        ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
+  cv::Mat mask;                   ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
-/// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds moving
-/// taken out first. Frames go in, in order; poses come out. World coordinates are the first tracked frame's camera.
+/// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds
+/// moving taken out first. Frames go in, in order; poses come out. World coordinates are the first tracked
+/// frame's camera.
 ///
 /// A value: a copy goes on from where the original stood, and gives the same bytes from the same frames.
 class Odometry {
@@ -52,10 +53,11 @@ class Odometry {
     std::shared_ptr<const FeatureSet> features;  // static ones
     std::vector<int> points;                     // map point a feature, inliers of the pose only
     Pose camera_from_world = Pose::Identity();
-    std::vector<FeatureRecord> records;          // of all features, removed ones too
-    std::vector<int> record_of;                  // feature -> index into records
-    bool seek_consensus = false;                 // movers may be among the features: least squares alone is not to be trusted
-    std::uint32_t seed = 0;                      // of the samples consensus is sought with
+    std::vector<FeatureRecord> records;  // of all features, removed ones too
+    std::vector<int> record_of;          // feature -> index into records
+    bool seek_consensus =
+        false;               // movers may be among the features: least squares alone is not to be trusted
+    std::uint32_t seed = 0;  // of the samples consensus is sought with
   };
   /// The frame before, as the next one needs it.
   struct Last {
@@ -84,22 +86,27 @@ class Odometry {
   [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
   void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
   void remember_view(const Frame& frame, const FrameResult& result);
-  [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index, const Pose& camera_from_world) const;
+  [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index,
+                                                           const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
   void track(const Frame& frame, Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate(Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record);
   [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record);
-  [[nodiscard]] std::vector<PoseObservation> observations_of(const Current& current, const std::vector<Match>& matches) const;
-  [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const;
+  [[nodiscard]] std::vector<PoseObservation> observations_of(const Current& current,
+                                                             const std::vector<Match>& matches) const;
+  [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches,
+                                      FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record);
   [[nodiscard]] std::vector<int> local_points(const Current& current) const;
-  [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const;
+  [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current,
+                                    const FrameRecord& record) const;
   void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
   void remember(const Current& current, FrameRecord& record);
   void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
-  [[nodiscard]] double depth_lag(const Frame& frame) const;  // s, of depth after colour, as far as it is to be corrected
+  [[nodiscard]] double depth_lag(
+      const Frame& frame) const;  // s, of depth after colour, as far as it is to be corrected
   [[nodiscard]] double elapsed() const;
   [[nodiscard]] Pose predicted_camera_from_world() const;
   [[nodiscard]] Pose last_camera_from_world() const;
@@ -109,17 +116,19 @@ class Odometry {
   OrbExtractor extractor_;
   std::vector<double> scales_;
   LocalMap map_;
-  std::optional<Last> last_;                  // empty until the map has begun
-  Vector6d velocity_ = Vector6d::Zero();      // of the camera, a second: log(current_from_last) over the time between
-  double last_timestamp_ = 0.0;               // s, of the frame last_ stands for
-  double now_ = 0.0;                          // s, of the frame at hand
-  int lost_frames_ = 0;                       // in a row
-  int last_keyframe_frame_ = 0;               // frame index of the newest keyframe
-  std::deque<std::shared_ptr<const MotionFrame>> references_;  // newest last, as far back as motion detection looks
+  std::optional<Last> last_;  // empty until the map has begun
+  Vector6d velocity_ =
+      Vector6d::Zero();          // of the camera, a second: log(current_from_last) over the time between
+  double last_timestamp_ = 0.0;  // s, of the frame last_ stands for
+  double now_ = 0.0;             // s, of the frame at hand
+  int lost_frames_ = 0;          // in a row
+  int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
+  std::deque<std::shared_ptr<const MotionFrame>>
+      references_;  // newest last, as far back as motion detection looks
   std::optional<PendingBundle> pending_;
-  std::deque<PastView> past_views_;           // newest last: what method `stillpoint` compares with
-  std::optional<MotionMemory> memory_;        // of the newest past view
-  std::shared_ptr<const RgbdView> view_;      // of the frame at hand
+  std::deque<PastView> past_views_;       // newest last: what method `stillpoint` compares with
+  std::optional<MotionMemory> memory_;    // of the newest past view
+  std::shared_ptr<const RgbdView> view_;  // of the frame at hand
 };
 
 }  // namespace stillpoint

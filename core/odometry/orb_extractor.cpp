@@ -11,14 +11,15 @@ namespace stillpoint {
 namespace {
 
 constexpr int kPatchRadius = 15;  // px: the disc of the intensity centroid, and half the descriptor's patch
-constexpr int kBorder = 19;       // px: corners keep this far from the level's edge, so that patches stay inside
-constexpr int kFastCell = 32;     // px: where FAST finds nothing in such a cell, the low threshold is tried
+constexpr int kBorder = 19;    // px: corners keep this far from the level's edge, so that patches stay inside
+constexpr int kFastCell = 32;  // px: where FAST finds nothing in such a cell, the low threshold is tried
 
 /// For each row of the disc, how far it reaches sideways.
 std::array<int, kPatchRadius + 1> disc_half_widths() {
   std::array<int, kPatchRadius + 1> widths{};
   for (int v = 0; v <= kPatchRadius; ++v)
-    widths[static_cast<std::size_t>(v)] = static_cast<int>(std::sqrt(double(kPatchRadius * kPatchRadius - v * v)));
+    widths[static_cast<std::size_t>(v)] =
+        static_cast<int>(std::sqrt(double(kPatchRadius * kPatchRadius - v * v)));
   return widths;
 }
 
@@ -43,10 +44,12 @@ float centroid_angle(const cv::Mat& image, const cv::Point2f& corner) {
 /// FAST corners inside `inside`, at the low threshold in cells that have none at the high one.
 std::vector<cv::KeyPoint> fast_corners(const cv::Mat& image, const cv::Rect& inside, int threshold, int low) {
   constexpr int kMargin = 3;  // FAST looks this far about a pixel
-  const cv::Rect seen(inside.x - kMargin, inside.y - kMargin, inside.width + 2 * kMargin, inside.height + 2 * kMargin);
+  const cv::Rect seen(inside.x - kMargin, inside.y - kMargin, inside.width + 2 * kMargin,
+                      inside.height + 2 * kMargin);
   std::vector<cv::KeyPoint> corners, cell_corners;
   cv::FAST(image(seen), corners, threshold, true);
-  const int columns = (inside.width + kFastCell - 1) / kFastCell, rows = (inside.height + kFastCell - 1) / kFastCell;
+  const int columns = (inside.width + kFastCell - 1) / kFastCell,
+            rows = (inside.height + kFastCell - 1) / kFastCell;
   std::vector<std::uint8_t> occupied(static_cast<std::size_t>(columns * rows), 0);
   for (auto& corner : corners) {
     const int column = (static_cast<int>(corner.pt.x) - kMargin) / kFastCell;
@@ -58,7 +61,8 @@ std::vector<cv::KeyPoint> fast_corners(const cv::Mat& image, const cv::Rect& ins
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
       if (occupied[static_cast<std::size_t>(r * columns + c)]) continue;
-      const cv::Rect cell(seen.x + c * kFastCell, seen.y + r * kFastCell, kFastCell + 2 * kMargin, kFastCell + 2 * kMargin);
+      const cv::Rect cell(seen.x + c * kFastCell, seen.y + r * kFastCell, kFastCell + 2 * kMargin,
+                          kFastCell + 2 * kMargin);
       const cv::Rect window = cell & seen;
       cv::FAST(image(window), cell_corners, low, true);
       for (auto& corner : cell_corners) {
@@ -87,7 +91,9 @@ std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wante
     const auto& p = candidates[i].pt;
     order[i] = {static_cast<int>(p.y / side) * columns + static_cast<int>(p.x / side), static_cast<int>(i)};
   }
-  const auto response = [&](const Candidate& c) { return candidates[static_cast<std::size_t>(c.index)].response; };
+  const auto response = [&](const Candidate& c) {
+    return candidates[static_cast<std::size_t>(c.index)].response;
+  };
   std::sort(order.begin(), order.end(), [&](const Candidate& a, const Candidate& b) {
     if (a.cell != b.cell) return a.cell < b.cell;
     if (response(a) != response(b)) return response(a) > response(b);
@@ -117,14 +123,15 @@ OrbExtractor::OrbExtractor(const FeatureConfig& config) : config_(config) {
   double share = config.count * (1.0 - shrink) / (1.0 - std::pow(shrink, config.levels));
   for (int level = 0; level + 1 < config.levels; ++level, share *= shrink) wanted_.push_back(cvRound(share));
   wanted_.push_back(std::max(0, config.count - std::accumulate(wanted_.begin(), wanted_.end(), 0)));
-  descriptor_ = cv::ORB::create(config.count, 2.0F, 1, kBorder, 0, 2, cv::ORB::FAST_SCORE, 2 * kPatchRadius + 1);
+  descriptor_ =
+      cv::ORB::create(config.count, 2.0F, 1, kBorder, 0, 2, cv::ORB::FAST_SCORE, 2 * kPatchRadius + 1);
 }
 
 std::vector<cv::KeyPoint> OrbExtractor::corners(const cv::Mat& level_image, int wanted) const {
   const cv::Rect inside(kBorder, kBorder, level_image.cols - 2 * kBorder, level_image.rows - 2 * kBorder);
   if (inside.width < 1 || inside.height < 1) return {};
-  auto chosen = spread(fast_corners(level_image, inside, config_.fast_threshold, config_.fast_threshold_low), wanted,
-                       level_image.cols, level_image.rows);
+  auto chosen = spread(fast_corners(level_image, inside, config_.fast_threshold, config_.fast_threshold_low),
+                       wanted, level_image.cols, level_image.rows);
   for (auto& corner : chosen) {
     corner.angle = centroid_angle(level_image, corner.pt);
     corner.octave = 0;
@@ -150,8 +157,10 @@ OrbFeatures OrbExtractor::extract(const cv::Mat& gray) const {
     for (int i = 0; i < rows.rows; ++i) {
       cv::KeyPoint keypoint = level_corners[static_cast<std::size_t>(i)];
       // Pixel centres lie at whole numbers, hence the halves: without them coarse levels sit a pixel off.
-      keypoint.pt.x = (keypoint.pt.x + 0.5F) * static_cast<float>(gray.cols) / static_cast<float>(image.cols) - 0.5F;
-      keypoint.pt.y = (keypoint.pt.y + 0.5F) * static_cast<float>(gray.rows) / static_cast<float>(image.rows) - 0.5F;
+      keypoint.pt.x =
+          (keypoint.pt.x + 0.5F) * static_cast<float>(gray.cols) / static_cast<float>(image.cols) - 0.5F;
+      keypoint.pt.y =
+          (keypoint.pt.y + 0.5F) * static_cast<float>(gray.rows) / static_cast<float>(image.rows) - 0.5F;
       keypoint.octave = level;
       keypoint.size = static_cast<float>((2 * kPatchRadius + 1) * scale);
       features.keypoints.push_back(keypoint);

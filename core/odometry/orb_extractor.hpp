@@ -14,9 +14,9 @@ struct OrbFeatures {
   std::vector<Descriptor> descriptors;
 };
 
-/// ORB (Rublee et al. 2011) with corners spread over the image: FAST on every pyramid level, a lower threshold in
-/// cells that would stay empty, and so many corners a level as its area asks for, the best of each neighbourhood
-/// first. Orientation by intensity centroid; descriptors are OpenCV's.
+/// ORB (Rublee et al. 2011) with corners spread over the image: FAST on every pyramid level, a lower
+/// threshold in cells that would stay empty, and so many corners a level as its area asks for, the best of
+/// each neighbourhood first. Orientation by intensity centroid; descriptors are OpenCV's.
 class OrbExtractor {
  public:
   explicit OrbExtractor(const FeatureConfig& config);
@@ -28,12 +28,13 @@ class OrbExtractor {
   [[nodiscard]] std::vector<cv::KeyPoint> corners(const cv::Mat& level_image, int wanted) const;
 
   FeatureConfig config_;
-  std::vector<int> wanted_;       // corners a level
-  cv::Ptr<cv::ORB> descriptor_;   // computes descriptors of one level at a time
+  std::vector<int> wanted_;      // corners a level
+  cv::Ptr<cv::ORB> descriptor_;  // computes descriptors of one level at a time
 };
 
 /// Picks `wanted` of the candidates so that they spread over a `width` x `height` image: round by round, the
 /// best not yet taken of each cell. Order of the result is by cell, then response.
-[[nodiscard]] std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wanted, int width, int height);
+[[nodiscard]] std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wanted, int width,
+                                               int height);
 
 }  // namespace stillpoint

@@ -7,7 +7,8 @@
 namespace stillpoint {
 namespace {
 
-/// One observation's residual (px; pixel twice, then depth as disparity) and its Jacobian by a left perturbation.
+/// One observation's residual (px; pixel twice, then depth as disparity) and its Jacobian by a left
+/// perturbation.
 struct Linearised {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> jacobian;
@@ -22,7 +23,8 @@ class PoseProblem {
   [[nodiscard]] bool uses_depth(const PoseObservation& o) const { return depth_weight_ > 0 && o.depth > 0; }
 
   /// Weighted by 1/σ, so that squared norms are χ².
-  [[nodiscard]] Linearised linearise(const PoseObservation& o, const Pose& camera_from_world, bool with_jacobian) const {
+  [[nodiscard]] Linearised linearise(const PoseObservation& o, const Pose& camera_from_world,
+                                     bool with_jacobian) const {
     Linearised result;
     const Eigen::Vector3d p = camera_from_world * o.point_in_world;
     result.in_front = p.z() > 0.05;
@@ -49,7 +51,9 @@ class PoseProblem {
     return l.in_front ? l.residual.squaredNorm() : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] double bound(const PoseObservation& o) const { return uses_depth(o) ? kChi2PixelDepth : kChi2Pixel; }
+  [[nodiscard]] double bound(const PoseObservation& o) const {
+    return uses_depth(o) ? kChi2PixelDepth : kChi2Pixel;
+  }
 
  private:
   const Camera& camera_;
@@ -160,7 +164,8 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
   return result;
 }
 
-std::optional<InitialPose> initial_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
+std::optional<InitialPose> initial_pose(const Camera& camera,
+                                        const std::vector<PoseObservation>& observations,
                                         const TrackingConfig& config) {
   if (static_cast<int>(observations.size()) < config.min_initial_matches) return std::nullopt;
   std::vector<cv::Point3d> points;
@@ -171,9 +176,9 @@ std::optional<InitialPose> initial_pose(const Camera& camera, const std::vector<
   }
   cv::Mat rotation_vector, translation, rotation;
   std::vector<int> inliers;
-  const bool found = cv::solvePnPRansac(points, pixels, camera.matrix(), cv::noArray(), rotation_vector, translation, false,
-                                        config.pnp_iterations, static_cast<float>(config.pnp_threshold_px), 0.99,
-                                        inliers, cv::SOLVEPNP_EPNP);
+  const bool found = cv::solvePnPRansac(
+      points, pixels, camera.matrix(), cv::noArray(), rotation_vector, translation, false,
+      config.pnp_iterations, static_cast<float>(config.pnp_threshold_px), 0.99, inliers, cv::SOLVEPNP_EPNP);
   if (!found || static_cast<int>(inliers.size()) < config.min_initial_matches) return std::nullopt;
   cv::Rodrigues(rotation_vector, rotation);
   InitialPose result;

@@ -18,8 +18,8 @@ struct PoseObservation {
   double sigma_px = 1.0;           ///< standard deviation of the pixel: the scale of the feature's octave
 };
 
-/// Depth enters beside pixels as what a stereo rig of this baseline (m) would measure in px: b fx / z. It is the
-/// distance between the projector and the camera of a Kinect, whose depth errors grow the same way.
+/// Depth enters beside pixels as what a stereo rig of this baseline (m) would measure in px: b fx / z. It is
+/// the distance between the projector and the camera of a Kinect, whose depth errors grow the same way.
 inline constexpr double kDepthBaseline = 0.075;
 
 /// 95 % bounds of χ² with 2 (pixel) and 3 (pixel and depth) degrees of freedom: beyond them, an outlier.
@@ -28,20 +28,21 @@ inline constexpr double kChi2Pixel = 5.991, kChi2PixelDepth = 7.815;
 /// What came of refining a pose.
 struct PoseRefinement {
   Pose camera_from_world = Pose::Identity();
-  std::vector<std::uint8_t> inlier;    ///< one an observation
-  std::vector<float> residual_px;      ///< one an observation: distance in the image under the refined pose
+  std::vector<std::uint8_t> inlier;  ///< one an observation
+  std::vector<float> residual_px;    ///< one an observation: distance in the image under the refined pose
   int inliers = 0;
-  int iterations = 0;                  ///< Levenberg-Marquardt steps over all rounds
-  double rms_before_px = 0.0;          ///< of the final inliers, under the initial pose
-  double rms_px = 0.0;                 ///< … and under the refined one
+  int iterations = 0;                       ///< Levenberg-Marquardt steps over all rounds
+  double rms_before_px = 0.0;               ///< of the final inliers, under the initial pose
+  double rms_px = 0.0;                      ///< … and under the refined one
   Matrix6d information = Matrix6d::Zero();  ///< JᵀWJ at the end, translation first
 };
 
-/// eq. (5): minimises ½ Σ ‖u_i − (1/s) K exp(ξ^) P_i‖² over ξ ∈ se(3), robustly (Huber), from an initial pose. In
-/// rounds, after each of which inliers are told from outliers anew. With tracking.depth_weight above 0 a third
-/// residual compares depth.
-/// With fewer than 3 observations the pose is returned as it came, without inliers.
-[[nodiscard]] PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
+/// eq. (5): minimises ½ Σ ‖u_i − (1/s) K exp(ξ^) P_i‖² over ξ ∈ se(3), robustly (Huber), from an initial
+/// pose. In rounds, after each of which inliers are told from outliers anew. With tracking.depth_weight above
+/// 0 a third residual compares depth. With fewer than 3 observations the pose is returned as it came, without
+/// inliers.
+[[nodiscard]] PoseRefinement refine_pose(const Camera& camera,
+                                         const std::vector<PoseObservation>& observations,
                                          const Pose& initial_camera_from_world, const TrackingConfig& config);
 
 /// EPnP (Lepetit et al. 2009) inside RANSAC.
@@ -50,8 +51,8 @@ struct InitialPose {
   std::vector<int> inliers;  ///< indices of observations
 };
 
-/// A pose from 3-D to 2-D matches of which many may be wrong; nothing when fewer than tracking.min_initial_matches
-/// agree. Deterministic.
+/// A pose from 3-D to 2-D matches of which many may be wrong; nothing when fewer than
+/// tracking.min_initial_matches agree. Deterministic.
 [[nodiscard]] std::optional<InitialPose> initial_pose(const Camera& camera,
                                                       const std::vector<PoseObservation>& observations,
                                                       const TrackingConfig& config);

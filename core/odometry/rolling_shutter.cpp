@@ -17,15 +17,17 @@ double median_depth(const std::vector<float>& depth) {
 
 }  // namespace
 
-void correct_rolling_shutter(const Camera& camera, const Vector6d& velocity, const std::vector<cv::Point2f>& pixels,
-                             std::vector<cv::Point2f>& undistorted, std::vector<float>& depth) {
+void correct_rolling_shutter(const Camera& camera, const Vector6d& velocity,
+                             const std::vector<cv::Point2f>& pixels, std::vector<cv::Point2f>& undistorted,
+                             std::vector<float>& depth) {
   if (camera.readout_s == 0.0 || velocity.isZero()) return;
   const double usual = median_depth(depth);
   const Eigen::Vector3d linear = velocity.head<3>(), angular = velocity.tail<3>();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double after_middle = ((static_cast<double>(pixels[i].y) + 0.5) / camera.height - 0.5) * camera.readout_s;
-    const Eigen::Vector3d p =
-        camera.back_project({undistorted[i].x, undistorted[i].y}, depth[i] > 0 ? static_cast<double>(depth[i]) : usual);
+    const double after_middle =
+        ((static_cast<double>(pixels[i].y) + 0.5) / camera.height - 0.5) * camera.readout_s;
+    const Eigen::Vector3d p = camera.back_project({undistorted[i].x, undistorted[i].y},
+                                                  depth[i] > 0 ? static_cast<double>(depth[i]) : usual);
     // To first order: over a few hundredths of a second no camera turns far.
     const Eigen::Vector3d at_middle = p - after_middle * (linear + angular.cross(p));
     if (at_middle.z() < 0.05) continue;

@@ -13,7 +13,8 @@ constexpr int kMinModelInliers = 10;  // matches that must agree before the moti
 
 }  // namespace
 
-std::vector<PoseObservation> Odometry::observations_of(const Current& current, const std::vector<Match>& matches) const {
+std::vector<PoseObservation> Odometry::observations_of(const Current& current,
+                                                       const std::vector<Match>& matches) const {
   std::vector<PoseObservation> observations;
   observations.reserve(matches.size());
   for (const Match& match : matches) {
@@ -27,7 +28,8 @@ std::vector<PoseObservation> Odometry::observations_of(const Current& current, c
   return observations;
 }
 
-PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matches, FrameRecord& record) const {
+PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matches,
+                                FrameRecord& record) const {
   const Stopwatch watch;
   PoseRefinement refined =
       refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking);
@@ -49,7 +51,8 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
       const Eigen::Vector3d p = predicted * point.position;
       if (p.z() < 0.05) continue;
       const Eigen::Vector2d pixel = camera_.project(p);
-      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= camera_.width || pixel.y() >= camera_.height) continue;
+      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= camera_.width || pixel.y() >= camera_.height)
+        continue;
       const cv::KeyPoint& seen = last_->features->keypoints[i];
       candidates.push_back({id,
                             {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())},
@@ -59,8 +62,8 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
                             &last_->features->descriptors[i],
                             seen.angle});
     }
-    const std::vector<Match> matches =
-        consistently_turned(match_in_windows(*current.features, candidates, tracking.match_max_distance, 1.0));
+    const std::vector<Match> matches = consistently_turned(
+        match_in_windows(*current.features, candidates, tracking.match_max_distance, 1.0));
     record.ms.matching += watch.lap();
     record.matches = static_cast<int>(matches.size());
     if (record.matches < tracking.min_initial_matches) continue;
@@ -69,8 +72,9 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
     PoseRefinement refined = refine(current, matches, record);
     if (refined.inliers < kMinModelInliers) continue;
     if (current.seek_consensus) {
-      const Consensus agreed = consensus_pose(camera_, observations_of(current, matches),
-                                              {predicted, refined.camera_from_world}, kConsensusSamples, current.seed);
+      const Consensus agreed =
+          consensus_pose(camera_, observations_of(current, matches), {predicted, refined.camera_from_world},
+                         kConsensusSamples, current.seed);
       refined.camera_from_world = agreed.camera_from_world;
       refined.inlier = agreed.inlier;
       record.ms.pose += watch.lap();
@@ -78,7 +82,8 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
     current.camera_from_world = refined.camera_from_world;
     for (std::size_t i = 0; i < matches.size(); ++i)
       if (refined.inlier[i]) current.points[static_cast<std::size_t>(matches[i].feature)] = matches[i].point;
-    record.pose_start = radius == tracking.search_radius_px ? PoseStart::motion_model : PoseStart::wide_search;
+    record.pose_start =
+        radius == tracking.search_radius_px ? PoseStart::motion_model : PoseStart::wide_search;
     return true;
   }
   current.camera_from_world = predicted;
@@ -86,7 +91,7 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
 }
 
 bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) {
-  constexpr int kMaxDistance = 60;       // bits: without a window only close descriptors tell points apart
+  constexpr int kMaxDistance = 60;  // bits: without a window only close descriptors tell points apart
   constexpr double kRatio = 0.8;
   Stopwatch watch;
   std::vector<Candidate> candidates;
@@ -131,7 +136,8 @@ std::vector<int> Odometry::local_points(const Current& current) const {
   // Room left goes to the neighbours of what the frame sees most of.
   for (std::size_t i = 0; i < seeds.size() && keyframes.size() < wanted; ++i)
     for (const auto& [neighbour, shared] : map_.covisible(seeds[i].first))
-      if (keyframes.size() < wanted && std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
+      if (keyframes.size() < wanted &&
+          std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
         keyframes.push_back(neighbour);
 
   std::vector<int> points;
@@ -168,8 +174,8 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
     candidates.push_back({id, seen.pixel, static_cast<float>(radius), seen.octave - 1, seen.octave + 1,
                           &point.descriptor, -1.0F});
   }
-  for (const Match& match : match_in_windows(*current.features, candidates, config_.tracking.match_max_distance,
-                                             config_.tracking.match_ratio))
+  for (const Match& match : match_in_windows(
+           *current.features, candidates, config_.tracking.match_max_distance, config_.tracking.match_ratio))
     if (current.points[static_cast<std::size_t>(match.feature)] == kNone) matches.push_back(match);
   record.ms.matching += watch.lap();
 

@@ -16,7 +16,7 @@ namespace {
 struct FrameErrors {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   double ate_m = kUnknown;
-  double rpe_frame_m = kUnknown, rpe_frame_deg = kUnknown;  // of the motion that ends here
+  double rpe_frame_m = kUnknown, rpe_frame_deg = kUnknown;    // of the motion that ends here
   double rpe_second_m = kUnknown, rpe_second_deg = kUnknown;  // … of the second that ends here
 };
 
@@ -82,9 +82,13 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
   row.number("bundle_rms_before_px", r.bundle_rms_before_px);
   row.number("bundle_rms_px", r.bundle_rms_px);
   row.count("bundle_iterations", r.bundle_iterations);
-  for (const auto& [name, ms] : {std::pair{"motion_ms", r.ms.motion}, {"features_ms", r.ms.features},
-                                 {"matching_ms", r.ms.matching}, {"pose_ms", r.ms.pose}, {"mapping_ms", r.ms.mapping},
-                                 {"bundle_ms", r.ms.bundle}, {"total_ms", r.ms.total}})
+  for (const auto& [name, ms] : {std::pair{"motion_ms", r.ms.motion},
+                                 {"features_ms", r.ms.features},
+                                 {"matching_ms", r.ms.matching},
+                                 {"pose_ms", r.ms.pose},
+                                 {"mapping_ms", r.ms.mapping},
+                                 {"bundle_ms", r.ms.bundle},
+                                 {"total_ms", r.ms.total}})
     row.number(name, ms, 3);
   row.number("ate_m", errors.ate_m, 6);
   row.number("rpe_frame_m", errors.rpe_frame_m, 6);
@@ -124,7 +128,8 @@ std::string map_ply(const RunResult& run) {
     text += fmt::format("{:.5f} {:.5f} {:.5f} {}\n", p.x(), p.y(), p.z(), colour);
   };
   for (const SavedPoint& point : run.points) vertex(point.position, "255 255 255");
-  for (const SavedKeyframe& keyframe : run.keyframes) vertex(keyframe.pose.world_from_camera.translation(), "230 159 0");
+  for (const SavedKeyframe& keyframe : run.keyframes)
+    vertex(keyframe.pose.world_from_camera.translation(), "230 159 0");
   return text;
 }
 
@@ -144,8 +149,10 @@ void write_run(const std::filesystem::path& folder, const RunResult& run, const 
   write_text_file(folder / "frames.csv", frames_csv(run, report));
   write_text_file(folder / "config.toml", to_toml(run.config));
   write_text_file(folder / "map.ply", map_ply(run));
-  write_text_file(folder / "summary.json", to_summary(report, run, source).dump(2, ' ', false,
-                  nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  write_text_file(
+      folder / "summary.json",
+      to_summary(report, run, source).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+          "\n");
 }
 
 }  // namespace stillpoint

@@ -7,8 +7,10 @@
 
 namespace stillpoint {
 
-/// Makes the folder a run is written to, before the run, so that nobody waits for frames to learn it cannot be.
-/// @throws InputError as prepare_out_folder does; `summary.json` and `trajectory.txt` are signs of an earlier run
+/// Makes the folder a run is written to, before the run, so that nobody waits for frames to learn it cannot
+/// be.
+/// @throws InputError as prepare_out_folder does; `summary.json` and `trajectory.txt` are signs of an earlier
+/// run
 void prepare_run_folder(const std::filesystem::path& folder, bool force);
 
 /// Writes what a run leaves:

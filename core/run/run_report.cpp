@@ -29,7 +29,8 @@ class Fingerprint {
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
 SpeedFigures speed_of(const RunResult& run) {
@@ -126,8 +127,8 @@ std::string run_hash(const std::vector<FrameRecord>& records) {
     print.add(r.index);
     print.add(static_cast<int>(r.status));
     for (int i = 0; i < 12; ++i) print.add(r.world_from_camera.matrix()(i % 3, i / 3));
-    for (const int figure : {r.features_found, r.features_removed, r.motion_rounds, r.matches, r.inliers, r.map_points,
-                             r.map_keyframes, static_cast<int>(r.keyframe)})
+    for (const int figure : {r.features_found, r.features_removed, r.motion_rounds, r.matches, r.inliers,
+                             r.map_points, r.map_keyframes, static_cast<int>(r.keyframe)})
       print.add(figure);
     print.add(r.mask_share);
   }
@@ -146,12 +147,15 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["tracked"] = report.tracked;
   json["coverage"] = report.coverage;
   json["lost_frames"] = ranges(run.records, [](const FrameRecord& r) { return !r.estimated; });
-  json["unreadable_frames"] = ranges(run.records, [](const FrameRecord& r) { return r.status == FrameStatus::unreadable; });
+  json["unreadable_frames"] =
+      ranges(run.records, [](const FrameRecord& r) { return r.status == FrameStatus::unreadable; });
   json["keyframes"] = report.keyframes;
   json["map_points"] = report.map_points;
   json["run_hash"] = report.hash;
-  json["evaluation"] = report.evaluation ? nlohmann::ordered_json(nlohmann::json(*report.evaluation)) : nullptr;
-  json["evaluation_live"] = report.evaluation_live ? nlohmann::ordered_json(nlohmann::json(*report.evaluation_live)) : nullptr;
+  json["evaluation"] =
+      report.evaluation ? nlohmann::ordered_json(nlohmann::json(*report.evaluation)) : nullptr;
+  json["evaluation_live"] =
+      report.evaluation_live ? nlohmann::ordered_json(nlohmann::json(*report.evaluation_live)) : nullptr;
   json["masks"] = nullptr;
   if (report.scores.known) {
     json["masks"]["mask"] = nlohmann::json(report.scores.mask);
@@ -165,24 +169,28 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
 }
 
 std::string to_text(const RunReport& report) {
-  std::string text = fmt::format("{}, method {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
-                                 report.sequence, report.method, report.tracked, report.frames, 100.0 * report.coverage,
-                                 report.keyframes, report.map_points);
+  std::string text =
+      fmt::format("{}, method {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
+                  report.sequence, report.method, report.tracked, report.frames, 100.0 * report.coverage,
+                  report.keyframes, report.map_points);
   if (report.evaluation && !report.evaluation->matched.empty()) {
     const TrajectoryEvaluation& e = *report.evaluation;
-    text += fmt::format("  ATE           {:.4f} m RMSE over {} poses\n", e.ate.translation_m.rmse, e.ate.translation_m.count);
+    text += fmt::format("  ATE           {:.4f} m RMSE over {} poses\n", e.ate.translation_m.rmse,
+                        e.ate.translation_m.count);
     for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame})
-      text += fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta, rpe->translation_m.rmse,
-                          rpe->rotation_deg.rmse, rpe->translation_m.count);
+      text += fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta,
+                          rpe->translation_m.rmse, rpe->rotation_deg.rmse, rpe->translation_m.count);
   } else {
     text += "  no ground truth: no errors\n";
   }
   if (report.scores.known && report.method != "none")
-    text += fmt::format("  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",
-                        share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),
-                        share_text(report.scores.mask.iou()), report.scores.removal.removed_rightly,
-                        report.scores.removal.removed_wrongly);
-  text += fmt::format("  time a frame  median {:.1f} ms, 99th percentile {:.1f} ms", report.speed.median_ms, report.speed.p99_ms);
+    text += fmt::format(
+        "  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",
+        share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),
+        share_text(report.scores.mask.iou()), report.scores.removal.removed_rightly,
+        report.scores.removal.removed_wrongly);
+  text += fmt::format("  time a frame  median {:.1f} ms, 99th percentile {:.1f} ms", report.speed.median_ms,
+                      report.speed.p99_ms);
   if (report.speed.units > 0) text += fmt::format(" ({:.2f} ORB units)", report.speed.units);
   return text + fmt::format("\n  run hash      {}\n", report.hash);
 }

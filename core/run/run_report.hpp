@@ -12,9 +12,9 @@ namespace stillpoint {
 /// Wall time a frame over a run.
 struct SpeedFigures {
   double median_ms = 0.0, p99_ms = 0.0;  ///< of tracking; decoding excluded
-  double orb_unit_ms = 0.0;              ///< median of the unit on the same frames; 0 when it was not measured
-  double units = 0.0;                    ///< median_ms / orb_unit_ms; 0 when it was not measured
-  StageTimes mean;                       ///< each stage's mean
+  double orb_unit_ms = 0.0;  ///< median of the unit on the same frames; 0 when it was not measured
+  double units = 0.0;        ///< median_ms / orb_unit_ms; 0 when it was not measured
+  StageTimes mean;           ///< each stage's mean
 };
 
 /// What is said about a whole run.
@@ -22,12 +22,12 @@ struct RunReport {
   std::string sequence, method;
   int frames = 0, tracked = 0, lost = 0, keyframes = 0, map_points = 0;
   double coverage = 0.0;                           ///< share of the frames with an estimated pose
-  std::optional<TrajectoryEvaluation> evaluation;       ///< of the final trajectory; nothing without ground truth
+  std::optional<TrajectoryEvaluation> evaluation;  ///< of the final trajectory; nothing without ground truth
   std::optional<TrajectoryEvaluation> evaluation_live;  ///< of the poses as first estimated
-  FrameScores scores;                              ///< summed over the frames
+  FrameScores scores;                                   ///< summed over the frames
   SpeedFigures speed;
-  std::string hash;                                ///< run_hash of the records
-  double peak_memory_mb = 0.0;                     ///< of the process so far
+  std::string hash;             ///< run_hash of the records
+  double peak_memory_mb = 0.0;  ///< of the process so far
 };
 
 [[nodiscard]] RunReport report_on(const RunResult& run, const FrameSource& source);
@@ -36,7 +36,8 @@ struct RunReport {
 [[nodiscard]] std::string run_hash(const std::vector<FrameRecord>& records);
 
 /// The report as `summary.json` holds it.
-[[nodiscard]] nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run, const FrameSource& source);
+[[nodiscard]] nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
+                                                const FrameSource& source);
 
 /// The report as a person reads it at the end of a run: a few lines.
 [[nodiscard]] std::string to_text(const RunReport& report);

@@ -10,7 +10,8 @@
 namespace stillpoint {
 namespace {
 
-/// EVALUATION.md's unit of speed: one detectAndCompute of 1000 features on this frame, by OpenCV and one thread.
+/// EVALUATION.md's unit of speed: one detectAndCompute of 1000 features on this frame, by OpenCV and one
+/// thread.
 double orb_unit_ms(const cv::Mat& gray) {
   static const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000, 1.2F, 8);
   std::vector<cv::KeyPoint> keypoints;
@@ -34,7 +35,8 @@ std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map) {
   for (const auto& [id, keyframe] : map.keyframes())
     saved.push_back({id, keyframe.frame_index, {keyframe.timestamp, keyframe.camera_from_world.inverse()}});
   for (const RetiredKeyframe& retired : map.retired())
-    saved.push_back({retired.id, retired.frame_index, {retired.timestamp, map.pose_of(retired.id).inverse()}});
+    saved.push_back(
+        {retired.id, retired.frame_index, {retired.timestamp, map.pose_of(retired.id).inverse()}});
   std::sort(saved.begin(), saved.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   return saved;
 }
@@ -74,8 +76,9 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       break;
     }
     // The truth is read beside tracking; only `oracle`, which is told, waits for it.
-    auto truth = std::async(oracle ? std::launch::deferred : std::launch::async,
-                            [&source, index] { return source.has_masks() ? source.truth(index).moving : cv::Mat(); });
+    auto truth = std::async(oracle ? std::launch::deferred : std::launch::async, [&source, index] {
+      return source.has_masks() ? source.truth(index).moving : cv::Mat();
+    });
     const Frame frame = prefetcher.next();
     const cv::Mat known = oracle ? truth.get() : cv::Mat();
     FrameResult processed = odometry.process(frame, known);

@@ -38,30 +38,32 @@ struct SavedKeyframe {
 /// A whole sequence by one method.
 struct RunResult {
   Config config;
-  std::vector<FrameRecord> records;      ///< one a frame processed, in order
-  std::vector<FrameScores> scores;       ///< one a record; without figures where no mask is known
-  Trajectory live;                       ///< poses as estimated when each frame was tracked; estimated ones only
-  Trajectory trajectory;                 ///< the same frames, hung on their reference keyframes as these stand at the end
+  std::vector<FrameRecord> records;  ///< one a frame processed, in order
+  std::vector<FrameScores> scores;   ///< one a record; without figures where no mask is known
+  Trajectory live;                   ///< poses as estimated when each frame was tracked; estimated ones only
+  Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
   int frames_in_sequence = 0;
-  double orb_unit_ms = 0.0;              ///< the unit of speed, median over the frames; 0 when it was not measured
-  bool interrupted = false;              ///< stopped before the last frame
+  double orb_unit_ms = 0.0;  ///< the unit of speed, median over the frames; 0 when it was not measured
+  bool interrupted = false;  ///< stopped before the last frame
 
   /// Frames with an estimated pose.
   [[nodiscard]] int tracked() const { return static_cast<int>(live.size()); }
 };
 
 struct RunOptions {
-  int first = 0;                                  ///< frame to begin with
-  int count = 0;                                  ///< frames to process; 0 = to the end
-  const std::atomic<bool>* stop = nullptr;        ///< when it turns true the run ends after the frame at hand
-  bool keep_features = false;                     ///< leave each record its features: 25 kB a frame, for who shows them
-  bool measure_orb_unit = false;                  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
+  int first = 0;                            ///< frame to begin with
+  int count = 0;                            ///< frames to process; 0 = to the end
+  const std::atomic<bool>* stop = nullptr;  ///< when it turns true the run ends after the frame at hand
+  bool keep_features = false;  ///< leave each record its features: 25 kB a frame, for who shows them
+  bool measure_orb_unit =
+      false;  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
   std::function<void(const FrameResult&)> on_frame;  ///< called after each frame, from the calling thread
 };
 
 /// Runs the configured method over a sequence; frames are read ahead on other threads.
-[[nodiscard]] RunResult run_sequence(const FrameSource& source, const Config& config, const RunOptions& options = {});
+[[nodiscard]] RunResult run_sequence(const FrameSource& source, const Config& config,
+                                     const RunOptions& options = {});
 
 }  // namespace stillpoint

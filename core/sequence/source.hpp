@@ -11,8 +11,8 @@
 
 namespace stillpoint {
 
-/// Where frames come from. Reading is const and safe from several threads at once; the same index always gives
-/// the same bytes.
+/// Where frames come from. Reading is const and safe from several threads at once; the same index always
+/// gives the same bytes.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -45,6 +45,7 @@ struct OpenOptions {
 
 /// Opens `FOLDER` (TUM RGB-D layout) or `generated:KIND`.
 /// @throws InputError in one sentence when it is neither or cannot be used.
-[[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenOptions& options = {});
+[[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where,
+                                                         const OpenOptions& options = {});
 
 }  // namespace stillpoint

@@ -217,8 +217,7 @@ void TumFolder::read_depth(const Entry& listed, Frame& frame) const {
                                 depth.image.rows, frame.gray.cols, frame.gray.rows);
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
-  else
-{
+  else {
     depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     frame.depth_timestamp = listed.depth->timestamp;
   }

@@ -135,7 +135,8 @@ std::string camera_text(const Camera& c) {
   return fmt::format(
       "name = \"{}\"\nwidth = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\n"
       "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ndepth_scale = {}\nreadout_s = {}\n",
-      c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale, c.readout_s);
+      c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale,
+      c.readout_s);
 }
 
 void write_lists(const FrameSource& source, const fs::path& folder) {

@@ -21,7 +21,8 @@ struct Scene {
     source = open_sequence("generated:walking_xyz", options);
     for (int i = 0; i <= kFrames; ++i) frames.push_back(source->read(i));
     config.run.method = "none";
-    config.map.keyframe_min_ratio = 1.0;  // a keyframe as often as may be, so that there is something to adjust
+    config.map.keyframe_min_ratio =
+        1.0;  // a keyframe as often as may be, so that there is something to adjust
     odometry.emplace(source->camera(), config);
     for (int i = 0; i < kFrames; ++i) (void)odometry->process(frames[static_cast<std::size_t>(i)]);
     odometry->finish();
@@ -100,7 +101,8 @@ void LocalBundleAdjustment(benchmark::State& state) {
   const Scene& scene = Scene::get();
   const LocalMap& map = scene.odometry->map();
   const BundleProblem problem = make_bundle_problem(map, map.keyframes().rbegin()->first, scene.config);
-  for (auto _ : state) benchmark::DoNotOptimize(solve_bundle(problem, scene.source->camera(), scene.config.bundle, 1.0));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(solve_bundle(problem, scene.source->camera(), scene.config.bundle, 1.0));
   state.counters["keyframes"] = static_cast<double>(problem.views.size());
   state.counters["edges"] = static_cast<double>(problem.edges.size());
 }
@@ -117,9 +119,11 @@ void DepthMotion(benchmark::State& state) {
   const Pose world_from_current = *scene.source->truth(Scene::kFrames).world_from_camera;
   std::vector<ReferenceView> references;
   for (const int i : {8, 0})
-    references.push_back({view(static_cast<std::size_t>(i)), scene.source->truth(i).world_from_camera->inverse() * world_from_current});
+    references.push_back({view(static_cast<std::size_t>(i)),
+                          scene.source->truth(i).world_from_camera->inverse() * world_from_current});
   for (auto _ : state)
-    benchmark::DoNotOptimize(detect_depth_motion(*current, scene.last().depth, references, nullptr, Pose::Identity(), config));
+    benchmark::DoNotOptimize(
+        detect_depth_motion(*current, scene.last().depth, references, nullptr, Pose::Identity(), config));
 }
 BENCHMARK(DepthMotion)->Unit(benchmark::kMillisecond);
 

@@ -215,7 +215,8 @@ TEST_F(BadStart, UnknownCommandsGetTheUsage) {
   EXPECT_EQ(run_cli({"fly"}).exit_code, 2);
   const CliResult help = run_cli({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "generate", "evaluate", "benchmark", "motion", "snapshot", "view", "config"})
+  for (const char* command :
+       {"run", "generate", "evaluate", "benchmark", "motion", "snapshot", "view", "config"})
     EXPECT_THAT(help.out, HasSubstr(command));
 }
 

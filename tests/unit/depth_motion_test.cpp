@@ -14,15 +14,16 @@ const Camera kCamera = camera_by_name("generated");
 
 /// A textured wall two metres off, seen by a camera that slides along x; before it a board one metre off.
 struct Scene {
-  double camera_x = 0.0;      // m
-  double board_x = 0.0;       // m, of the board's middle in the world
-  double board_z = 1.0;       // m
+  double camera_x = 0.0;  // m
+  double board_x = 0.0;   // m, of the board's middle in the world
+  double board_z = 1.0;   // m
   bool board = true;
-  double brightness = 0.0;    // grey levels added to all
+  double brightness = 0.0;  // grey levels added to all
 
   static float texture(double x, double y, int salt) {
     // Smooth bumps of some centimetres, so that small errors of place stay small in brightness.
-    return static_cast<float>(128 + 45 * std::sin(x * 37 + salt) * std::cos(y * 29 + salt) + 30 * std::sin(x * 61 - y * 53));
+    return static_cast<float>(128 + 45 * std::sin(x * 37 + salt) * std::cos(y * 29 + salt) +
+                              30 * std::sin(x * 61 - y * 53));
   }
 
   void render(cv::Mat& gray, cv::Mat& depth, cv::Mat* truth = nullptr) const {
@@ -56,10 +57,12 @@ ReferenceView reference(const Scene& then, const Scene& now) {
   return {std::make_shared<const RgbdView>(then.view()), reference_from_current};
 }
 
-DepthMotionTrace detect(const Scene& now, const std::vector<ReferenceView>& references, const MotionMemory* memory = nullptr) {
+DepthMotionTrace detect(const Scene& now, const std::vector<ReferenceView>& references,
+                        const MotionMemory* memory = nullptr) {
   cv::Mat gray, depth;
   now.render(gray, depth);
-  return detect_depth_motion(make_rgbd_view(gray, depth, kCamera, 4), depth, references, memory, Pose::Identity(), {});
+  return detect_depth_motion(make_rgbd_view(gray, depth, kCamera, 4), depth, references, memory,
+                             Pose::Identity(), {});
 }
 
 double overlap(const cv::Mat& mask, const cv::Mat& truth) {
@@ -101,11 +104,13 @@ TEST(DepthMotion, WhatLeavesRevealsBackgroundThatIsTrusted) {
 
 TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
   const Scene now{0.0, 0.30}, before{0.0, 0.30};
-  const DepthMotionTrace moving = detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
+  const DepthMotionTrace moving =
+      detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
   ASSERT_GT(cv::countNonZero(moving.mask), 0);
   MotionMemory memory{std::make_shared<const RgbdView>(before.view()), moving.log_odds};
   EXPECT_GT(cv::countNonZero(detect(now, {reference(before, now)}, &memory).mask), 0);
-  EXPECT_EQ(cv::countNonZero(detect(now, {reference(before, now)}).mask), 0) << "without memory it stands still";
+  EXPECT_EQ(cv::countNonZero(detect(now, {reference(before, now)}).mask), 0)
+      << "without memory it stands still";
   int frames = 0;
   for (cv::Mat odds = moving.log_odds; frames < 100; ++frames) {
     memory.log_odds = odds;
@@ -122,8 +127,8 @@ TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
   EXPECT_EQ(cv::countNonZero(alone.mask), 0);
   EXPECT_FALSE(alone.note.empty());
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
-  const DepthMotionTrace blind =
-      detect_depth_motion(make_rgbd_view(gray, none, kCamera, 4), none, {reference({}, {})}, nullptr, Pose::Identity(), {});
+  const DepthMotionTrace blind = detect_depth_motion(make_rgbd_view(gray, none, kCamera, 4), none,
+                                                     {reference({}, {})}, nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(blind.mask), 0);
 }
 

@@ -44,7 +44,8 @@ TEST(OrbExtractor, FeaturesAreSpreadOverTheImage) {
 
 TEST(OrbExtractor, FaintCornersCountWhereNothingElseIs) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(100));
-  cv::rectangle(image, {400, 200, 60, 60}, cv::Scalar(112), cv::FILLED);  // 12 grey levels: below fast_threshold
+  cv::rectangle(image, {400, 200, 60, 60}, cv::Scalar(112),
+                cv::FILLED);  // 12 grey levels: below fast_threshold
   FeatureConfig config;
   EXPECT_GT(OrbExtractor(config).extract(image).keypoints.size(), 0u);
   config.fast_threshold_low = config.fast_threshold;
@@ -57,7 +58,8 @@ TEST(OrbExtractor, FlatAndTinyImagesHaveNoFeatures) {
 }
 
 TEST(OrbExtractor, CoarseLevelsLieWhereTheyAre) {
-  // An image and the same doubled: the coarse features of one lie at the doubled places of the other's, halves and all.
+  // An image and the same doubled: the coarse features of one lie at the doubled places of the other's,
+  // halves and all.
   const cv::Mat image = textured(320, 240);
   cv::Mat doubled;
   cv::resize(image, doubled, {640, 480}, 0, 0, cv::INTER_NEAREST);
@@ -71,7 +73,8 @@ TEST(OrbExtractor, CoarseLevelsLieWhereTheyAre) {
   for (const auto& k : features.keypoints) {
     float nearest = 1e9F;
     for (const auto& c : corners) nearest = std::min(nearest, static_cast<float>(cv::norm(k.pt - c)));
-    EXPECT_LT(nearest, 4.0F * static_cast<float>(std::pow(config.scale_factor, k.octave))) << "octave " << k.octave;
+    EXPECT_LT(nearest, 4.0F * static_cast<float>(std::pow(config.scale_factor, k.octave)))
+        << "octave " << k.octave;
   }
 }
 
@@ -80,7 +83,8 @@ TEST(OrbExtractor, AnglesFollowTheImage) {
   cv::rotate(patch, turned, cv::ROTATE_90_CLOCKWISE);
   FeatureConfig config;
   config.levels = 1;
-  const OrbFeatures before = OrbExtractor(config).extract(patch), after = OrbExtractor(config).extract(turned);
+  const OrbFeatures before = OrbExtractor(config).extract(patch),
+                    after = OrbExtractor(config).extract(turned);
   // (x, y) turns to (479 - y, x); angles grow by 90 degrees.
   int same = 0, close = 0;
   for (const auto& a : before.keypoints)
@@ -96,7 +100,9 @@ TEST(OrbExtractor, AnglesFollowTheImage) {
 
 TEST(Spread, TakesTheBestOfEachNeighbourhoodFirst) {
   std::vector<cv::KeyPoint> candidates;
-  for (int i = 0; i < 10; ++i) candidates.emplace_back(cv::Point2f(10.0F + static_cast<float>(i), 10), 1, -1, 50.0F + static_cast<float>(i));
+  for (int i = 0; i < 10; ++i)
+    candidates.emplace_back(cv::Point2f(10.0F + static_cast<float>(i), 10), 1, -1,
+                            50.0F + static_cast<float>(i));
   candidates.emplace_back(cv::Point2f(90, 90), 1, -1, 1.0F);  // weak, but alone
   const auto chosen = spread(candidates, 2, 100, 100);
   ASSERT_EQ(chosen.size(), 2u);
@@ -137,7 +143,8 @@ TEST(FeatureSet, FindsWhatASearchOfAllFinds) {
     std::vector<int> expected;
     for (int i = 0; i < set.size(); ++i) {
       const auto f = static_cast<std::size_t>(i);
-      if (octaves[f] >= 1 && octaves[f] <= 5 && std::abs(pixels[f].x - centre.x) <= radius && std::abs(pixels[f].y - centre.y) <= radius)
+      if (octaves[f] >= 1 && octaves[f] <= 5 && std::abs(pixels[f].x - centre.x) <= radius &&
+          std::abs(pixels[f].y - centre.y) <= radius)
         expected.push_back(i);
     }
     EXPECT_EQ(found, expected);
@@ -179,7 +186,8 @@ TEST(RollingShutter, FeaturesComeToWhereTheMiddleRowSeesThem) {
   camera.readout_s = 0.03;
   Vector6d velocity;
   velocity << 0.4, -0.2, 0.3, 0.1, -0.5, 0.2;
-  const std::vector<Eigen::Vector3d> points = {{-0.5, -0.6, 1.5}, {0.4, 0.1, 1.0}, {0.3, 0.7, 2.0}, {-0.2, 0.45, 1.2}};
+  const std::vector<Eigen::Vector3d> points = {
+      {-0.5, -0.6, 1.5}, {0.4, 0.1, 1.0}, {0.3, 0.7, 2.0}, {-0.2, 0.45, 1.2}};
   std::vector<cv::Point2f> pixels, undistorted;
   std::vector<float> depth;
   for (const Eigen::Vector3d& p : points) {
@@ -218,7 +226,9 @@ TEST(Matching, TheNearestDescriptorInTheWindowWins) {
   const FeatureSet set = features_at({{100, 100}, {104, 100}, {300, 300}});
   Descriptor wanted{};
   wanted[0] = 0b010 | (std::uint64_t{1} << 40);  // one bit from feature 1 more than exact
-  const auto candidate = [&](float x, float radius) { return Candidate{7, {x, 100}, radius, 0, 0, &wanted, -1.0F}; };
+  const auto candidate = [&](float x, float radius) {
+    return Candidate{7, {x, 100}, radius, 0, 0, &wanted, -1.0F};
+  };
   auto matches = match_in_windows(set, {candidate(102, 5)}, 50, 0.9);
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_EQ(matches[0].feature, 1);
@@ -233,7 +243,8 @@ TEST(Matching, AFeatureGoesToTheNearestCandidate) {
   const FeatureSet set = features_at({{100, 100}});
   Descriptor exact{}, off{};
   exact[0] = 1, off[0] = 0b111;
-  const std::vector<Candidate> candidates = {{1, {100, 100}, 5, 0, 0, &off, -1.0F}, {2, {100, 100}, 5, 0, 0, &exact, -1.0F}};
+  const std::vector<Candidate> candidates = {{1, {100, 100}, 5, 0, 0, &off, -1.0F},
+                                             {2, {100, 100}, 5, 0, 0, &exact, -1.0F}};
   const auto matches = match_in_windows(set, candidates, 50, 1.0);
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_EQ(matches[0].point, 2);

@@ -19,7 +19,8 @@ TEST(Se3, ExpAndLogAreInverse) {
 }
 
 TEST(Se3, QuarterTurnAboutZMovesAlongACircle) {
-  // A unit of arc length pi/2 along x while turning pi/2 about z: a circle of radius 1, hence the point (1, 1, 0).
+  // A unit of arc length pi/2 along x while turning pi/2 about z: a circle of radius 1, hence the point (1,
+  // 1, 0).
   Vector6d xi;
   xi << std::numbers::pi / 2, 0, 0, 0, 0, std::numbers::pi / 2;
   const Pose pose = se3_exp(xi);

@@ -11,7 +11,8 @@ namespace {
 
 const Camera kCamera = camera_by_name("freiburg3");
 
-/// A wall of points two metres off, and keyframes that slide along it; every keyframe sees every point exactly.
+/// A wall of points two metres off, and keyframes that slide along it; every keyframe sees every point
+/// exactly.
 class Wall : public ::testing::Test {
  protected:
   static constexpr int kPoints = 60;
@@ -68,7 +69,9 @@ class Wall : public ::testing::Test {
 TEST_F(Wall, PointsAreMadeWhereDepthSaysTheyAre) {
   const auto ids = begin();
   for (int i = 0; i < kPoints; ++i)
-    EXPECT_LT((map_.point(ids[static_cast<std::size_t>(i)]).position - truth_[static_cast<std::size_t>(i)]).norm(), 1e-5);
+    EXPECT_LT(
+        (map_.point(ids[static_cast<std::size_t>(i)]).position - truth_[static_cast<std::size_t>(i)]).norm(),
+        1e-5);
 }
 
 TEST_F(Wall, CovisibilityCountsSharedPoints) {
@@ -151,12 +154,14 @@ TEST_F(Wall, BundleAdjustmentUndoesADisturbance) {
     for (int i = 0; i < 6; ++i) xi[i] = noise(random);
     map_.keyframe(k).camera_from_world = se3_exp(xi) * map_.keyframe(k).camera_from_world;
   }
-  for (const int id : ids) map_.point(id).position += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  for (const int id : ids)
+    map_.point(id).position += Eigen::Vector3d(noise(random), noise(random), noise(random));
   config_.bundle.iterations = 50;
   const BundleProblem problem = make_bundle_problem(map_, 3, config_);
   EXPECT_EQ(problem.views.size(), 4u);
   EXPECT_EQ(problem.edges.size(), 4u * kPoints);
-  EXPECT_EQ(std::count_if(problem.views.begin(), problem.views.end(), [](const auto& v) { return v.fixed; }), 1);
+  EXPECT_EQ(std::count_if(problem.views.begin(), problem.views.end(), [](const auto& v) { return v.fixed; }),
+            1);
 
   const BundleSolution solution = solve_bundle(problem, kCamera, config_.bundle, 1.0);
   ASSERT_TRUE(solution.usable);
@@ -164,7 +169,8 @@ TEST_F(Wall, BundleAdjustmentUndoesADisturbance) {
   EXPECT_LT(solution.rms_px, 0.05);
   apply_bundle(solution, map_);
   for (int k = 1; k <= 3; ++k)
-    EXPECT_LT((map_.keyframe(k).camera_from_world.inverse() * camera_at(0.1 * k)).translation().norm(), 2e-3) << k;
+    EXPECT_LT((map_.keyframe(k).camera_from_world.inverse() * camera_at(0.1 * k)).translation().norm(), 2e-3)
+        << k;
 }
 
 TEST_F(Wall, BundleAdjustmentDropsWrongObservations) {

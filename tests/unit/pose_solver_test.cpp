@@ -66,7 +66,8 @@ TEST(RefinePose, ResidualsArePixelDistances) {
 }
 
 TEST(RefinePose, InformationIsTheInverseOfTheSpread) {
-  // Poses estimated from many draws of noise scatter as the inverse of the information says (1 px noise, sigma 1).
+  // Poses estimated from many draws of noise scatter as the inverse of the information says (1 px noise,
+  // sigma 1).
   const int draws = 200;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
   Eigen::Vector3d predicted = Eigen::Vector3d::Zero();
@@ -88,7 +89,8 @@ TEST(RefinePose, InformationIsTheInverseOfTheSpread) {
     predicted += covariance.diagonal().head<3>();
   }
   const Eigen::Vector3d variance = squares / draws - (sum / draws).cwiseAbs2();
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(variance[axis] / (predicted[axis] / draws), 1.0, 0.35) << axis;
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(variance[axis] / (predicted[axis] / draws), 1.0, 0.35) << axis;
 }
 
 TEST(RefinePose, TooFewObservationsLeaveThePoseAlone) {

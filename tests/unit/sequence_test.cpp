@@ -324,7 +324,8 @@ TEST(TumFolder, CameraFilesHoldTheBuiltInCameras) {
     const Camera read =
         read_camera(std::string(STILLPOINT_SOURCE_DIR "/assets/cameras/") + built_in.name + ".toml");
     EXPECT_EQ(read.name, built_in.name);
-    EXPECT_EQ(std::tie(read.width, read.height, read.fx, read.fy, read.cx, read.cy, read.depth_scale, read.readout_s),
+    EXPECT_EQ(std::tie(read.width, read.height, read.fx, read.fy, read.cx, read.cy, read.depth_scale,
+                       read.readout_s),
               std::tie(built_in.width, built_in.height, built_in.fx, built_in.fy, built_in.cx, built_in.cy,
                        built_in.depth_scale, built_in.readout_s));
     EXPECT_EQ(std::tie(read.k1, read.k2, read.p1, read.p2, read.k3),

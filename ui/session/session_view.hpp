@@ -15,43 +15,45 @@
 
 namespace stillpoint {
 
-/// One frame as panels show it: its images, read or computed again, and its record. Images a sequence lacks are empty.
+/// One frame as panels show it: its images, read or computed again, and its record. Images a sequence lacks
+/// are empty.
 struct FrameView {
   int index = 0;
-  Frame frame;                        ///< t
-  Frame reference;                    ///< t - motion.reference_gap; unreadable (empty) for the first frames
-  MotionTrace motion;                 ///< the paper's stages on that pair, whatever the method run
-  DepthMotionTrace depth_motion;      ///< method `stillpoint`'s stages; without references for other methods
-  cv::Mat mask;                       ///< CV_8UC1: what the method removed; empty = nothing
-  FrameTruth truth;                   ///< for display and evaluation only
+  Frame frame;                    ///< t
+  Frame reference;                ///< t - motion.reference_gap; unreadable (empty) for the first frames
+  MotionTrace motion;             ///< the paper's stages on that pair, whatever the method run
+  DepthMotionTrace depth_motion;  ///< method `stillpoint`'s stages; without references for other methods
+  cv::Mat mask;                   ///< CV_8UC1: what the method removed; empty = nothing
+  FrameTruth truth;               ///< for display and evaluation only
   const FrameRecord* record = nullptr;  ///< null while the frame has not been processed
 };
 
 /// A run beside the session's own: the baseline, or a ghost with other parameters.
 struct RunView {
-  std::string name;                       ///< "none", "paper", …
-  std::vector<FrameRecord> records;       ///< as far as processed, in order of frames
-  Trajectory trajectory;                  ///< estimated poses so far
-  TrajectoryEvaluation evaluation;        ///< against ground truth, without matches where there is none
+  std::string name;                  ///< "none", "paper", …
+  std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
+  Trajectory trajectory;             ///< estimated poses so far
+  TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
 };
 
-/// What panels draw: a snapshot of the session, plain data, made by the session once a frame of the interface at most.
+/// What panels draw: a snapshot of the session, plain data, made by the session once a frame of the interface
+/// at most.
 struct SessionView {
-  std::string title;                      ///< the sequence's name
+  std::string title;  ///< the sequence's name
   Camera camera;
   Config config;
-  int frame_count = 0;                    ///< of the sequence
-  int processed = 0;                      ///< frames with a record
-  bool playing = false, busy = false;     ///< playing; the worker has something to do
-  std::string message;                    ///< the last error, one sentence; empty when all is well
-  std::shared_ptr<const FrameView> current;   ///< the frame shown; never null
-  std::shared_ptr<const RunView> run;         ///< never null
-  std::shared_ptr<const RunView> baseline;    ///< null where none is run
-  Trajectory ground_truth;                ///< empty where there is none
-  Alignment alignment;                    ///< truth_from_estimate over the poses so far, stated in the trajectory panel
+  int frame_count = 0;                       ///< of the sequence
+  int processed = 0;                         ///< frames with a record
+  bool playing = false, busy = false;        ///< playing; the worker has something to do
+  std::string message;                       ///< the last error, one sentence; empty when all is well
+  std::shared_ptr<const FrameView> current;  ///< the frame shown; never null
+  std::shared_ptr<const RunView> run;        ///< never null
+  std::shared_ptr<const RunView> baseline;   ///< null where none is run
+  Trajectory ground_truth;                   ///< empty where there is none
+  Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
   std::vector<SavedKeyframe> keyframes;
   std::vector<SavedPoint> map_points;
-  std::uint64_t revision = 0;             ///< grows when run, keyframes or points change: what caches go by
+  std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
 };
 
 }  // namespace stillpoint

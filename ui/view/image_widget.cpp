@@ -106,8 +106,8 @@ void draw_absent(const UiFrame& frame, const ImageResponse& response, const std:
 void draw_pictures(const ImageContent& content, const ImageResponse& response,
                    const Eigen::Vector2d& image_size) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  // An image pixel's edge that falls on the centre of a display pixel would go either way, by rounding that differs
-  // from driver to driver; a hundredth of a pixel decides.
+  // An image pixel's edge that falls on the centre of a display pixel would go either way, by rounding that
+  // differs from driver to driver; a hundredth of a pixel decides.
   constexpr float kDecide = 0.01F;
   ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
   for (float* coordinate : {&low.x, &low.y, &high.x, &high.y}) *coordinate += kDecide;

@@ -20,7 +20,7 @@ struct ImageOverlay {
 
 /// What an image panel shows.
 struct ImageContent {
-  const Texture* texture = nullptr;    ///< null or empty: `absent` is written instead
+  const Texture* texture = nullptr;      ///< null or empty: `absent` is written instead
   std::vector<ImageOverlay> overlays{};  ///< same extent as the image, drawn in order
   const cv::Mat* values =
       nullptr;  ///< whose numbers stand on the pixels when zoomed in; any depth, 1 or 3 channels
