@@ -49,6 +49,31 @@ struct DepthMotionConfig {
   int margin_px = 2;               ///< added about the mask at the end
 };
 
+/// Method `stillpoint`: what moves where there is colour alone. Small pixels are two full-size ones a side.
+struct ColourMotionConfig {
+  int cell_px = 8;                ///< each cell of the small image holds one followed point at most, small px
+  int flow_window_px = 9;         ///< side of the Lucas-Kanade window, small px
+  double corner_response = 1e-4;  ///< least eigenvalue of the gradient matrix that makes a point
+  int near_reference = 3;         ///< frames back to the nearest of three references
+  int far_reference = 12;         ///< frames back to the farthest one; the third lies half as far
+  double sigmas = 1.5;            ///< residual at which a point's evidence changes sign, standard deviations
+  double evidence_a_sigma = 0.4;  ///< evidence for every standard deviation beyond that
+  double memory = 0.92;           ///< share of a point's evidence carried to the next frame
+  double max_evidence = 3.0;      ///< evidence of moving saturates here
+  double max_static_evidence =
+      0.5;          ///< … and of standing still here: a step along its epipolar line looks still
+  int min_age = 2;  ///< frames a point is followed before it has a say
+  double same_motion_px = 0.5;   ///< difference of two points' paths that sets them apart, small px
+  double sharing = 2.0;          ///< weight of a neighbour that moves alike against a point's own evidence
+  double colour_price = 0.15;    ///< what a grey level of change costs evidence on its way, quarter-size px
+  double longest_way = 8.0;      ///< way after which evidence ends, quarter-size px
+  double moving_evidence = 0.3;  ///< above it a pixel moves
+  int close_px = 8;              ///< gaps in the mask up to twice this are closed, quarter-size px
+  int shave_px = 3;  ///< taken off the outline, which windows that see both sides push out, quarter-size px
+  double min_area_share = 0.008;  ///< smaller regions are noise, share of the image
+  int min_points = 8;             ///< regions with fewer moving points are noise
+};
+
 /// ORB features spread over the image.
 struct FeatureConfig {
   int count = 1000;            ///< features wanted a frame
@@ -114,6 +139,7 @@ struct Config {
   RunConfig run;
   MotionConfig motion;
   DepthMotionConfig depth_motion;
+  ColourMotionConfig colour_motion;
   FeatureConfig features;
   TrackingConfig tracking;
   MapConfig map;
