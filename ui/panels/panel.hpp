@@ -15,6 +15,7 @@ namespace stillpoint {
 struct PanelActions {
   std::optional<int> go_to_frame;                                   ///< 0 to frame_count - 1
   std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
+  std::vector<SessionRequest> requests;                             ///< in order
 };
 
 /// One view of the session. What it draws is the same in a window and in an image file.

@@ -12,6 +12,7 @@
 #include "core/odometry/frame_record.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/frame.hpp"
+#include "ui/session/debug_view.hpp"
 
 namespace stillpoint {
 
@@ -53,6 +54,7 @@ struct SessionView {
   Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
   std::vector<SavedKeyframe> keyframes;
   std::vector<SavedPoint> map_points;
+  DebugView debug;             ///< bookmarks, breakpoints, ghost runs, …
   std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
 };
 

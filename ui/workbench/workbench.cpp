@@ -253,6 +253,8 @@ void Workbench::draw_tile_menu(const std::string& name) {
 
 void Workbench::carry_out(const PanelActions& wanted) {
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  if (host_.request)
+    for (const SessionRequest& wish : wanted.requests) host_.request(wish);
   if (wanted.set_parameters.empty() || !host_.configure) return;
   Config config = session_->config;
   try {

@@ -20,6 +20,7 @@ struct WorkbenchHost {
   std::function<void(double)> speed{};             ///< frames a second, while playing
   std::function<void(const Config&)> configure{};  ///< run with this config
   std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
+  std::function<void(SessionRequest)> request{};   ///< what panels ask of the session
 };
 
 /// The whole interface: menus, toolbar, tiles with panels, status bar, palette, shortcut sheet, start page.
