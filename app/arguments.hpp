@@ -29,6 +29,8 @@ struct SequenceArguments {
   int seed = -1;       ///< of generated sequences; negative = the config's
 
   void add_to(CLI::App& command);
+  /// What open_sequence is given.
+  [[nodiscard]] OpenOptions options(const Config& config) const;
   /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config) const;
 };

@@ -4,27 +4,13 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
+#include "core/hash.hpp"
 
 namespace stillpoint {
 namespace {
-
-/// FNV-1a over the bytes of numbers.
-class Fingerprint {
- public:
-  void add(std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte, value >>= 8U) hash_ = (hash_ ^ (value & 0xFFU)) * 0x100000001b3U;
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(int value) { add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
-  [[nodiscard]] std::string hex() const { return fmt::format("{:016x}", hash_); }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325U;
-};
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
