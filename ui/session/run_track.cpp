@@ -16,8 +16,10 @@ FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& re
 
 FrameResult RunTrack::process_next(const ReadFrame& read) {
   const int index = processed();
+  while (seen_ < index) catch_up_one(read);
   if (index % options_.checkpoint_every == 0) keep_checkpoint();
   FrameResult result = process(odometry_, index, read);
+  ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
   features_.push_back(options_.keep_features ? result.record.features : std::vector<FeatureRecord>());
@@ -33,7 +35,7 @@ FrameRecord RunTrack::record(int index) const {
 }
 
 void RunTrack::keep_checkpoint() {
-  checkpoints_.emplace(processed(), odometry_);
+  checkpoints_.emplace(seen_, odometry_);
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
   std::erase_if(checkpoints_,
@@ -51,7 +53,8 @@ RunView RunTrack::view() const {
   RunView view;
   view.name = config().run.method;
   view.records = records_;
-  view.trajectory = trajectory_so_far(odometry_.map(), records_);
+  view.trajectory =
+      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_.map(), records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

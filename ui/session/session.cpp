@@ -1,5 +1,7 @@
 #include "ui/session/session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -21,6 +23,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
                  const SessionOptions& options)
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
+  if (options_.recorded) open_recorded();
   show(0);
 }
 
@@ -78,6 +81,7 @@ Session::Extras Session::extras_of(int index) {
   if (kept != extras_.end()) return *kept;
   const std::string& method = run_->config().run.method;
   if (method == "none" || method == "paper") return {.index = index};  // all there is, frame_view computes
+  if (index >= run_->seen()) return recorded_extras(index);
   FrameResult again = run_->replay(index, reader());
   keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
   return extras_.front();
@@ -99,6 +103,7 @@ FrameView Session::frame_view(int index) {
     view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
   view.depth_motion = std::move(extras.depth_motion);
   view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
+  if (!options_.no_images.empty()) view.mask = run_->recorded_mask(index);
   return view;
 }
 
@@ -146,8 +151,8 @@ void Session::publish() {
     view->keyframes = last->keyframes;
     view->map_points = last->map_points;
   } else {
-    view->keyframes = saved_keyframes(run_->map());
-    view->map_points = saved_points(run_->map());
+    view->keyframes = run_->keyframes();
+    view->map_points = run_->points();
   }
   std::function<void()> on_change;
   {
@@ -163,6 +168,11 @@ void Session::go_to(int frame, const std::function<void(const FrameRecord&)>& on
   while (run_->processed() <= target_) {
     process_one();
     if (on_frame) on_frame(run_->records().back());
+  }
+  while (options_.catch_up && options_.no_images.empty() && run_->seen() <= target_) {
+    const int index = run_->seen();
+    run_->catch_up_one(reader());
+    if (on_frame) on_frame(run_->records()[static_cast<std::size_t>(index)]);
   }
   show(target_);
 }
@@ -203,7 +213,10 @@ bool Session::take_requests() {
     const std::lock_guard lock(mutex_);
     taken = std::exchange(requests_, {});
   }
-  if (taken.config) {
+  if (taken.config && !options_.no_images.empty()) {
+    message_ = fmt::format("No other parameters can be tried: {}", options_.no_images);
+    show(current_->index);
+  } else if (taken.config) {
     restart(*taken.config);
     target_ = current_->index;
     show(target_);
@@ -239,6 +252,10 @@ void Session::work(const std::stop_token& stop) {
       const bool at_rest = current_->index == target_ && current_->record != nullptr;
       if (!playing_ && at_rest) {
         if (asked) publish();
+        if (stages_are_missing()) {
+          catch_up();
+          continue;
+        }
         std::unique_lock lock(mutex_);
         asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
         continue;
