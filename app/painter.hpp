@@ -19,8 +19,8 @@ struct PainterOptions {
   std::pair<int, int> workbench_size = {1600, 900};  ///< px
   std::pair<int, int> panel_size = {960, 780};       ///< px
   Look look{};
-  std::string layout;  ///< the workbench's tiles, a JSON file; empty = the method's default
-  std::string method;  ///< chooses the default layout
+  std::string layout{};  ///< the workbench's tiles, a JSON file; empty = the method's default
+  std::string method{};  ///< chooses the default layout
 };
 
 /// Draws panels and the workbench as images, in one GL context for all of them.

@@ -104,14 +104,18 @@ void write_frame(const FrameSource& source, int index, const fs::path& folder) {
 }
 
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
-void write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+/// @returns how many were written: those from the first on
+int write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
   int done = 0;
   std::exception_ptr failure;
   const auto work = [&] {
-    for (int i = next++; i < source.size() && !failed; i = next++) {
+    // Whoever has taken a frame writes it, so that none is missing before the last.
+    while (!failed && !(options.stop != nullptr && *options.stop)) {
+      const int i = next++;
+      if (i >= source.size()) break;
       try {
         write_frame(source, i, folder);
         const std::lock_guard lock(mutex);
@@ -129,6 +133,7 @@ void write_frames(const FrameSource& source, const fs::path& folder, const Write
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
+  return done;
 }
 
 std::string camera_text(const Camera& c) {
@@ -166,11 +171,12 @@ void write_lists(const FrameSource& source, const fs::path& folder) {
 
 }  // namespace
 
-void write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+int write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
   prepare(source, folder, options.force);
-  write_frames(source, folder, options);
-  write_lists(source, folder);
+  const int written = write_frames(source, folder, options);
+  if (written > 0) write_lists(source, folder);
+  return written;
 }
 
 }  // namespace stillpoint
