@@ -12,6 +12,7 @@
 #include "app/video_file.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/condition.hpp"
 #include "ui/session/frame_ranges.hpp"
 #include "ui/session/session.hpp"
 #include "ui/workbench/settings.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct SnapshotArguments {
   PlaceArguments place;
-  std::string out, video, frames = "-1", panels, size, theme = "dark", layout;
+  std::string out, video, frames, when, panels, size, theme = "dark", layout;
   double scale = 1.0, fps = 30.0;
   bool force = false, no_baseline = false, timings = false;
 };
@@ -88,12 +89,33 @@ class Pictures {
   int files_ = 0, frames_ = 0;
 };
 
+std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
+  if (arguments.when.empty()) return std::nullopt;
+  try {
+    return Condition(arguments.when);
+  } catch (const ConditionError& error) {
+    throw InputError(
+        fmt::format("--when: {}\n  {}\n  {:>{}}", error.what(), arguments.when, "^", error.column() + 1));
+  }
+}
+
+/// Those of `frames` at which the condition holds.
+std::vector<int> frames_where(const Condition& condition, const RunView& run,
+                              const std::vector<int>& frames) {
+  std::vector<int> chosen;
+  for (const int frame : condition.frames(FrameFigures(run.records, &run.evaluation)))
+    if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
+  return chosen;
+}
+
 void snapshot(const SnapshotArguments& arguments) {
+  const std::optional<Condition> condition = when_condition(arguments);
   OpenedPlace place = open_place(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
   if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
   const std::string& method = place.config.run.method;
-  const std::vector<int> frames = parse_frame_ranges(arguments.frames, place.source->size());
+  const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
+  std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
   Painter painter(painter_options(arguments, method));
   Pictures pictures(arguments, painter);
 
@@ -106,12 +128,17 @@ void snapshot(const SnapshotArguments& arguments) {
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
+    const auto on_frame = [&](const FrameRecord& record) {
+      progress.advance(std::string(to_string(record.status)));
+      throw_if_interrupted();
+    };
     try {
+      if (condition) {
+        session.go_to(frames.back(), on_frame);
+        frames = frames_where(*condition, *session.view()->run, frames);
+      }
       for (const int frame : frames) {
-        session.go_to(frame, [&](const FrameRecord& record) {
-          progress.advance(std::string(to_string(record.status)));
-          throw_if_interrupted();
-        });
+        session.go_to(frame, on_frame);
         const auto view = session.view();
         pictures.add(*view, painter.paint(*view));
         throw_if_interrupted();
@@ -135,10 +162,14 @@ void add_snapshot_command(CLI::App& app) {
           "SEQUENCE", arguments->place.place,
           "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder")
       ->required();
-  command
-      ->add_option("--frames", arguments->frames,
-                   "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last; with commas between")
-      ->capture_default_str();
+  command->add_option(
+      "--frames", arguments->frames,
+      "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last, and what is drawn when nothing "
+      "is said; with commas between");
+  command->add_option(
+      "--when", arguments->when,
+      "Draw only frames at which a condition holds, such as 'rpe > 5 cm || lost', among all or those of "
+      "--frames; `stillpoint run --break help` tells of conditions");
   command->add_option("--panels", arguments->panels,
                       "all (otherwise), workbench, or panels' names with commas between");
   command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing");

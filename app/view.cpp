@@ -68,6 +68,10 @@ class Viewer {
   void show(OpenedPlace place, const std::string& where) {
     config_ = place.config;
     session_.reset();
+    std::error_code none;
+    place.options.sidecar = SidecarPlaces{
+        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
     session_ = std::make_unique<Session>(std::move(place.source), config_, place.options);
     session_->start([] { Window::wake(); });
     // What moves shows from the first frame that has another to be compared with.
@@ -124,7 +128,8 @@ class Viewer {
                   config_ = config;
                   session_->request_config(config);
                 },
-            .open = [this](const std::string& where) { open(where); }};
+            .open = [this](const std::string& where) { open(where); },
+            .request = [this](SessionRequest wanted) { session_->request(std::move(wanted)); }};
   }
 
   void draw(UiFrame& frame) {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
-#include "core/hash.hpp"
+#include "core/run/run_hash.hpp"
 
 namespace stillpoint {
 namespace {
@@ -108,17 +108,9 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
 }
 
 std::string run_hash(const std::vector<FrameRecord>& records) {
-  Fingerprint print;
-  for (const FrameRecord& r : records) {
-    print.add(r.index);
-    print.add(static_cast<int>(r.status));
-    for (int i = 0; i < 12; ++i) print.add(r.world_from_camera.matrix()(i % 3, i / 3));
-    for (const int figure : {r.features_found, r.features_removed, r.motion_rounds, r.matches, r.inliers,
-                             r.map_points, r.map_keyframes, static_cast<int>(r.keyframe)})
-      print.add(figure);
-    print.add(r.mask_share);
-  }
-  return print.hex();
+  RunHash hash;
+  for (const FrameRecord& record : records) hash.add(record);
+  return hash.hex();
 }
 
 nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run, const FrameSource& source) {

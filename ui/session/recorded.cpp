@@ -21,7 +21,10 @@ RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun>
       recorded_(std::move(recorded)),
       odometry_(source.camera(), recorded_->run.config) {
   for (const FrameRecord& record : recorded_->run.records) {
-    features_.push_back(options_.keep_features ? record.features : std::vector<FeatureRecord>());
+    hash_.add(record);
+    features_.push_back(options_.keep_features
+                            ? std::make_shared<const std::vector<FeatureRecord>>(record.features)
+                            : nullptr);
     records_.push_back(record);
     records_.back().features = {};
   }
@@ -52,7 +55,7 @@ cv::Mat RunTrack::recorded_mask(int index) const {
 }
 
 void Session::open_recorded() {
-  run_ = std::make_unique<RunTrack>(*source_, options_.recorded);
+  run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, options_.recorded));
   baseline_.reset();
   if (options_.recorded_baseline)
     baseline_view_ = std::make_shared<const RunView>(
@@ -60,23 +63,14 @@ void Session::open_recorded() {
   message_ = options_.no_images;
 }
 
-Session::Extras Session::recorded_extras(int index) const {
-  Extras extras{.index = index, .mask = run_->recorded_mask(index)};
-  extras.depth_motion.note = options_.no_images.empty()
-                                 ? "the run's records hold the mask alone, and the stages before it are "
-                                   "being computed again from the first frame on."
-                                 : options_.no_images;
-  return extras;
-}
-
 bool Session::stages_are_missing() const {
-  return run_->config().run.method == "stillpoint" && options_.no_images.empty() &&
-         current_->index >= run_->seen();
+  return run_->track().config().run.method == "stillpoint" && options_.no_images.empty() &&
+         current_->index < run_->track().processed() && current_->index >= run_->track().seen();
 }
 
 void Session::catch_up() {
   const auto begin = Clock::now();
-  while (stages_are_missing() && Clock::now() - begin < kSlice) run_->catch_up_one(reader());
+  while (stages_are_missing() && Clock::now() - begin < kSlice) run_->catch_up_one();
   if (!stages_are_missing()) show(current_->index);
 }
 
