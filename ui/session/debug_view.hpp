@@ -70,6 +70,7 @@ struct RemovalError {
   double without_removal_m = 0.0;
   double told_m = 0.0;  ///< with the true mask
   bool hurt = false;    ///< removal made it worse by more than the noise of such steps
+  bool helped = false;  ///< … better by more than that
 };
 
 /// The debugger's part of SessionView.
