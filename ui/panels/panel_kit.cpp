@@ -139,6 +139,10 @@ void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radi
       list.AddQuadFilled({low.x, centre.y}, {centre.x, low.y}, {high.x, centre.y}, {centre.x, high.y},
                          colour);
       return;
+    case Sign::kFlag:
+      list.AddLine({low.x, low.y}, {low.x, high.y}, colour, thin);
+      list.AddTriangleFilled({low.x, low.y}, {high.x, low.y + 0.6F * r}, {low.x, low.y + 1.2F * r}, colour);
+      return;
     case Sign::kLine:
       list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
       return;

@@ -72,6 +72,7 @@ enum class Sign {
   kHollowSquare,
   kTriangle,
   kDiamond,
+  kFlag,
   kLine,
   kDashed
 };
