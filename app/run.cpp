@@ -2,11 +2,13 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/run/condition.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 
@@ -14,13 +16,42 @@ namespace stillpoint {
 namespace {
 
 struct RunArguments {
-  std::string sequence, out;
+  std::string sequence, out, break_at;
   bool force = false, measure_unit = false;
   ConfigArguments config;
   SequenceArguments frames;
 };
 
+constexpr int kConditionHeld = 3;  // exit status
+
+std::optional<Condition> break_condition(const RunArguments& arguments) {
+  if (arguments.break_at.empty()) return std::nullopt;
+  try {
+    return Condition(arguments.break_at);
+  } catch (const ConditionError& error) {
+    throw InputError(fmt::format("--break: {}\n  {}\n  {:>{}}", error.what(), arguments.break_at, "^",
+                                 error.column() + 1));
+  }
+}
+
+/// Tells where a condition holds. @returns whether it does anywhere
+bool tell_frames(const Condition& condition, const RunResult& result, const RunReport& report) {
+  const auto frames = condition.frames(
+      FrameFigures(result.records, report.evaluation ? &*report.evaluation : nullptr, result.scores));
+  fmt::print("  {}: ", condition.text());
+  if (frames.empty())
+    fmt::print("at no frame\n");
+  else
+    fmt::print("at {} of {} frames: {}\n", frames.size(), result.records.size(), frames_text(frames));
+  return !frames.empty();
+}
+
 void run(const RunArguments& arguments) {
+  if (arguments.break_at == "help") {
+    fmt::print("{}", condition_help());
+    return;
+  }
+  const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
   const auto source = arguments.frames.open(arguments.sequence, config);
   if (!source->has_depth())
@@ -56,9 +87,11 @@ void run(const RunArguments& arguments) {
                arguments.out.empty() ? "" : "; what was done is kept");
     throw_if_interrupted();
   }
+  const bool held = condition && tell_frames(*condition, result, report);
   if (report.tracked == 0)
     throw InputError(fmt::format("{}: no frame could be tracked ({})", arguments.sequence,
                                  result.records.empty() ? "there was none" : result.records.front().note));
+  if (held) throw ExitStatus{kConditionHeld};
 }
 
 }  // namespace
@@ -73,6 +106,10 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
   command->add_flag("--measure-unit", arguments->measure_unit,
                     "Also time OpenCV's ORB on every frame, the unit in which speed is compared");
+  command->add_option(
+      "--break", arguments->break_at,
+      "Tell the frames at which a condition holds, such as 'rpe > 5 cm || lost'; the status is then "
+      "3. `help` lists what it may be made of");
   arguments->config.add_to(*command, true);
   arguments->frames.add_to(*command);
   command->callback([arguments] { run(*arguments); });

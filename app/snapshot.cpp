@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/condition.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/session/frame_ranges.hpp"
 #include "ui/session/session.hpp"
@@ -28,7 +30,7 @@ constexpr const char* kWorkbenchSize = "1600x900";
 constexpr const char* kPanelSize = "960x780";
 
 struct SnapshotArguments {
-  std::string sequence, out, frames = "-1", panels = "all", size, theme = "dark", layout;
+  std::string sequence, out, frames, when, panels = "all", size, theme = "dark", layout;
   double scale = 1.0;
   bool force = false, no_baseline = false, timings = false;
   ConfigArguments config;
@@ -126,10 +128,31 @@ class Painter {
   Pictures pictures_;
 };
 
+std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
+  if (arguments.when.empty()) return std::nullopt;
+  try {
+    return Condition(arguments.when);
+  } catch (const ConditionError& error) {
+    throw InputError(
+        fmt::format("--when: {}\n  {}\n  {:>{}}", error.what(), arguments.when, "^", error.column() + 1));
+  }
+}
+
+/// Those of `frames` at which the condition holds.
+std::vector<int> frames_where(const Condition& condition, const RunView& run,
+                              const std::vector<int>& frames) {
+  std::vector<int> chosen;
+  for (const int frame : condition.frames(FrameFigures(run.records, &run.evaluation)))
+    if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
+  return chosen;
+}
+
 void snapshot(const SnapshotArguments& arguments) {
+  const std::optional<Condition> condition = when_condition(arguments);
   const Config config = arguments.config.config();
   std::shared_ptr<const FrameSource> source = arguments.source.open(arguments.sequence, config);
-  const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
+  const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
+  std::vector<int> frames = parse_frame_ranges(wanted, source->size());
   Painter painter(arguments, config.run.method);
   prepare_out_folder(arguments.out, {"snapshots.txt"}, arguments.force);
 
@@ -138,11 +161,16 @@ void snapshot(const SnapshotArguments& arguments) {
   std::string list;
   {
     Progress progress(fmt::format("{} ({})", source->name(), config.run.method), frames.back() + 1);
+    const auto on_frame = [&](const FrameRecord& record) {
+      progress.advance(std::string(to_string(record.status)));
+      throw_if_interrupted();
+    };
+    if (condition) {
+      session.go_to(frames.back(), on_frame);
+      frames = frames_where(*condition, *session.view()->run, frames);
+    }
     for (const int frame : frames) {
-      session.go_to(frame, [&](const FrameRecord& record) {
-        progress.advance(std::string(to_string(record.status)));
-        throw_if_interrupted();
-      });
+      session.go_to(frame, on_frame);
       written += painter.paint(*session.view(), arguments.out);
       list += fmt::format("{:06d} {:.6f} {}\n", frame, session.view()->current->frame.timestamp,
                           to_string(session.view()->current->record->status));
@@ -163,10 +191,14 @@ void add_snapshot_command(CLI::App& app) {
       ->add_option("SEQUENCE", arguments->sequence,
                    "A TUM RGB-D folder, a folder of colour frames, or generated:KIND")
       ->required();
-  command
-      ->add_option("--frames", arguments->frames,
-                   "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last; with commas between")
-      ->capture_default_str();
+  command->add_option(
+      "--frames", arguments->frames,
+      "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last, and what is drawn when nothing "
+      "is said; with commas between");
+  command->add_option(
+      "--when", arguments->when,
+      "Draw only frames at which a condition holds, such as 'rpe > 5 cm || lost', among all or those of "
+      "--frames; `stillpoint run --break help` tells of conditions");
   command->add_option("--panels", arguments->panels, "all, workbench, or panels' names with commas between")
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing")

@@ -62,7 +62,11 @@ class Viewer {
   /// Shows an open sequence. @param where it was opened from
   void show(std::shared_ptr<const FrameSource> source, const std::string& where) {
     session_.reset();
-    session_ = std::make_unique<Session>(std::move(source), config_);
+    std::error_code none;
+    const SidecarPlaces places{
+        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
+    session_ = std::make_unique<Session>(std::move(source), config_, SessionOptions{.sidecar = places});
     session_->start([] { Window::wake(); });
     // What moves shows from the first frame that has another to be compared with.
     session_->request_frame(config_.motion.reference_gap);
@@ -110,7 +114,8 @@ class Viewer {
                   config_ = config;
                   session_->request_config(config);
                 },
-            .open = [this](const std::string& where) { open(where); }};
+            .open = [this](const std::string& where) { open(where); },
+            .request = [this](SessionRequest wanted) { session_->request(std::move(wanted)); }};
   }
 
   void draw(UiFrame& frame) {

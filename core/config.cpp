@@ -84,6 +84,9 @@ std::vector<Parameter> parameters(Config& c) {
                  "the true masks say (a reference)"});
   number("run.threads", &c.run.threads, 1, 64, "threads", "worker threads; any number gives the same bytes");
   number("run.seed", &c.run.seed, 0, 1e9, "", "of generated sequences");
+  number(
+      "run.check_removal", &c.run.check_removal, 0, 1, "",
+      "1: each pose is also solved without removal, and with the true mask where known; changes no result");
 
   MotionConfig& m = c.motion;
   number("motion.max_corners", &m.max_corners, 16, 20000, "corners", "corners followed per direction");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/session/places.hpp"
 #include "ui/theme/icons.hpp"
@@ -50,18 +51,24 @@ class BreakpointsPanel final : public NamedPanel {
  private:
   void draw_new(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     const ImGuiStyle& style = ImGui::GetStyle();
+    const float left = ImGui::GetCursorScreenPos().x;
     const float add = ImGui::CalcTextSize("Add").x + 2.0F * style.FramePadding.x;
-    const float more = ImGui::CalcTextSize("Examples").x + 2.0F * style.FramePadding.x;
+    const float more =
+        ImGui::CalcTextSize("Examples").x + ImGui::CalcTextSize("Names").x + 5.0F * style.FramePadding.x;
     const float room = ImGui::GetContentRegionAvail().x;
     const bool beside = room > 340.0F * frame.scale;
     ImGui::PushFont(frame.fonts.mono);
     ImGui::SetNextItemWidth(beside ? room - add - more - 2.0F * style.ItemSpacing.x : room);
+    check_new();
+    if (focus_new_) ImGui::SetKeyboardFocusHere();
+    focus_new_ = false;
     const bool entered = ImGui::InputTextWithHint("##new", "a condition: inliers < 30 || lost", new_.data(),
                                                   new_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::PopFont();
     if (beside) ImGui::SameLine();
-    ImGui::BeginDisabled(new_[0] == '\0');
-    if ((ImGui::Button("Add") || entered) && new_[0] != '\0') {
+    const bool ready = new_[0] != '\0' && new_error_.empty();
+    ImGui::BeginDisabled(!ready);
+    if ((ImGui::Button("Add") || entered) && ready) {
       append(session, new_.data(), actions);
       new_ = {};
     }
@@ -72,6 +79,53 @@ class BreakpointsPanel final : public NamedPanel {
       draw_examples(frame, session, actions);
       ImGui::EndPopup();
     }
+    ImGui::SameLine();
+    if (ImGui::Button("Names")) ImGui::OpenPopup("names");
+    draw_names(frame);
+    if (!new_error_.empty()) draw_error(frame, checked_, new_error_, new_column_, left);
+  }
+
+  /// Reads what is being typed, so that what is wrong shows before it is added.
+  void check_new() {
+    if (checked_ == new_.data()) return;
+    checked_ = new_.data();
+    new_error_.clear();
+    if (checked_.empty()) return;
+    try {
+      const Condition condition(checked_);
+    } catch (const ConditionError& error) {
+      new_error_ = error.what();
+      new_column_ = error.column();
+    }
+  }
+
+  /// All that a condition can ask for; a click puts the name into the new condition.
+  void draw_names(const UiFrame& frame) {
+    ImGui::SetNextWindowSize({0.0F, 24.0F * ImGui::GetTextLineHeightWithSpacing()});
+    if (!ImGui::BeginPopup("names")) return;
+    ImGui::TextDisabled("Click a name to use it. Units: m, cm, mm, deg, px, ms, s, %%. Also previous(x),");
+    ImGui::TextDisabled("change(x), abs(x), spike(x, sigmas), &&, ||, ! and + - * /.");
+    if (ImGui::BeginTable("names", 3, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingFixedFit)) {
+      for (const FrameFigureInfo& info : frame_figure_infos()) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::PushFont(frame.fonts.mono);
+        const bool wanted =
+            ImGui::Selectable(std::string(info.name).c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
+        ImGui::PopFont();
+        ImGui::TableNextColumn();
+        ImGui::TextDisabled("%s", std::string(to_string(info.unit)).c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(std::string(info.help).c_str());
+        if (!wanted) continue;
+        const std::string typed = new_.data();
+        fill(new_, typed + (typed.empty() || typed.ends_with(' ') ? "" : " ") + std::string(info.name) + " ");
+        focus_new_ = true;
+        ImGui::CloseCurrentPopup();
+      }
+      ImGui::EndTable();
+    }
+    ImGui::EndPopup();
   }
 
   static void append(const SessionView& session, const std::string& expression, PanelActions& actions) {
@@ -140,7 +194,8 @@ class BreakpointsPanel final : public NamedPanel {
                         static_cast<int>(view.hits.size()));
     ImGui::SameLine(left + hits_width + gap);
     draw_buttons(session, index, side, actions);
-    if (!view.error.empty()) draw_error(frame, view, at.x);
+    if (!view.error.empty())
+      draw_error(frame, view.breakpoint.expression, view.error, view.error_column, at.x);
     ImGui::PopID();
   }
 
@@ -165,9 +220,9 @@ class BreakpointsPanel final : public NamedPanel {
   }
 
   /// The sentence below the place where the expression is wrong, which a sign points at.
-  static void draw_error(const UiFrame& frame, const BreakpointView& view, float field_left) {
-    const std::string& text = view.breakpoint.expression;
-    const auto column = std::min(static_cast<std::size_t>(std::max(view.error_column, 0)), text.size());
+  static void draw_error(const UiFrame& frame, const std::string& text, const std::string& error,
+                         int at_column, float field_left) {
+    const auto column = std::min(static_cast<std::size_t>(std::max(at_column, 0)), text.size());
     const ImFont* mono = frame.fonts.mono;
     const float x = field_left + ImGui::GetStyle().FramePadding.x +
                     mono->CalcTextSizeA(mono->FontSize, 1e6F, 0.0F, text.c_str(), text.c_str() + column).x;
@@ -179,12 +234,15 @@ class BreakpointsPanel final : public NamedPanel {
     ImGui::SetCursorScreenPos({field_left, top + 2.2F * half});
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ink));
-    ImGui::TextWrapped("%s", view.error.c_str());
+    ImGui::TextWrapped("%s", error.c_str());
     ImGui::PopStyleColor();
     ImGui::PopFont();
   }
 
   Field new_{};
+  std::string checked_, new_error_;  // what was typed when it was read last, and what is wrong with it
+  int new_column_ = 0;
+  bool focus_new_ = false;
   std::vector<Field> fields_;
   int editing_ = -1;  // index of the expression being typed
 };

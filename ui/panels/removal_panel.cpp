@@ -21,9 +21,7 @@ class RemovalPanel final : public NamedPanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.debug.removal.empty()) {
-      draw_absent(frame, session.ground_truth.empty()
-                             ? "Without ground truth nobody can tell whether removal helped."
-                             : "No frame has been solved with and without removal yet.");
+      draw_unchecked(frame, session, actions);
       return;
     }
     collect(session);
@@ -41,6 +39,25 @@ class RemovalPanel final : public NamedPanel {
   [[nodiscard]] static Rgb helped_colour() { return okabe_ito::kGreen; }
   [[nodiscard]] static Rgb hurt_colour(const UiFrame& frame) {
     return role_colour(Role::kOutlier, frame.theme.name);
+  }
+
+  /// Why there is nothing to see, and the way to it where there is one.
+  static void draw_unchecked(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    if (session.ground_truth.empty()) {
+      draw_absent(frame, "Without ground truth nobody can tell whether removal helped.");
+    } else if (session.config.run.check_removal != 0) {
+      draw_absent(frame, "No frame has been solved with and without removal yet.");
+    } else {
+      Controls controls(frame);
+      if (controls.button("Check removal", "This run begins anew, with run.check_removal = 1")) {
+        Config config = session.config;
+        config.run.check_removal = 1;
+        actions.requests.push_back(request::RunAll{config});
+      }
+      draw_absent(frame,
+                  "Each frame's pose can be solved again without removal, and with the true mask where it is "
+                  "known: that tells whether removal helped. It makes a run somewhat slower.");
+    }
   }
 
   void collect(const SessionView& session) {
