@@ -10,6 +10,7 @@ void add_commands(CLI::App& app) {
   add_motion_command(app);
   add_snapshot_command(app);
   add_view_command(app);
+  add_replay_command(app);
   add_config_command(app);
 }
 

@@ -17,6 +17,7 @@ void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);
 void add_view_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 
 /// Opens the window on the generated demo: what `stillpoint` alone does.

@@ -27,5 +27,6 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_timings_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_parameters_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_inspector_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_log_panel(Shared shared);
 
 }  // namespace stillpoint

@@ -148,6 +148,8 @@ void Session::publish() {
   } else {
     view->keyframes = saved_keyframes(run_->map());
     view->map_points = saved_points(run_->map());
+    const auto moved = moved_points(run_->map());
+    view->map_points.insert(view->map_points.end(), moved.begin(), moved.end());
   }
   std::function<void()> on_change;
   {
@@ -229,24 +231,36 @@ void Session::work_step() {
   show(target_);
 }
 
+bool Session::asked() const { return requests_.frame || requests_.play || requests_.config; }
+
+bool Session::idle() const {
+  const std::lock_guard lock(mutex_);
+  return resting_ && !asked();
+}
+
+void Session::rest(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  resting_ = true;
+  asked_.wait(lock, stop, [this] { return asked(); });
+  resting_ = false;
+}
+
 void Session::work(const std::stop_token& stop) {
   target_ = std::max(target_, current_->index);
   if (current_->record == nullptr) target_ = 0;
   auto due = Clock::now();
   while (!stop.stop_requested()) {
     try {
-      const bool asked = take_requests();
+      const bool asked_now = take_requests();
       const bool at_rest = current_->index == target_ && current_->record != nullptr;
       if (!playing_ && at_rest) {
-        if (asked) publish();
-        std::unique_lock lock(mutex_);
-        asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
+        if (asked_now) publish();
+        rest(stop);
         continue;
       }
       if (playing_ && at_rest && Clock::now() < due) {
         std::unique_lock lock(mutex_);
-        asked_.wait_until(lock, stop, due,
-                          [this] { return requests_.frame || requests_.play || requests_.config; });
+        asked_.wait_until(lock, stop, due, [this] { return asked(); });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -258,8 +272,7 @@ void Session::work(const std::stop_token& stop) {
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
-      std::unique_lock lock(mutex_);
-      asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
+      rest(stop);
     }
   }
 }

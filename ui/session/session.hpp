@@ -60,6 +60,8 @@ class Session {
   void request_frame(int frame);  ///< as go_to(), soon
   void request_play(bool play);   ///< frame after frame from the one shown on
   void request_speed(double frames_per_second);
+  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
+  [[nodiscard]] bool idle() const;
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config);
 
@@ -88,6 +90,8 @@ class Session {
 
   void work(const std::stop_token& stop);
   [[nodiscard]] bool take_requests();
+  [[nodiscard]] bool asked() const;  // with mutex_ held
+  void rest(const std::stop_token& stop);
   void work_step();
 
   std::shared_ptr<const FrameSource> source_;
@@ -106,6 +110,7 @@ class Session {
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
   Requests requests_;
+  bool resting_ = false;
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;

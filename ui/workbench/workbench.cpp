@@ -92,19 +92,26 @@ void Workbench::set_layout(LayoutNode layout) {
 
 void Workbench::say(std::string message, bool error) {
   message_ = std::move(message);
-  message_is_error_ = error;
+  message_is_error_ = error_open_ = error;
+  said_s_ = time_s_;
+  log_.add({time_s_, last_shown_, error, message_});
+}
+
+std::optional<LayoutRect> Workbench::tile_of(const std::string& panel) const {
+  const auto found = tiles_.find(panel);
+  if (found == tiles_.end()) return std::nullopt;
+  return found->second;
 }
 
 void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = &frame;
   session_ = session;
-  if (session != nullptr && session->current->index != last_shown_) {
-    const double interval = frame.time_s - last_shown_s_;
-    shown_interval_s_ =
-        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
-    last_shown_ = session->current->index;
-    last_shown_s_ = frame.time_s;
-  }
+  time_s_ = frame.time_s;
+  look_ = frame.wanted_look;
+  follow_session();
+  frame.log = &log_;
+  frame.busy = !opening_.empty() || (session != nullptr && session->busy);
+  if (const auto before = std::exchange(before_frame_, {})) before();
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
@@ -121,9 +128,12 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_status_bar(status);
   ImGui::End();
 
+  draw_opening();
+  draw_error();
   draw_shortcuts();
   draw_palette();
   draw_open_dialog();
+  look_ = frame.wanted_look;
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -157,6 +167,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
 }
 
 void Workbench::draw_tiles(const LayoutRect& area) {
+  tiles_.clear();
   if (!maximised_.empty()) {
     draw_tile(maximised_, area);
     return;
@@ -202,6 +213,7 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
       ImGui::IsMouseHoveringRect({rect.x, rect.y}, {rect.x + rect.width, rect.y + rect.height}, false) &&
       ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows);
   if (hovered) hovered_panel_ = name;
+  tiles_[name] = rect;
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, rect, heading);
