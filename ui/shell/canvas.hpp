@@ -19,6 +19,8 @@
 
 namespace stillpoint {
 
+class PanelChoices;
+
 /// How the interface looks, in a window and in images alike.
 struct Look {
   ThemeName theme = ThemeName::kDark;
@@ -38,6 +40,7 @@ struct UiFrame {
   bool close_requested = false;              ///< the person closes the window
   const UiPace* pace = nullptr;              ///< how fast the interface is; null where nobody measures
   const EventLog* log = nullptr;             ///< what was said; null where nothing is
+  PanelChoices* choices = nullptr;           ///< of the panel being drawn; null where none are kept
   bool busy = false;                         ///< work goes on beside the interface: its pace counts
   Look wanted_look{};                        ///< from the next frame on
   double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input

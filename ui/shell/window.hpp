@@ -15,6 +15,7 @@ struct WindowOptions {
   std::string title = "Stillpoint";
   Look look{};
   bool maximised = false;
+  bool gl_debug = false;  ///< a context that tells every error as it happens; slower
 };
 
 /// The shell with a display: a GLFW window with an OpenGL 3.3 core context, drawn when something changes.

@@ -59,6 +59,12 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
   ImGui::EndChild();
 }
 
+template <typename Visit>
+void for_each_panel(LayoutNode& node, const Visit& visit) {
+  if (node.is_panel()) visit(node);
+  for (LayoutNode& child : node.children) for_each_panel(child, visit);
+}
+
 LayoutRect below_heading(const LayoutRect& rect, float heading) {
   return {rect.x + 1.0F, rect.y + heading + 1.0F, rect.width - 2.0F, rect.height - heading - 2.0F};
 }
@@ -83,7 +89,19 @@ Panel* Workbench::find_panel(const std::string& name) const {
   return it == panels_.end() ? nullptr : it->get();
 }
 
+LayoutNode Workbench::layout() const {
+  LayoutNode layout = layout_;
+  for_each_panel(layout, [this](LayoutNode& tile) {
+    const auto chosen = choices_.find(tile.panel);
+    tile.choices = chosen == choices_.end() ? PanelChoices::Words() : chosen->second.changed();
+  });
+  return layout;
+}
+
 void Workbench::set_layout(LayoutNode layout) {
+  for_each_panel(layout, [this](const LayoutNode& tile) {
+    if (!tile.choices.empty()) choices_[tile.panel].want(tile.choices);
+  });
   for (const std::string& name : panels_of(layout))
     if (find_panel(name) == nullptr) remove_panel(layout, name);
   layout_ = std::move(layout);
@@ -137,6 +155,12 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
+}
+
+void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices) {
+  frame.choices = &choices;
+  draw_alone(frame, session, panel);
+  frame.choices = nullptr;
 }
 
 void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel) {
@@ -218,7 +242,9 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, rect, heading);
   PanelActions wanted;
+  frame_->choices = &choices_[name];
   draw_panel_body(*frame_, *session_, *panel, below_heading(rect, heading), wanted);
+  frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ui/panels/panel.hpp"
+#include "ui/panels/panel_choices.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
@@ -37,8 +38,11 @@ class Workbench {
 
   /// Draws one panel with a heading of its own over the whole frame.
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel);
+  /// The same with choices for its controls.
+  static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices);
 
-  [[nodiscard]] const LayoutNode& layout() const { return layout_; }
+  /// The tiles, with what is chosen in each panel.
+  [[nodiscard]] LayoutNode layout() const;
   void set_layout(LayoutNode layout);
   [[nodiscard]] const std::string& maximised() const { return maximised_; }
 
@@ -123,6 +127,7 @@ class Workbench {
   bool message_is_error_ = false, error_open_ = false;
   EventLog log_;
   std::string opening_, last_trouble_;
+  std::map<std::string, PanelChoices> choices_;
   std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
   Look look_;
   double time_s_ = 0.0, said_s_ = 0.0;
