@@ -124,7 +124,8 @@ void snapshot(const SnapshotArguments& arguments) {
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
   // The records of a finished run hold all but what these show.
   place.options.catch_up =
-      method == "stillpoint" && (painter.draws("depth_motion") || painter.draws("workbench"));
+      method == "stillpoint" &&
+      (painter.draws("depth_motion") || painter.draws("colour_motion") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);

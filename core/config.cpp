@@ -123,6 +123,9 @@ std::vector<Parameter> parameters(Config& c) {
   DepthMotionConfig& d = c.depth_motion;
   number("depth_motion.factor", &d.factor, 1, 16, "px",
          "side of the block of pixels in which motion is judged");
+  number("depth_motion.use_depth", &d.use_depth, 0, 1, "", "1 takes depth residuals for evidence");
+  number("depth_motion.use_brightness", &d.use_brightness, 0, 1, "",
+         "1 takes brightness residuals for evidence");
   number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames",
          "how far back the nearer reference lies");
   number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames",
@@ -214,6 +217,8 @@ std::vector<Parameter> parameters(Config& c) {
          "1 carries features to where their frame's middle row would show them");
   number("tracking.correct_depth_lag", &t.correct_depth_lag, 0, 1, "",
          "1 carries depth taken at another time than colour to colour's time");
+  number("tracking.seek_consensus", &t.seek_consensus, 0, 1, "",
+         "1 takes method stillpoint's first pose from where most samples agree");
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
          "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 
@@ -236,6 +241,8 @@ std::vector<Parameter> parameters(Config& c) {
          "a young point found in less than this share of its sightings is culled");
   number("map.max_local_keyframes", &k.max_local_keyframes, 1, 500, "keyframes",
          "covisible keyframes in the local map");
+  number("map.purge_moving", &k.purge_moving, 0, 1, "",
+         "1 takes points on what method stillpoint finds moving out of the map");
   number("map.max_keyframes", &k.max_keyframes, 2, 10000, "keyframes", "beyond them the oldest retires");
 
   BundleConfig& b = c.bundle;

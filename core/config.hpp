@@ -35,6 +35,8 @@ struct MotionConfig {
 /// Method `stillpoint`: what moves where there is depth.
 struct DepthMotionConfig {
   int factor = 4;             ///< full-size pixels a side of a pixel in which motion is judged
+  int use_depth = 1;          ///< 1: depth residuals are evidence
+  int use_brightness = 1;     ///< 1: brightness residuals are evidence
   int near_reference = 2;     ///< frames back to the nearer reference
   int far_reference = 10;     ///< frames back to the farther one: for slow movers
   double depth_sigmas = 4.0;  ///< depth residual beyond which a pixel counts as moved, standard deviations
@@ -74,6 +76,8 @@ struct ColourMotionConfig {
   int shave_px = 3;  ///< taken off the outline, which windows that see both sides push out, quarter-size px
   double min_area_share = 0.008;  ///< smaller regions are noise, share of the image
   int min_points = 8;             ///< regions with fewer moving points are noise
+
+  bool operator==(const ColourMotionConfig&) const = default;
 };
 
 /// ORB features spread over the image.
@@ -102,6 +106,7 @@ struct TrackingConfig {
   int correct_rolling_shutter =
       1;                      ///< 1: features are carried to where their frame's middle row would show them
   int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
+  int seek_consensus = 1;     ///< 1: method `stillpoint` takes its first pose from where most samples agree
   double depth_weight =
       1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
   bool operator==(const TrackingConfig&) const = default;
@@ -121,6 +126,7 @@ struct MapConfig {
       0.9;  ///< a keyframe is culled when this share of its points is seen by three others
   double min_found_ratio = 0.25;  ///< a young point found in less than this share of its sightings is culled
   int max_local_keyframes = 20;   ///< covisible keyframes in the local map
+  int purge_moving = 1;           ///< 1: method `stillpoint` takes points on what moves out of the map
   int max_keyframes = 100;        ///< beyond them the oldest retires: what keeps memory flat
   bool operator==(const MapConfig&) const = default;
 };

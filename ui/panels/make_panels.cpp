@@ -15,6 +15,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_features_panel(FeatureMoment::kBefore, shared));
   panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
   panels.push_back(make_depth_motion_panel(shared));
+  panels.push_back(make_colour_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
   panels.push_back(make_timeline_panel(shared));
