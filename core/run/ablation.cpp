@@ -169,7 +169,7 @@ nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
     }
     const AblationChange change = change_of(row, rows.front());
     nlohmann::ordered_json variant;
-    variant["without"] = row.without.empty() ? nlohmann::ordered_json(nullptr) : row.without;
+    variant["without"] = row.without.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(row.without);
     if (!row.without.empty()) {
       variant["set"] = ingredient_by_name(row.without).assignments;
       variant["rpe_mean_change"] = or_null(change.mean);
