@@ -23,7 +23,7 @@ namespace stillpoint {
 struct SessionOptions {
   bool baseline = true;                  ///< method `none` runs beside any other method
   bool keep_times = true;                ///< false: stage times stay 0, so that images repeat byte for byte
-  std::optional<SidecarPlaces> sidecar;  ///< where bookmarks and the like are kept; nothing = they are not
+  std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
 };
 
 /// A sequence being looked at: runs odometry over it as far as asked, keeps what each frame left, and makes

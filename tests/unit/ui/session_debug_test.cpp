@@ -26,6 +26,11 @@ class SessionDebug : public ::testing::Test {
   [[nodiscard]] std::unique_ptr<Session> session(bool baseline = false) const {
     return std::make_unique<Session>(source_, config_, SessionOptions{.baseline = baseline});
   }
+  [[nodiscard]] RunResult batch(const Config& config, int frames) const {
+    RunOptions options;
+    options.count = frames;
+    return run_sequence(*source_, config, options);
+  }
   static const DebugView& debug(const Session& session) {
     static std::shared_ptr<const SessionView> view;
     view = session.view();
@@ -181,8 +186,7 @@ TEST_F(SessionDebug, AGhostWhoseFeaturesWouldNotFitBeginsAtTheFirstFrame) {
   other.features.levels = 5;
   s->request(request::AddGhost{other, "levels 5", 5});
   EXPECT_EQ(debug(*s).ghosts[0].from, 0);
-  EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records),
-            run_hash(run_sequence(*source_, other, {.count = 9}).records));
+  EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records), run_hash(batch(other, 9).records));
 }
 
 TEST_F(SessionDebug, PreviewsTheFrameShownAndLeavesTheRunAlone) {
@@ -222,7 +226,7 @@ TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
   EXPECT_EQ(s->view()->current->index, 3);
   EXPECT_EQ(s->view()->config.run.method, "none");
   EXPECT_EQ(s->view()->processed, 10);
-  EXPECT_EQ(debug(*s).run_hash, run_hash(run_sequence(*source_, other, {.count = 10}).records));
+  EXPECT_EQ(debug(*s).run_hash, run_hash(batch(other, 10).records));
 }
 
 TEST_F(SessionDebug, ExportedFramesShowTheSame) {
