@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-void mark_hurt(std::vector<RemovalError>& errors) {
+void judge(std::vector<RemovalError>& errors) {
   std::vector<double> differences;
   for (const RemovalError& error : errors)
     if (const double worse = error.with_removal_m - error.without_removal_m; !std::isnan(worse))
@@ -32,8 +32,11 @@ void mark_hurt(std::vector<RemovalError>& errors) {
   const double middle = median(differences);
   for (double& difference : differences) difference = std::abs(difference - middle);
   const double noise = 1.4826 * median(std::move(differences));  // of normally distributed values, its sigma
-  for (RemovalError& error : errors)
-    error.hurt = error.with_removal_m - error.without_removal_m > std::max(kNoticeable, kSigmas * noise);
+  const double least = std::max(kNoticeable, kSigmas * noise);
+  for (RemovalError& error : errors) {
+    error.hurt = error.with_removal_m - error.without_removal_m > least;
+    error.helped = error.without_removal_m - error.with_removal_m > least;
+  }
 }
 
 }  // namespace
@@ -57,9 +60,10 @@ std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records
          .with_removal_m = error(now.estimated ? std::optional(now.world_from_camera) : std::nullopt),
          .without_removal_m = error(now.removal_check.nothing_removed),
          .told_m = error(now.removal_check.truth_removed),
-         .hurt = false});
+         .hurt = false,
+         .helped = false});
   }
-  mark_hurt(errors);
+  judge(errors);
   return errors;
 }
 

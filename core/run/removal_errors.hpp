@@ -15,11 +15,13 @@ struct RemovalError {
   double without_removal_m = 0.0;
   double told_m = 0.0;  ///< with the true mask
   bool hurt = false;    ///< removal made it worse by more than the noise of such steps
+  bool helped = false;  ///< … better by more than that
 };
 
 /// Did removal help? One entry a frame that was checked (run.check_removal) and whose pose and the one before
 /// are known from the truth; by frame. Removal hurt where the step is worse with it than without by more than
-/// 1 mm and by more than 3 standard deviations (robust) of that difference over the run.
+/// 1 mm and by more than 3 standard deviations (robust) of that difference over the run; it helped where the
+/// step is better by as much.
 [[nodiscard]] std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records,
                                                        const TrajectoryEvaluation& evaluation);
 
