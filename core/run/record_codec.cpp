@@ -19,6 +19,18 @@ void transfer_stamped(Archive& archive, Stamped& stamped) {
   transfer_pose(archive, stamped.world_from_camera);
 }
 
+void transfer_optional_pose(ByteWriter& to, const std::optional<Pose>& pose) {
+  to(pose.has_value());
+  if (pose) transfer_pose(to, *pose);
+}
+
+void transfer_optional_pose(ByteReader& from, std::optional<Pose>& pose) {
+  bool known = false;
+  from(known);
+  pose.reset();
+  if (known) transfer_pose(from, pose.emplace(Pose::Identity()));
+}
+
 template <typename Archive, typename Record>
 void transfer_fields(Archive& archive, Record& r) {
   archive(r.index);
@@ -40,6 +52,9 @@ void transfer_fields(Archive& archive, Record& r) {
         &r.ms.motion, &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
     archive(*figure);
   archive(r.keyframe);
+  for (auto* pose :
+       {&r.prior_pose, &r.motion_pose, &r.removal_check.nothing_removed, &r.removal_check.truth_removed})
+    transfer_optional_pose(archive, *pose);
 }
 
 /// Field by field over all features: what is alike lies together, which packs better.

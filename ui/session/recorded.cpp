@@ -32,7 +32,9 @@ RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun>
 
 void RunTrack::catch_up_one(const ReadFrame& read) {
   if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();
-  (void)process(odometry_, seen_, read);
+  const Frame frame = read(seen_);
+  const FrameResult result = process(odometry_, seen_, [&frame](int) { return frame; });
+  keep_motion(result, frame.has_depth());
   ++seen_;
   if (seen_ == source_->size()) odometry_.finish();
 }

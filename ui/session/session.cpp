@@ -16,6 +16,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
 
 Session::~Session() {
   if (!worker_.joinable()) return;
+  stopping_ = true;
   worker_.request_stop();
   asked_.notify_all();
   worker_.join();
@@ -76,7 +77,6 @@ DebugView Session::debug_view() {
   DebugView debug = debug_;
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
-  debug.removal = removal_errors(run_view_->records, run_view_->evaluation);
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,
                             .config = ghost.run->track().config(),
@@ -94,6 +94,7 @@ void Session::publish() {
   const bool grown = run_view_ != run_->run_view();
   if (grown) {
     run_view_ = run_->run_view();
+    debug_.removal = removal_errors(run_view_->records, run_view_->evaluation);
     if (baseline_) baseline_view_ = std::make_shared<const RunView>(baseline_->view());
     ++revision_;
   }

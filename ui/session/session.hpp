@@ -149,6 +149,7 @@ class Session {
   bool preview_due_ = false;
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
+  std::atomic<bool> stopping_ = false;  // what is under way is to end
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;

@@ -58,6 +58,11 @@ bool Session::has_background() const {
 
 void Session::background_step() {
   if (preview_due_) {
+    // A finished run's frames are seen here first, one at a time.
+    if (run_->track().seen() < std::min(current_->index, run_->track().processed())) {
+      run_->catch_up_one();
+      return;
+    }
     compute_preview();
     publish();
     return;
@@ -116,7 +121,9 @@ void Session::update_breakpoints() {
 
 void Session::open_sidecar() {
   sidecar_due_ = false;
-  debug_.sequence_hash = sequence_fingerprint(*source_);
+  // A finished run may be shown without its images.
+  debug_.sequence_hash =
+      options_.recorded ? options_.recorded->origin.fingerprint : sequence_fingerprint(*source_);
   sidecar_.emplace(*options_.sidecar, MarkedSequence{source_->name(), debug_.sequence_hash, source_->size()});
   Marks kept = sidecar_->load();
   // What was marked before there was time to look stays.

@@ -52,13 +52,22 @@ ShownRun::Extras ShownRun::extras_of(int index) {
         "frame on.";
     return extras;
   }
-  FrameResult again = process_again(index, track_.config());
+  FrameResult again;
+  if (const auto frames = track_.frames_to_repeat(index)) {
+    frames_->read_ahead(*frames);
+    again = track_.repeat_motion(index, reader());
+  } else {
+    again = process_again(index, track_.config());
+  }
   keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
   return extras_.front();
 }
 
 FrameResult ShownRun::process_again(int index, const Config& config) {
-  if (!before_ || before_->first != index) before_.emplace(index, track_.before(index, reader()));
+  if (!before_ || before_->first != index) {
+    frames_->read_ahead(track_.frames_to_restore(index));
+    before_.emplace(index, track_.before(index, reader()));
+  }
   if (config == track_.config()) {
     Odometry odometry = before_->second;
     return track_.process(odometry, index, reader());
@@ -73,6 +82,7 @@ FrameResult ShownRun::process_again(int index, const Config& config) {
 FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   FrameView view;
   view.index = index;
+  if (index >= config.motion.reference_gap) frames_->read_ahead({index - config.motion.reference_gap, index});
   view.frame = frames_->read(index);
   view.reference.index = index - config.motion.reference_gap;
   if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);
