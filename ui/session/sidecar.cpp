@@ -78,7 +78,7 @@ class MarksReader {
     const Json name = json.value("name", Json());
     if (name == sequence_.name) refuse("the sequence has changed since it was written");
     refuse(fmt::format("it belongs to another sequence ({})",
-                       stillpoint::quoted(name.is_string() ? name.get<std::string>() : "?")));
+                       in_quotes(name.is_string() ? name.get<std::string>() : "?")));
   }
   [[nodiscard]] Json list(const Json& json, const char* key) const {
     Json items = json.value(key, Json::array());
@@ -92,7 +92,7 @@ class MarksReader {
   [[nodiscard]] int frame(const Json& json, const char* key) const {
     const Json value = member(json, key);
     if (!value.is_number_integer() || value < 0 || value >= sequence_.frames)
-      refuse(fmt::format("\"{}\" is {}, expected a frame from 0 to {}", key, stillpoint::quoted(value.dump()),
+      refuse(fmt::format("\"{}\" is {}, expected a frame from 0 to {}", key, in_quotes(value.dump()),
                          sequence_.frames - 1));
     return value.get<int>();
   }
