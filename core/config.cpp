@@ -11,6 +11,7 @@
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
+#include "core/presets.hpp"
 
 namespace stillpoint {
 namespace {

@@ -148,9 +148,6 @@ struct Parameter {
 /// of range.
 [[nodiscard]] Config read_config(const std::string& path);
 
-/// Names of the presets there are, in alphabetical order.
-[[nodiscard]] std::vector<std::string> preset_names();
-
 /// A preset by name (`assets/presets/NAME.toml`), or a TOML file by path.
 /// @throws InputError naming the presets there are.
 [[nodiscard]] Config load_config(const std::string& preset_or_path);
