@@ -21,6 +21,8 @@ void add_benchmark_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);
+void add_figures_command(CLI::App& app);
+void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_config_command(CLI::App& app);

@@ -9,6 +9,7 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/run/condition.hpp"
+#include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 
@@ -64,13 +65,20 @@ void run(const RunArguments& arguments) {
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();
-  if (!arguments.out.empty()) prepare_run_folder(arguments.out, arguments.force);
+  std::optional<SequenceOrigin> origin;
+  std::optional<RecordsWriter> records;
+  if (!arguments.out.empty()) {
+    prepare_run_folder(arguments.out, arguments.force);
+    origin = origin_of(*source, arguments.sequence, arguments.frames.options(config));
+    records.emplace(arguments.out, *origin, config);
+  }
   options.measure_orb_unit = arguments.measure_unit;
   const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
   RunResult result;
   {
     Progress progress(fmt::format("{} ({})", source->name(), config.run.method), total);
-    options.on_frame = [&progress](const FrameResult& frame) {
+    options.on_frame = [&](const FrameResult& frame) {
+      if (records) records->add(frame);
       progress.advance(std::string(to_string(frame.record.status)));
     };
     result = run_sequence(*source, config, options);
@@ -78,8 +86,9 @@ void run(const RunArguments& arguments) {
   const RunReport report = report_on(result, *source);
   // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
-  if (!arguments.out.empty()) {
-    write_run(arguments.out, result, report, *source);
+  if (records) {
+    write_run(arguments.out, result, report, *source, *origin);
+    records->finish(result, source->ground_truth());
     fmt::print("  written to    {}\n", arguments.out);
   }
   if (result.interrupted) {

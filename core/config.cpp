@@ -11,7 +11,6 @@
 
 #include "core/assets.hpp"
 #include "core/error.hpp"
-#include "core/presets.hpp"
 
 namespace stillpoint {
 namespace {
@@ -215,8 +214,10 @@ Config read_config(const std::string& path) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path, none))
     throw InputError(fmt::format("{}: the configuration cannot be read", path));
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return config_from_toml({std::istreambuf_iterator<char>(file), {}}, path);
+}
 
+Config config_from_toml(const std::string& text, const std::string& path) {
   toml::table table;
   try {
     table = toml::parse(text, path);

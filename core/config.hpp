@@ -148,6 +148,12 @@ struct Parameter {
 /// of range.
 [[nodiscard]] Config read_config(const std::string& path);
 
+/// The same of a text. @param path named in errors as where it stands
+[[nodiscard]] Config config_from_toml(const std::string& text, const std::string& path);
+
+/// Names of the presets there are, in alphabetical order.
+[[nodiscard]] std::vector<std::string> preset_names();
+
 /// A preset by name (`assets/presets/NAME.toml`), or a TOML file by path.
 /// @throws InputError naming the presets there are.
 [[nodiscard]] Config load_config(const std::string& preset_or_path);

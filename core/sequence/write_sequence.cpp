@@ -104,17 +104,22 @@ std::optional<double> write_frame(const FrameSource& source, int index, const fs
 }
 
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
-/// @returns when each frame's depth was taken
-std::vector<std::optional<double>> write_frames(const FrameSource& source, const fs::path& folder,
-                                                const WriteOptions& options) {
+/// When each frame's depth was taken, of the frames written: those from the first on.
+using DepthStamps = std::vector<std::optional<double>>;
+
+/// All frames, by as many threads as wanted; the first failure ends them and is thrown.
+DepthStamps write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
   int done = 0;
   std::exception_ptr failure;
-  std::vector<std::optional<double>> depth_stamps(static_cast<std::size_t>(source.size()));
+  DepthStamps depth_stamps(static_cast<std::size_t>(source.size()));
   const auto work = [&] {
-    for (int i = next++; i < source.size() && !failed; i = next++) {
+    // Whoever has taken a frame writes it, so that none is missing before the last.
+    while (!failed && !(options.stop != nullptr && *options.stop)) {
+      const int i = next++;
+      if (i >= source.size()) break;
       try {
         depth_stamps[static_cast<std::size_t>(i)] = write_frame(source, i, folder);
         const std::lock_guard lock(mutex);
@@ -132,6 +137,7 @@ std::vector<std::optional<double>> write_frames(const FrameSource& source, const
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
+  depth_stamps.resize(static_cast<std::size_t>(done));
   return depth_stamps;
 }
 
@@ -143,8 +149,7 @@ std::string camera_text(const Camera& c) {
       c.readout_s);
 }
 
-void write_lists(const FrameSource& source, const fs::path& folder,
-                 const std::vector<std::optional<double>>& depth_stamps) {
+void write_lists(const FrameSource& source, const fs::path& folder, const DepthStamps& depth_stamps) {
   const auto list = [&](const char* name, auto&& stamp_of) {
     std::string text = fmt::format("# {} images of {}\n# timestamp filename\n", name, source.name());
     for (int i = 0; i < source.size(); ++i)
@@ -154,7 +159,10 @@ void write_lists(const FrameSource& source, const fs::path& folder,
     write_text_file(folder / (std::string(name) + ".txt"), text);
   };
   const auto of_colour = [&](int i) { return std::optional(source.timestamp(i)); };
-  const auto of_depth = [&](int i) { return depth_stamps[static_cast<std::size_t>(i)]; };
+  const auto of_depth = [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    return at < depth_stamps.size() ? depth_stamps[at] : std::nullopt;
+  };
   write_text_file(folder / "camera.toml", camera_text(source.camera()));
   if (!source.ground_truth().empty())
     write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
@@ -173,10 +181,12 @@ void write_lists(const FrameSource& source, const fs::path& folder,
 
 }  // namespace
 
-void write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+int write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
   prepare(source, folder, options.force);
-  write_lists(source, folder, write_frames(source, folder, options));
+  const DepthStamps written = write_frames(source, folder, options);
+  if (!written.empty()) write_lists(source, folder, written);
+  return static_cast<int>(written.size());
 }
 
 }  // namespace stillpoint

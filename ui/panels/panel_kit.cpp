@@ -42,6 +42,7 @@ float Controls::text_width(const char* label) const { return ImGui::CalcTextSize
 
 bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
                       const char* tooltip) {
+  if (!frame_.controls) return false;
   const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
   float width = 0.0F;
   for (const std::string& name : names) width += text_width(name.c_str()) + 2.0F * padding + gap;
@@ -70,6 +71,7 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
 }
 
 bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
+  if (!frame_.controls) return false;
   place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
   const bool changed = ImGui::Checkbox(label, &on);
   tooltip_of_last(tooltip);
@@ -77,6 +79,7 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
+  if (!frame_.controls) return false;
   const float name = text_width(label);
   place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
@@ -93,6 +96,7 @@ void Controls::round(int rounds, int& chosen) {
 }
 
 bool Controls::button(const char* label, const char* tooltip, bool* held) {
+  if (!frame_.controls) return false;
   place(text_width(label) + 2.0F * ImGui::GetStyle().FramePadding.x);
   const bool pressed = ImGui::Button(label);
   if (held != nullptr) *held = ImGui::IsItemActive();

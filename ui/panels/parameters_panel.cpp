@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/presets.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/parameter_rows.hpp"
 #include "ui/theme/icons.hpp"

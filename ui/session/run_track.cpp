@@ -28,8 +28,10 @@ FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& re
 
 FrameResult RunTrack::process_next(const ReadFrame& read) {
   const int index = processed();
+  while (seen_ < index) catch_up_one(read);
   if (index == begins_at_ || index % options_.checkpoint_every == 0) keep_checkpoint();
   FrameResult result = process(odometry_, index, read);
+  ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
   hash_.add(result.record);
@@ -50,7 +52,7 @@ FrameRecord RunTrack::record(int index) const {
 }
 
 void RunTrack::keep_checkpoint() {
-  checkpoints_.emplace(processed(), odometry_);
+  checkpoints_.emplace(seen_, odometry_);
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
   std::erase_if(checkpoints_, [this](const auto& kept) {
@@ -59,9 +61,12 @@ void RunTrack::keep_checkpoint() {
 }
 
 Odometry RunTrack::before(int index, const ReadFrame& read) const {
-  const auto& [first, kept] = *std::prev(checkpoints_.upper_bound(index));
-  Odometry odometry = kept;
-  for (int before = first; before < index; ++before) (void)process(odometry, before, read);
+  const auto after = checkpoints_.upper_bound(index);
+  // A finished run that odometry has not seen here has none.
+  const bool fresh = after == checkpoints_.begin();
+  Odometry odometry = fresh ? Odometry(source_->camera(), config()) : std::prev(after)->second;
+  for (int before = fresh ? 0 : std::prev(after)->first; before < index; ++before)
+    (void)process(odometry, before, read);
   return odometry;
 }
 
@@ -87,6 +92,7 @@ RunTrack RunTrack::branch(int from, const Config& config, const ReadFrame& read)
   if (!odometry) return other;
   other.odometry_ = std::move(*odometry);
   other.begins_at_ = from;
+  other.seen_ = from;
   other.records_.assign(records_.begin(), records_.begin() + from);
   other.features_.assign(features_.begin(), features_.begin() + from);
   for (const FrameRecord& record : other.records_) other.hash_.add(record);
@@ -97,7 +103,8 @@ RunView RunTrack::view() const {
   RunView view;
   view.name = config().run.method;
   view.records = records_;
-  view.trajectory = trajectory_so_far(odometry_.map(), records_);
+  view.trajectory =
+      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_.map(), records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/odometry/odometry.hpp"
+#include "core/run/records_file.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"
@@ -29,6 +30,11 @@ class RunTrack {
   using ReadFrame = std::function<Frame(int)>;
 
   RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options = {});
+
+  /// A finished run: its frames count as processed though no odometry has seen them here yet. One that is to
+  /// see them does so first (catch_up), and then gives the same bytes again.
+  RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
+           const RunTrackOptions& options = {});
 
   /// Processes frame `processed()`, which must be in the sequence.
   /// @returns images of the motion stage; its record has gone into records()
@@ -57,7 +63,15 @@ class RunTrack {
   [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
-  [[nodiscard]] const LocalMap& map() const { return odometry_.map(); }
+  [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
+  [[nodiscard]] std::vector<SavedPoint> points() const;
+
+  /// Frames that odometry has seen here: all that are processed, but for a recorded run.
+  [[nodiscard]] int seen() const { return seen_; }
+  /// Shows odometry the next of a recorded run's frames that it has not seen.
+  void catch_up_one(const ReadFrame& read);
+  /// What a recorded run removed from a frame; empty where nothing was.
+  [[nodiscard]] cv::Mat recorded_mask(int index) const;
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
   [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
@@ -69,10 +83,13 @@ class RunTrack {
   using Features = std::shared_ptr<const std::vector<FeatureRecord>>;  // shared with branches
 
   void keep_checkpoint();
+  [[nodiscard]] bool is_as_recorded() const;
 
   const FrameSource* source_;
   RunTrackOptions options_;
+  std::shared_ptr<const RecordedRun> recorded_;  // null for a run that began here
   Odometry odometry_;
+  int seen_ = 0;  // frames odometry_ has processed
   int begins_at_ = 0;
   std::vector<FrameRecord> records_;     // without features
   std::vector<Features> features_;       // … which are here; null where they are not kept

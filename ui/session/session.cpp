@@ -9,6 +9,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
                  const SessionOptions& options)
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
+  if (options_.recorded) open_recorded();
   show(0);
   sidecar_due_ = options_.sidecar.has_value();
 }
@@ -116,8 +117,8 @@ void Session::publish() {
     view->keyframes = last->keyframes;
     view->map_points = last->map_points;
   } else {
-    view->keyframes = saved_keyframes(run_->track().map());
-    view->map_points = saved_points(run_->track().map());
+    view->keyframes = run_->track().keyframes();
+    view->map_points = run_->track().points();
   }
   std::function<void()> on_change;
   {
@@ -133,6 +134,11 @@ void Session::go_to(int frame, const std::function<void(const FrameRecord&)>& on
   while (run_->track().processed() <= target_) {
     process_one();
     if (on_frame) on_frame(run_->track().records().back());
+  }
+  while (options_.catch_up && options_.no_images.empty() && run_->track().seen() <= target_) {
+    const int index = run_->track().seen();
+    run_->catch_up_one();
+    if (on_frame) on_frame(run_->track().records()[static_cast<std::size_t>(index)]);
   }
   show(target_);
   settle();

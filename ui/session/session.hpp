@@ -21,9 +21,13 @@
 namespace stillpoint {
 
 struct SessionOptions {
-  bool baseline = true;                  ///< method `none` runs beside any other method
-  bool keep_times = true;                ///< false: stage times stay 0, so that images repeat byte for byte
-  std::optional<SidecarPlaces> sidecar;  ///< where bookmarks and the like are kept; nothing = they are not
+  bool baseline = true;    ///< method `none` runs beside any other method
+  bool keep_times = true;  ///< false: stage times stay 0, so that images repeat byte for byte
+  std::shared_ptr<const RecordedRun> recorded{};           ///< a finished run to begin with
+  std::shared_ptr<const RecordedRun> recorded_baseline{};  ///< … and one to stand beside it
+  std::string no_images{};  ///< why the source has no images, one sentence: nothing can be processed then
+  bool catch_up = false;    ///< go_to() lets odometry see a recorded run's frames as far as the one shown
+  std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
 };
 
 /// A sequence being looked at: runs odometry over it as far as asked, keeps what each frame left, and makes
@@ -81,6 +85,10 @@ class Session {
   };
 
   void restart(const Config& config);
+  void open_recorded();
+  [[nodiscard]] bool stages_are_missing() const;
+  void catch_up();
+  void refuse_without_images() const;
   void process_one();
   void show(int frame);
   void publish();

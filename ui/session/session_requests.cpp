@@ -31,6 +31,11 @@ void refuse_out_of_range(Config config) {
 
 }  // namespace
 
+void Session::refuse_without_images() const {
+  if (!options_.no_images.empty())
+    throw InputError(fmt::format("No other parameters can be tried: {}", options_.no_images));
+}
+
 void Session::request(SessionRequest wanted) {
   if (worker_.joinable()) {
     const std::lock_guard lock(mutex_);
@@ -100,6 +105,7 @@ void Session::carry_out(const request::Span& wanted) {
 }
 
 void Session::carry_out(const request::Preview& wanted) {
+  if (wanted.config) refuse_without_images();
   if (wanted.config) refuse_out_of_range(*wanted.config);
   debug_.preview_config = wanted.config;
   debug_.preview.reset();
@@ -107,6 +113,7 @@ void Session::carry_out(const request::Preview& wanted) {
 }
 
 void Session::carry_out(const request::RunAll& wanted) {
+  refuse_without_images();
   refuse_out_of_range(wanted.config);
   wanted_ = std::max(wanted_, run_->track().processed());
   restart(wanted.config);
@@ -115,6 +122,7 @@ void Session::carry_out(const request::RunAll& wanted) {
 }
 
 void Session::carry_out(const request::AddGhost& wanted) {
+  refuse_without_images();
   refuse_out_of_range(wanted.config);
   const int from = std::clamp(wanted.from, 0, std::max(0, run_->track().processed() - 1));
   Ghost ghost{.name = wanted.name,

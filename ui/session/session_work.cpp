@@ -51,6 +51,7 @@ void Session::work_step() {
 bool Session::has_background() const {
   const int processed = run_->track().processed();
   return preview_due_ || sidecar_due_ || processed < wanted_ ||
+         (worker_.joinable() && stages_are_missing()) ||
          std::any_of(ghosts_.begin(), ghosts_.end(),
                      [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
 }
@@ -64,6 +65,10 @@ void Session::background_step() {
   if (sidecar_due_) {
     attempt([this] { open_sidecar(); });
     publish();
+    return;
+  }
+  if (worker_.joinable() && stages_are_missing()) {
+    catch_up();
     return;
   }
   const auto lags = [&](const Ghost& ghost) {

@@ -45,6 +45,13 @@ ShownRun::Extras ShownRun::extras_of(int index) {
   if (kept != extras_.end()) return *kept;
   const std::string& method = track_.config().run.method;
   if (method == "none" || method == "paper") return {.index = index};  // all there is, images_of computes
+  if (index >= track_.seen()) {
+    Extras extras{.index = index, .mask = track_.recorded_mask(index)};
+    extras.depth_motion.note =
+        "the run's records hold the mask alone, and the stages before it are computed again from the first "
+        "frame on.";
+    return extras;
+  }
   FrameResult again = process_again(index, track_.config());
   keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
   return extras_.front();
@@ -77,6 +84,8 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
     view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
   view.depth_motion = std::move(extras.depth_motion);
   view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
+  // Without its images, a finished run still tells what it removed.
+  if (!pair && view.mask.empty()) view.mask = track_.recorded_mask(index);
   return view;
 }
 

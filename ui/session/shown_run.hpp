@@ -21,6 +21,9 @@ class ShownRun {
   /// Processes the next frame. @param frame that frame, read
   void process(const Frame& frame);
 
+  /// Shows odometry the next of a finished run's frames that it has not seen.
+  void catch_up_one() { track_.catch_up_one(reader()); }
+
   [[nodiscard]] const RunTrack& track() const { return track_; }
 
   /// The frame with all its images and, where it was processed, its record.
