@@ -46,7 +46,11 @@ std::vector<SavedKeyframe> RunTrack::keyframes() const {
 }
 
 std::vector<SavedPoint> RunTrack::points() const {
-  return is_as_recorded() ? recorded_->run.points : saved_points(odometry_.map());
+  if (is_as_recorded()) return recorded_->run.points;
+  std::vector<SavedPoint> points = saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = moved_points(odometry_.map());
+  points.insert(points.end(), moved.begin(), moved.end());
+  return points;
 }
 
 cv::Mat RunTrack::recorded_mask(int index) const {
