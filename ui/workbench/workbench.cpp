@@ -133,6 +133,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
+  tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
   const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);

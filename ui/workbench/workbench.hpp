@@ -95,6 +95,7 @@ class Workbench {
   void go_to(int frame);
   void ask(SessionRequest request);
   void toggle_bookmark();
+  void tell_notice();
   [[nodiscard]] const std::vector<int>& worst();
   void toggle_panel(const std::string& name);
   void scale_by(float factor);
@@ -155,6 +156,7 @@ class Workbench {
   std::optional<LaneFigure> worst_by_;
   WorstKey worst_key_;
   std::vector<int> worst_;
+  std::string notice_;  // of the session, told last
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
