@@ -84,7 +84,7 @@ class Figures {
 void figures(const FiguresArguments& arguments) {
   OpenedPlace place = open_place(arguments.place);
   if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
-  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.source->size());
+  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames);
   if (frames.size() != 1)
     throw InputError(
         fmt::format("--frame {}: names {} frames, and figures are of one", arguments.frame, frames.size()));
@@ -98,7 +98,7 @@ void figures(const FiguresArguments& arguments) {
   Session session(place.source, place.config, place.options);
   {
     // Errors are drawn over the whole sequence.
-    const int last = has_depth && has_truth ? place.source->size() - 1 : frame;
+    const int last = has_depth && has_truth ? place.frames - 1 : frame;
     Progress progress(fmt::format("{} ({})", place.source->name(), method), last + 1);
     session.go_to(last, [&](const FrameRecord& record) {
       progress.advance(std::string(to_string(record.status)));

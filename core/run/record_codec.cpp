@@ -13,6 +13,18 @@ void transfer_pose(Archive& archive, PoseType& pose) {
     for (int row = 0; row < 3; ++row) archive(pose.matrix()(row, column));
 }
 
+void transfer_optional(ByteWriter& to, const std::optional<Pose>& pose) {
+  to(pose.has_value());
+  if (pose) transfer_pose(to, *pose);
+}
+
+void transfer_optional(ByteReader& from, std::optional<Pose>& pose) {
+  bool known = false;
+  from(known);
+  pose = known ? std::optional(Pose::Identity()) : std::nullopt;
+  if (pose) transfer_pose(from, *pose);
+}
+
 template <typename Archive, typename Stamped>
 void transfer_stamped(Archive& archive, Stamped& stamped) {
   archive(stamped.timestamp);
@@ -40,6 +52,8 @@ void transfer_fields(Archive& archive, Record& r) {
         &r.ms.motion, &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
     archive(*figure);
   archive(r.keyframe);
+  transfer_optional(archive, r.removal_check.nothing_removed);
+  transfer_optional(archive, r.removal_check.truth_removed);
 }
 
 /// Field by field over all features: what is alike lies together, which packs better.

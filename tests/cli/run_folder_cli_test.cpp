@@ -126,6 +126,18 @@ TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
                       "there is no folder");
 }
 
+TEST_F(RunFolder, AFullDiskIsToldOnce) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to stand for a full disk";
+  fs::create_symlink("/dev/full", page());
+  const CliResult reported = run_cli({"report", run("none"), "--worst", "0", "--out", page(), "--force"});
+  expect_one_sentence(reported, "report.html: cannot be written (No space left on device)");
+  fs::create_directories(out_.path("images"));
+  fs::create_symlink("/dev/full", out_.path("images/000003_input.png"));
+  const CliResult drawn = snapshot({"--frames", "3", "--panels", "input", "--force"});
+  EXPECT_EQ(drawn.exit_code, 1);
+  EXPECT_THAT(drawn.err, HasSubstr("000003_input.png: cannot be written"));
+}
+
 TEST(Report, ForeignTextIsNoMarkup) {
   const SmallSequence sequence(4);
   const std::string odd = sequence.path() + "_<b>&\"x\"";
