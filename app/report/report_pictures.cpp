@@ -102,7 +102,7 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run)
   if (method == "paper")
     return {before, {"difference", "Difference after compensation"}, {"union_mask", "Motion mask"}, after};
   if (method == "stillpoint")
-    return {before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
+    return {{"input", "Input"}, before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
   return {before, after};
 }
 

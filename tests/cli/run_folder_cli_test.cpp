@@ -2,21 +2,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <regex>
+#include <thread>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/xvfb.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class RunFolder : public ::testing::Test {
  protected:
@@ -136,6 +139,20 @@ TEST_F(RunFolder, AFullDiskIsToldOnce) {
   const CliResult drawn = snapshot({"--frames", "3", "--panels", "input", "--force"});
   EXPECT_EQ(drawn.exit_code, 1);
   EXPECT_THAT(drawn.err, HasSubstr("000003_input.png: cannot be written"));
+}
+
+TEST_F(RunFolder, OpensInAWindow) {
+  const testing::Xvfb xvfb;
+  if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
+  ::setenv("XDG_CONFIG_HOME", out_.path("config").c_str(), 1);
+  CliProcess window({"view", run("stillpoint")});
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  window.send(SIGTERM);
+  const CliResult result = window.wait();
+  ::unsetenv("XDG_CONFIG_HOME");
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_FALSE(result.by_signal);
+  EXPECT_THAT(out_.read("config/stillpoint/settings.json"), HasSubstr("runs/stillpoint"));
 }
 
 TEST(Report, ForeignTextIsNoMarkup) {
