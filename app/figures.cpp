@@ -26,6 +26,7 @@ constexpr const char* kList = "figures.txt";
 struct FiguresArguments {
   PlaceArguments place;
   std::string out, frame, theme = "light";
+  double scale = 1.0;
   bool force = false;
 };
 
@@ -33,7 +34,9 @@ struct FiguresArguments {
 class Figures {
  public:
   Figures(const FiguresArguments& arguments, const std::string& method)
-      : folder_(arguments.out), painter_({.look = {parse_theme(arguments.theme)}, .method = method}) {}
+      : folder_(arguments.out),
+        scale_(arguments.scale),
+        painter_({.look = {parse_theme(arguments.theme)}, .method = method}) {}
 
   void write_figure_1(const SessionView& view) {
     const std::vector<FigureCell> cells = figure_1_cells(view);
@@ -48,7 +51,7 @@ class Figures {
       write_image(folder_ / fmt::format("figure1{}.png", cell.letter), cell.picture);
     }
     FigureSheet sheet(fmt::format("Figure 1   Motion mask by the paper's method: {}", where), cells, 3);
-    write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size()),
+    write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size(scale_)),
           fmt::format("frames, compensated frame, forward, backward and union mask of {}; figure1a.png to "
                       "figure1f.png are its pictures alone",
                       where));
@@ -77,6 +80,7 @@ class Figures {
   }
 
   fs::path folder_;
+  double scale_;
   Painter painter_;
   std::string list_;
 };
@@ -141,6 +145,9 @@ void add_figures_command(CLI::App& app) {
       ->required();
   command->add_option("--out", arguments->out, "Folder for the figures; made if missing")->required();
   command->add_option("--theme", arguments->theme, "light or dark")->capture_default_str();
+  command->add_option("--scale", arguments->scale, "Of the pictures in figure 1; 1 keeps their pixels")
+      ->check(CLI::Range(0.1, 4.0))
+      ->capture_default_str();
   command->add_flag("--force", arguments->force, "Overwrite earlier figures");
   arguments->place.source.add_to(*command);
   arguments->place.add_to(*command);

@@ -57,11 +57,11 @@ std::vector<FigureCell> figure_1_cells(const SessionView& session) {
 FigureSheet::FigureSheet(std::string heading, std::vector<FigureCell> cells, int columns)
     : heading_(std::move(heading)), cells_(std::move(cells)), columns_(columns) {}
 
-std::pair<int, int> FigureSheet::size() const {
+std::pair<int, int> FigureSheet::size(double picture_scale) const {
   int width = 0, height = 0;
   for (const FigureCell& cell : cells_) {
-    width = std::max(width, cell.picture.cols);
-    height = std::max(height, cell.picture.rows);
+    width = std::max(width, cvRound(picture_scale * cell.picture.cols));
+    height = std::max(height, cvRound(picture_scale * cell.picture.rows));
   }
   const int rows = (static_cast<int>(cells_.size()) + columns_ - 1) / columns_;
   return {columns_ * (width + kMargin) + kMargin, kHeading + kMargin + rows * (height + kCaption)};
