@@ -193,16 +193,5 @@ TEST(Panels, ANewFrameIsShownAtOnce) {
   EXPECT_FALSE(images_agree(stage.render(other), before, {}));
 }
 
-TEST(Panels, GoldenImages) {
-  const SessionView example = handmade_example();
-  for (const auto& [name, theme] : {std::pair{"union_mask", ThemeName::kDark},
-                                    {"features_before", ThemeName::kLight},
-                                    {"errors", ThemeName::kDark},
-                                    {"timeline", ThemeName::kLight}}) {
-    PanelStage stage(name, {theme, 1.0F});
-    EXPECT_TRUE(matches_golden(stage.render(example), std::string("panel_") + name));
-  }
-}
-
 }  // namespace
 }  // namespace stillpoint::testing

@@ -109,6 +109,7 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
             run_.trajectory.back().world_from_camera.matrix());
   ASSERT_EQ(recorded.run.points.size(), run_.points.size());
   EXPECT_EQ(recorded.run.points.back().position, run_.points.back().position);
+  EXPECT_EQ(recorded.run.moved.size(), run_.moved.size());
   EXPECT_EQ(recorded.run.keyframes.size(), run_.keyframes.size());
   EXPECT_EQ(recorded.ground_truth.size(), source_->ground_truth().size());
   EXPECT_EQ(recorded.run.live.size(), run_.live.size());

@@ -31,5 +31,6 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_compare_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_removal_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_inspector_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_log_panel(Shared shared);
 
 }  // namespace stillpoint

@@ -25,6 +25,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_timings_panel(shared));
   panels.push_back(make_parameters_panel(shared));
   panels.push_back(make_inspector_panel(shared));
+  panels.push_back(make_log_panel(shared));
   return panels;
 }
 

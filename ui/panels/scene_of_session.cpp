@@ -156,7 +156,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
       data.keyframes.push_back(world * keyframe.pose.world_from_camera);
   if (layers.points)
     for (const SavedPoint& point : session.map_points)
-      data.points.push_back({(world * point.position).cast<float>(), false});
+      data.points.push_back({(world * point.position).cast<float>(), point.moved});
   const FrameRecord* record = session.current->record;
   if (record != nullptr && record->estimated) {
     data.current = world * record->world_from_camera;

@@ -46,7 +46,11 @@ std::vector<SavedKeyframe> RunTrack::keyframes() const {
 }
 
 std::vector<SavedPoint> RunTrack::points() const {
-  return is_as_recorded() ? recorded_->run.points : saved_points(odometry_.map());
+  const bool recorded = is_as_recorded();
+  std::vector<SavedPoint> points = recorded ? recorded_->run.points : saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = recorded ? recorded_->run.moved : moved_points(odometry_.map());
+  points.insert(points.end(), moved.begin(), moved.end());
+  return points;
 }
 
 cv::Mat RunTrack::recorded_mask(int index) const {

@@ -71,6 +71,8 @@ class Session {
   void request_frame(int frame) { request(request::GoTo{frame}); }
   void request_play(bool play) { request(request::Play{play}); }  ///< from the frame shown on
   void request_speed(double frames_per_second);
+  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
+  [[nodiscard]] bool idle() const;
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config) { request(request::RunAll{config}); }
 
@@ -116,6 +118,7 @@ class Session {
   [[nodiscard]] bool at_rest() const;
   [[nodiscard]] int next_while_playing() const;
   void stop_playing_where_wanted();
+  void rest(const std::stop_token& stop);
   void work_step();
   void settle();
   // What is done when nothing else is asked for, a frame at a time.
@@ -153,6 +156,7 @@ class Session {
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
   std::deque<SessionRequest> requests_;
+  bool resting_ = false;
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;

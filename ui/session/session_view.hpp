@@ -53,9 +53,9 @@ struct SessionView {
   Trajectory ground_truth;                   ///< empty where there is none
   Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
   std::vector<SavedKeyframe> keyframes;
-  std::vector<SavedPoint> map_points;
-  DebugView debug;             ///< bookmarks, breakpoints, ghost runs, …
-  std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
+  std::vector<SavedPoint> map_points;  ///< and after them those that left the map because they moved
+  DebugView debug;                     ///< bookmarks, breakpoints, ghost runs, …
+  std::uint64_t revision = 0;          ///< grows when run, keyframes or points change: what caches go by
 };
 
 /// Whether the sliders' config, not the run's, made the motion stages that are shown.

@@ -165,7 +165,6 @@ void Session::work(const std::stop_token& stop) {
   target_ = std::max(target_, current_->index);
   if (current_->record == nullptr) target_ = 0;
   auto due = Clock::now(), published = due;
-  const auto asked = [this] { return !requests_.empty(); };
   while (!stop.stop_requested()) {
     try {
       if (take_requests() && at_rest()) publish();
@@ -178,12 +177,13 @@ void Session::work(const std::stop_token& stop) {
         }
         continue;
       }
+      if (waits && !playing_) {
+        rest(stop);
+        continue;
+      }
       if (waits) {
         std::unique_lock lock(mutex_);
-        if (playing_)
-          asked_.wait_until(lock, stop, due, asked);
-        else
-          asked_.wait(lock, stop, asked);
+        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty(); });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -197,8 +197,7 @@ void Session::work(const std::stop_token& stop) {
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
-      std::unique_lock lock(mutex_);
-      asked_.wait(lock, stop, asked);
+      rest(stop);
     }
   }
 }
