@@ -127,8 +127,7 @@ void PlotPaint::line(const PlotSeries& series, const std::vector<PlotSample>& sa
       for (std::size_t k = 1; k < run.size(); ++k)
         dashed(run[k - 1], run[k], colour, width, phase, series.style);
     } else {
-      // One by one: a joined line thins out where it turns sharply, and a spike would be lost.
-      for (std::size_t k = 1; k < run.size(); ++k) list_.AddLine(run[k - 1], run[k], colour, width);
+      list_.AddPolyline(run.data(), static_cast<int>(run.size()), colour, ImDrawFlags_None, width);
     }
   }
 }
