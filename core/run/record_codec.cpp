@@ -92,6 +92,7 @@ void transfer_point(Archive& archive, SavedPointType& point) {
   archive(point.id);
   for (int i = 0; i < 3; ++i) archive(point.position[i]);
   archive(point.observations);
+  archive(point.moved);
 }
 
 constexpr std::size_t kFeatureBytes = 22;
@@ -180,7 +181,8 @@ FrameRecord read_record(ByteReader& from) {
 void write_end(ByteWriter& to, const RunEnd& end) {
   write_all(to, end.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
   write_all(to, end.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
-  write_all(to, end.points, [](auto& a, auto& p) { transfer_point(a, p); });
+  for (const auto* points : {&end.points, &end.moved})
+    write_all(to, *points, [](auto& a, auto& p) { transfer_point(a, p); });
   write_all(to, end.trajectory, [](auto& a, auto& p) { transfer_stamped(a, p); });
   write_all(to, end.ground_truth, [](auto& a, auto& p) { transfer_stamped(a, p); });
   to(end.orb_unit_ms);
@@ -191,7 +193,8 @@ RunEnd read_end(ByteReader& from) {
   RunEnd end;
   end.scores = read_all<FrameScores>(from, [](auto& a, auto& s) { transfer_scores(a, s); });
   end.keyframes = read_all<SavedKeyframe>(from, [](auto& a, auto& k) { transfer_keyframe(a, k); });
-  end.points = read_all<SavedPoint>(from, [](auto& a, auto& p) { transfer_point(a, p); });
+  for (auto* points : {&end.points, &end.moved})
+    *points = read_all<SavedPoint>(from, [](auto& a, auto& p) { transfer_point(a, p); });
   end.trajectory = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
   end.ground_truth = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
   from(end.orb_unit_ms);

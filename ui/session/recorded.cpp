@@ -48,9 +48,9 @@ std::vector<SavedKeyframe> RunTrack::keyframes() const {
 }
 
 std::vector<SavedPoint> RunTrack::points() const {
-  if (is_as_recorded()) return recorded_->run.points;
-  std::vector<SavedPoint> points = saved_points(odometry_.map());
-  const std::vector<SavedPoint> moved = moved_points(odometry_.map());
+  const bool recorded = is_as_recorded();
+  std::vector<SavedPoint> points = recorded ? recorded_->run.points : saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = recorded ? recorded_->run.moved : moved_points(odometry_.map());
   points.insert(points.end(), moved.begin(), moved.end());
   return points;
 }

@@ -48,6 +48,10 @@ void Session::restart(const Config& config) {
 }
 
 void Session::process_one() {
+  if (run_->track().seen() < run_->track().processed()) {  // a finished run goes on from where it ended
+    run_->catch_up_one();
+    return;
+  }
   const Frame frame = frames_.read(run_->track().processed());
   // The baseline sees the same frame at the same time; neither knows of the other.
   std::future<FrameResult> beside;
@@ -134,7 +138,7 @@ void Session::go_to(int frame, const std::function<void(const FrameRecord&)>& on
   target_ = std::clamp(frame, 0, source_->size() - 1);
   while (run_->track().processed() <= target_) {
     process_one();
-    if (on_frame) on_frame(run_->track().records().back());
+    if (on_frame) on_frame(run_->track().records()[static_cast<std::size_t>(run_->track().seen() - 1)]);
   }
   while (options_.catch_up && options_.no_images.empty() && run_->track().seen() <= target_) {
     const int index = run_->track().seen();
