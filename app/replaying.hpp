@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <string>
 
-#include "app/arguments.hpp"
+#include "app/open_place.hpp"
 #include "ui/workbench/replay.hpp"
 
 namespace stillpoint {
@@ -14,10 +14,10 @@ namespace stillpoint {
 /// a window, `replay` without a display.
 class ReplayPlan {
  public:
-  /// @param sequence instead of the one the recording names; empty = that one
+  /// @param place instead of the one the recording names, where it names one; its parameters go over those
+  /// recorded
   /// @throws InputError for a recording, sequence or parameter that cannot be used
-  ReplayPlan(const std::string& file, const std::string& sequence, SequenceArguments source,
-             const ConfigArguments& config);
+  ReplayPlan(const std::string& file, PlaceArguments place);
 
   [[nodiscard]] const RecordingStart& start() const { return recording_.start; }
   [[nodiscard]] Look look() const;
@@ -30,10 +30,9 @@ class ReplayPlan {
 
  private:
   Recording recording_;
-  SequenceArguments source_arguments_;
+  PlaceArguments arguments_;
   Config config_;
-  std::shared_ptr<const FrameSource> source_;
-  std::string where_;
+  std::optional<OpenedPlace> opened_;
   std::filesystem::path out_ = ".";
 };
 

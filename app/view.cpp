@@ -1,17 +1,19 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/open_place.hpp"
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
 #include "core/error.hpp"
+#include "core/run/open_run.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/window.hpp"
 #include "ui/workbench/desk.hpp"
@@ -25,9 +27,8 @@ namespace fs = std::filesystem;
 constexpr const char* kDemo = "generated:walking_static";
 
 struct ViewArguments {
-  std::string sequence, layout, record, replay, out = ".";
-  ConfigArguments config;
-  SequenceArguments source;
+  PlaceArguments place;
+  std::string layout, record, replay, out = ".";
 };
 
 WindowOptions window_options(const Settings& settings) {
@@ -38,10 +39,11 @@ WindowOptions window_options(const Settings& settings) {
 class Viewer {
  public:
   Viewer(const ViewArguments& arguments, const Config& config)
-      : settings_path_(settings_path()),
+      : source_(arguments.place.source),
+        settings_path_(settings_path()),
         settings_(read_settings(settings_path_, panel_names(), &problem_)),
         window_(window_options(settings_)),
-        desk_(desk_options(arguments, config)) {
+        desk_(desk_options(config)) {
     if (!problem_.empty()) desk_.workbench().say(problem_, true);
     if (!arguments.layout.empty())
       desk_.workbench().set_layout(read_layout(arguments.layout, desk_.workbench().panel_names()));
@@ -49,11 +51,13 @@ class Viewer {
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  [[nodiscard]] Desk& desk() { return desk_; }
-
-  /// The sequence that was open when the window was last closed; empty when none was.
-  [[nodiscard]] std::string last_sequence() const {
-    return settings_.recent.empty() ? "" : settings_.recent.front();
+  /// Opens what is open already.
+  void show(OpenedPlace opened, const std::string& where) {
+    desk_.show(with_sidecar(std::move(opened), where), where);
+  }
+  /// Opens the sequence that was open when the window was last closed, if any was.
+  void open_last() {
+    if (!settings_.recent.empty()) desk_.open(settings_.recent.front());
   }
 
   /// Records what is done from now on.
@@ -86,12 +90,34 @@ class Viewer {
     return names;
   }
 
-  DeskOptions desk_options(const ViewArguments& arguments, const Config& config) const {
-    return {.open_source = [source = arguments.source,
-                            config](const std::string& where) { return source.open(where, config); },
+  /// Bookmarks and the like are kept with the sequence, or with the settings where it cannot be written to.
+  [[nodiscard]] DeskPlace with_sidecar(OpenedPlace opened, const std::string& where) const {
+    std::error_code none;
+    opened.options.sidecar = SidecarPlaces{
+        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
+    return {std::move(opened.source), std::move(opened.config), std::move(opened.options),
+            std::move(opened.problem)};
+  }
+
+  /// A finished run as it is, a sequence to be run with the config as it stands.
+  [[nodiscard]] DeskPlace open(const std::string& where, const Config& config) const {
+    OpenedPlace opened;
+    if (is_run_folder(where)) {
+      PlaceArguments run;
+      run.place = where;
+      opened = open_place(run);
+    } else {
+      opened.config = config;
+      opened.source = source_.open(where, config);
+    }
+    return with_sidecar(std::move(opened), where);
+  }
+
+  [[nodiscard]] DeskOptions desk_options(const Config& config) const {
+    return {.open_place = [this](const std::string& where, const Config& now) { return open(where, now); },
             .config = config,
             .settings = settings_,
-            .session = {},
             .plays_when_opened = kDemo,
             .wake = [] { Window::wake(); }};
   }
@@ -120,6 +146,7 @@ class Viewer {
     write_settings(settings_path_, settings_);
   }
 
+  SequenceArguments source_;
   std::string problem_, title_;
   fs::path settings_path_;
   Settings settings_;
@@ -131,34 +158,32 @@ class Viewer {
 
 /// Begins with the sequence named, else with the one open last, else with the start page.
 void view(const ViewArguments& arguments) {
-  const Config config = arguments.config.config();
   // What was named and cannot be opened is told before there is a window.
-  std::shared_ptr<const FrameSource> source;
-  if (!arguments.sequence.empty()) source = arguments.source.open(arguments.sequence, config);
-  Viewer viewer(arguments, config);
-  if (source)
-    viewer.desk().show(std::move(source), arguments.sequence);
-  else if (const std::string last = viewer.last_sequence(); !last.empty())
-    viewer.desk().open(last);
+  std::optional<OpenedPlace> place;
+  if (!arguments.place.place.empty()) place = open_place(arguments.place);
+  Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
+  if (place)
+    viewer.show(std::move(*place), arguments.place.place);
+  else
+    viewer.open_last();
   if (!arguments.record.empty()) viewer.record(arguments.record);
   viewer.run();
 }
 
 /// Plays a recording in a window, which forgets it all afterwards.
 void view_replay(const ViewArguments& arguments) {
-  ReplayPlan plan(arguments.replay, arguments.sequence, arguments.source, arguments.config);
+  ReplayPlan plan(arguments.replay, arguments.place);
   plan.prepare_out(arguments.out, true);
   Window window(
       WindowOptions{.width = plan.start().size[0], .height = plan.start().size[1], .look = plan.look()});
-  ReplayShell shell = replay_shell(window);
-  plan.play(shell, [] { Window::wake(); });
+  plan.play(replay_shell(window), [] { Window::wake(); });
 }
 
 }  // namespace
 
 void view_demo() {
   ViewArguments arguments;
-  arguments.sequence = kDemo;
+  arguments.place.place = kDemo;
   view(arguments);
 }
 
@@ -166,16 +191,19 @@ void add_view_command(CLI::App& app) {
   const auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Opens the workbench in a window, on a sequence or as it was left");
-  command->add_option("SEQUENCE", arguments->sequence,
-                      "A TUM RGB-D folder, a folder of colour frames, or generated:KIND");
-  command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
-  const auto* record =
+  command->add_option(
+      "SEQUENCE", arguments->place.place,
+      "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder");
+  command->add_option("--layout", arguments->layout,
+                      "The workbench's tiles and what is chosen in them, a JSON file");
+  CLI::Option* record =
       command->add_option("--record", arguments->record, "Writes what is done in the window to this file");
   command->add_option("--replay", arguments->replay, "Plays a file of --record in the window")
-      ->excludes(const_cast<CLI::Option*>(record));
+      ->excludes(record);
   command->add_option("--out", arguments->out, "Folder for a replay's screenshots")->capture_default_str();
-  arguments->source.add_to(*command);
-  arguments->config.add_to(*command, true);
+  arguments->place.add_to(*command);
+  arguments->place.source.add_to(*command);
+  arguments->place.config.add_to(*command, true);
   command->callback([arguments] {
     if (arguments->replay.empty())
       view(*arguments);

@@ -32,18 +32,21 @@ using ::testing::IsEmpty;
 
 constexpr int kWidth = 1000, kHeight = 700, kDemoFrames = 10, kFrames = 8;
 
+DeskPlace place_of(std::shared_ptr<const FrameSource> source, const Config& config) {
+  return {std::move(source), config, {.keep_times = false}, ""};
+}
+
 DeskOptions desk_options() {
   Config config;
   config.run.method = "stillpoint";
-  return {.open_source =
-              [](const std::string& where) {
+  return {.open_place =
+              [](const std::string& where, const Config& now) {
                 OpenOptions options;
                 options.frames = where.starts_with("generated:") ? kDemoFrames : 0;
-                return std::shared_ptr<const FrameSource>(open_sequence(where, options));
+                return place_of(open_sequence(where, options), now);
               },
           .config = config,
           .settings = {},
-          .session = {.keep_times = false},
           .plays_when_opened = "generated:walking_static",
           .wake = {}};
 }
@@ -256,7 +259,9 @@ TEST(Desk, AThousandSequencesLeaveNothingBehind) {
   Offscreen offscreen({.width = 200, .height = 150});
   DeskOptions options = desk_options();
   options.config.run.method = "none";
-  options.open_source = [](const std::string&) { return std::make_shared<const TinySource>(); };
+  options.open_place = [](const std::string&, const Config& config) {
+    return place_of(std::make_shared<const TinySource>(), config);
+  };
   {
     Desk desk(std::move(options));
     desk.workbench().set_layout({.panel = "input"});
@@ -298,10 +303,10 @@ TEST(Desk, OpensBesideTheInterface) {
   std::promise<void> gate;
   const std::shared_future<void> opened(gate.get_future());
   DeskOptions options = desk_options();
-  options.open_source = [opened](const std::string& where) -> std::shared_ptr<const FrameSource> {
+  options.open_place = [opened](const std::string& where, const Config& config) {
     if (where == "bad") throw InputError("bad: is no sequence.");
     opened.wait();
-    return std::make_shared<const TinySource>();
+    return place_of(std::make_shared<const TinySource>(), config);
   };
   {
     Desk desk(std::move(options));
@@ -329,10 +334,10 @@ TEST(Desk, OfSeveralAskedForTheLastIsOpened) {
   std::vector<std::string> asked;
   std::mutex mutex;
   DeskOptions options = desk_options();
-  options.open_source = [&](const std::string& where) {
+  options.open_place = [&](const std::string& where, const Config& config) {
     const std::lock_guard lock(mutex);
     asked.push_back(where);
-    return std::make_shared<const TinySource>();
+    return place_of(std::make_shared<const TinySource>(), config);
   };
   {
     Desk desk(std::move(options));

@@ -28,10 +28,12 @@ class Replay : public ::testing::Test {
     Offscreen offscreen({.width = 1280, .height = 800});
     std::string problem;
     {
-      Desk desk({.open_source = [](const std::string& where) { return open_sequence(where); },
+      Desk desk({.open_place =
+                     [](const std::string& where, const Config& config) {
+                       return DeskPlace{open_sequence(where), config, {.keep_times = false}, ""};
+                     },
                  .config = {},
                  .settings = {},
-                 .session = {.keep_times = false},
                  .plays_when_opened = {},
                  .wake = {}});
       if (!layout.empty())

@@ -73,33 +73,37 @@ WorkbenchHost Desk::host() {
                 ++configured_;
                 if (session_) session_->request_config(config);
               },
-          .open = [this](const std::string& where) { open(where); }};
+          .open = [this](const std::string& where) { open(where); },
+          .request =
+              [this](SessionRequest wanted) {
+                if (const auto* all = std::get_if<request::RunAll>(&wanted)) options_.config = all->config;
+                if (session_) session_->request(std::move(wanted));
+              }};
 }
 
-std::unique_ptr<Session> Desk::make_session(const std::shared_ptr<const FrameSource>& source,
-                                            const Config& config, const std::string& where) const {
-  auto session = std::make_unique<Session>(source, config, options_.session);
+std::unique_ptr<Session> Desk::make_session(const DeskPlace& place, const std::string& where) const {
+  auto session = std::make_unique<Session>(place.source, place.config, place.options);
   session->start(options_.wake ? options_.wake : [] {});
   // What moves shows from the first frame that has another to be compared with.
-  session->request_frame(config.motion.reference_gap);
+  session->request_frame(place.config.motion.reference_gap);
   if (!where.empty() && where == options_.plays_when_opened) session->request_play(true);
   return session;
 }
 
-void Desk::begin_opening(const std::string& where, std::shared_ptr<const FrameSource> source) {
+void Desk::begin_opening(const std::string& where, std::optional<DeskPlace> place) {
   workbench_.set_opening(where);
   Opened begun{.where = where,
-               .problem = {},
-               .source = std::move(source),
+               .failure = {},
+               .place = std::move(place),
                .session = nullptr,
                .configured = configured_};
   opening_ =
       std::async(std::launch::async, [this, opened = std::move(begun), config = options_.config]() mutable {
         try {
-          if (!opened.source) opened.source = options_.open_source(opened.where);
-          opened.session = make_session(opened.source, config, opened.where);
+          if (!opened.place) opened.place = options_.open_place(opened.where, config);
+          opened.session = make_session(*opened.place, opened.where);
         } catch (const std::exception& error) {
-          opened.problem = error.what();
+          opened.failure = error.what();
         }
         if (options_.wake) options_.wake();
         return std::move(opened);
@@ -110,14 +114,14 @@ void Desk::open(const std::string& where) {
   if (opening_.valid())
     next_ = where;
   else
-    begin_opening(where, nullptr);
+    begin_opening(where, std::nullopt);
 }
 
-void Desk::show(std::shared_ptr<const FrameSource> source, const std::string& where) {
+void Desk::show(DeskPlace place, const std::string& where) {
   if (opening_.valid()) opening_.get();
-  given_ = source;
+  given_ = place.source;
   opened_from_ = where;
-  begin_opening(where, std::move(source));
+  begin_opening(where, std::move(place));
 }
 
 void Desk::take_opened() {
@@ -127,18 +131,23 @@ void Desk::take_opened() {
   workbench_.set_opening("");
   if (next_) {
     // Another was asked for meanwhile: this one ends unseen.
-    begin_opening(*std::exchange(next_, std::nullopt), nullptr);
-  } else if (!opened.problem.empty()) {
-    workbench_.say(opened.problem, true);
+    begin_opening(*std::exchange(next_, std::nullopt), std::nullopt);
+  } else if (!opened.failure.empty()) {
+    workbench_.say(opened.failure, true);
     return;
   } else {
     std::swap(session_, opened.session);
-    if (opened.configured != configured_) session_->request_config(options_.config);
+    if (opened.configured != configured_)
+      session_->request_config(options_.config);
+    else
+      options_.config = opened.place->config;
     opened_from_ = opened.where;
     remember(options_.settings.recent, lasting_name(opened.where));
     workbench_.set_recent(options_.settings.recent);
-    workbench_.say(fmt::format("{}: {} frames", opened.source->name(), opened.source->size()));
-    for (const std::string& warning : opened.source->warnings()) workbench_.say(warning);
+    const DeskPlace& place = *opened.place;
+    workbench_.say(fmt::format("{}: {} frames", place.source->name(), place.source->size()));
+    for (const std::string& warning : place.source->warnings()) workbench_.say(warning);
+    if (!place.problem.empty()) workbench_.say(place.problem, !place.options.no_images.empty());
   }
   // Its worker finishes the frame at hand first, which must not hold up the interface.
   if (opened.session)

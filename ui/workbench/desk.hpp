@@ -15,13 +15,21 @@
 
 namespace stillpoint {
 
+/// A sequence or a finished run, open and ready for a session.
+struct DeskPlace {
+  std::shared_ptr<const FrameSource> source;
+  Config config;
+  SessionOptions options;
+  std::string problem;  ///< what is missing though it could be opened, one sentence; empty when all is well
+};
+
 /// What a Desk works with.
 struct DeskOptions {
-  /// Opens a folder or generated:KIND; called on threads of its own. Throws InputError.
-  std::function<std::shared_ptr<const FrameSource>(const std::string&)> open_source;
+  /// Opens a place: a folder, generated:KIND, a run's folder; called on threads of its own, with the config
+  /// as it stands. Throws InputError.
+  std::function<DeskPlace(const std::string&, const Config&)> open_place;
   Config config{};
-  Settings settings{};  ///< look, layout and recent sequences as they were left
-  SessionOptions session{};
+  Settings settings{};              ///< look, layout and recent sequences as they were left
   std::string plays_when_opened{};  ///< a sequence that plays at once; empty: none does
   std::function<void()> wake{};     ///< has the interface drawn soon; called from any thread
 };
@@ -40,8 +48,8 @@ class Desk {
   /// Opens a sequence soon; when that fails the one open stays, and the workbench says why. Of several asked
   /// for meanwhile, the last is opened.
   void open(const std::string& where);
-  /// The same with a source that is open already.
-  void show(std::shared_ptr<const FrameSource> source, const std::string& where);
+  /// The same with a place that is open already.
+  void show(DeskPlace place, const std::string& where);
 
   /// Draws the workbench, takes dropped folders, and takes in what was opened.
   void draw(UiFrame& frame);
@@ -65,17 +73,16 @@ class Desk {
 
  private:
   struct Opened {
-    std::string where, problem;
-    std::shared_ptr<const FrameSource> source;
+    std::string where, failure;
+    std::optional<DeskPlace> place;
     std::unique_ptr<Session> session;
     int configured = 0;  ///< configured_ when it began
   };
 
   WorkbenchHost host();
-  void begin_opening(const std::string& where, std::shared_ptr<const FrameSource> source);
+  void begin_opening(const std::string& where, std::optional<DeskPlace> place);
   void take_opened();
-  [[nodiscard]] std::unique_ptr<Session> make_session(const std::shared_ptr<const FrameSource>& source,
-                                                      const Config& config, const std::string& where) const;
+  [[nodiscard]] std::unique_ptr<Session> make_session(const DeskPlace& place, const std::string& where) const;
 
   DeskOptions options_;
   Workbench workbench_;
