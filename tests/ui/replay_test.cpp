@@ -143,32 +143,35 @@ size 1280 800
       "");
 }
 
-TEST_F(Replay, AClickInTheTimelineGoesThere) {
+TEST_F(Replay, AClickInTheErrorsGoesThere) {
   EXPECT_EQ(play(R"(frame 7
-point timeline 0.45 0.4
-click left
-idle
-expect frame~ 
-)",
-                 "layout {\"panel\": \"timeline\"}\n")
-                .empty(),
-            false);
-  EXPECT_EQ(play(R"(frame 7
-point timeline 0.35 0.5
+action panel.errors
+wait 0.1
+expect panels~ errors
+point errors 0.5 0.5
 click left
 idle
 expect status tracked
 )",
-                 "layout {\"panel\": \"timeline\"}\n"),
+                 "layout {\"panel\": \"input\"}\n"),
+            "");
+}
+
+TEST_F(Replay, ChoicesInALayoutAreTaken) {
+  EXPECT_EQ(play(R"(frame 5
+expect choices errors: Log scale=on
+)",
+                 R"(layout {"panel": "errors", "choices": {"Log scale": "on"}}
+)"),
             "");
 }
 
 TEST_F(Replay, WhatIsNoSequenceIsSaidAndTheOneOpenStays) {
   EXPECT_EQ(play("drop " + out_.path() + R"(
 idle
-expect title )" + std::filesystem::path(folder_.path()).filename().string() +
-                 R"(
-expect message~ rgb.txt
+expect title sequence
+expect frames 8
+expect message~ stillpoint_
 expect log.errors 1
 drop /nowhere/at/all
 idle
@@ -188,15 +191,6 @@ TEST_F(Replay, AFolderDroppedOnTheStartPageOpens) {
   opens_ = false;
   EXPECT_EQ(play("expect title none\ndrop " + folder_.path() + "\nidle\nexpect frames 8\nexpect frame 1\n"),
             "");
-}
-
-TEST_F(Replay, ASequenceThatVanishesWhileOpenIsShownAsUnreadable) {
-  // Frames 0 and 1 are read when the sequence opens; the others are not there any more by then.
-  for (int i = 4; i < kFrames; ++i) std::filesystem::remove(folder_.path(SmallSequence::colour(i)));
-  EXPECT_EQ(
-      play("key Ctrl+End\nidle\nexpect frame 7\nexpect status unreadable\nkey Home\nidle\nexpect frame 0\n"
-           "expect status initialised\n"),
-      "");
 }
 
 TEST_F(Replay, TwoReplaysGiveTheSameScreenshots) {
