@@ -12,8 +12,8 @@ void add_commands(CLI::App& app) {
   add_figures_command(app);
   add_report_command(app);
   add_view_command(app);
-  add_replay_command(app);
   add_export_command(app);
+  add_replay_command(app);
   add_config_command(app);
 }
 

@@ -24,8 +24,8 @@ void add_snapshot_command(CLI::App& app);
 void add_figures_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
-void add_replay_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 
 /// Opens the window on the generated demo: what `stillpoint` alone does.

@@ -53,6 +53,14 @@ OpenedPlace open_finished_run(const PlaceArguments& arguments) {
   return opened;
 }
 
+OpenedPlace open_sequence_at(const std::string& where, const SequenceArguments& source, Config config) {
+  OpenedPlace opened;
+  opened.config = std::move(config);
+  opened.source = source.open(where, opened.config);
+  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
+  return opened;
+}
+
 }  // namespace
 
 void PlaceArguments::add_to(CLI::App& command) {
@@ -69,11 +77,14 @@ OpenedPlace open_place(const PlaceArguments& arguments) {
     if (!value.empty())
       throw InputError(
           fmt::format("{}: goes with a finished run's folder, and {} is none", option, arguments.place));
-  OpenedPlace opened;
-  opened.config = arguments.config.config();
-  opened.source = arguments.source.open(arguments.place, opened.config);
-  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
-  return opened;
+  return open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+}
+
+OpenedPlace open_place_as(const std::string& where, const SequenceArguments& source, const Config& config) {
+  if (!is_run_folder(where)) return open_sequence_at(where, source, config);
+  PlaceArguments run;
+  run.place = where;
+  return open_finished_run(run);
 }
 
 }  // namespace stillpoint

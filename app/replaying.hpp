@@ -14,10 +14,10 @@ namespace stillpoint {
 /// a window, `replay` without a display.
 class ReplayPlan {
  public:
-  /// @param place instead of the one the recording names, where it names one; its parameters go over those
-  /// recorded
+  /// @param sequence instead of the one the recording names; empty = that one
   /// @throws InputError for a recording, sequence or parameter that cannot be used
-  ReplayPlan(const std::string& file, PlaceArguments place);
+  ReplayPlan(const std::string& file, const std::string& sequence, SequenceArguments source,
+             const ConfigArguments& config);
 
   [[nodiscard]] const RecordingStart& start() const { return recording_.start; }
   [[nodiscard]] Look look() const;
@@ -29,10 +29,13 @@ class ReplayPlan {
   void play(const ReplayShell& shell, std::function<void()> wake);
 
  private:
+  [[nodiscard]] OpenedPlace open_untimed(const std::string& where) const;
+
   Recording recording_;
-  PlaceArguments arguments_;
+  SequenceArguments source_arguments_;
   Config config_;
-  std::optional<OpenedPlace> opened_;
+  std::optional<OpenedPlace> place_;
+  std::string where_;
   std::filesystem::path out_ = ".";
 };
 

@@ -1,19 +1,18 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <thread>
 
-#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/open_place.hpp"
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
 #include "core/error.hpp"
-#include "core/run/open_run.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/window.hpp"
 #include "ui/workbench/desk.hpp"
@@ -39,11 +38,10 @@ WindowOptions window_options(const Settings& settings) {
 class Viewer {
  public:
   Viewer(const ViewArguments& arguments, const Config& config)
-      : source_(arguments.place.source),
-        settings_path_(settings_path()),
+      : settings_path_(settings_path()),
         settings_(read_settings(settings_path_, panel_names(), &problem_)),
         window_(window_options(settings_)),
-        desk_(desk_options(config)) {
+        desk_(desk_options(arguments, config)) {
     if (!problem_.empty()) desk_.workbench().say(problem_, true);
     if (!arguments.layout.empty())
       desk_.workbench().set_layout(read_layout(arguments.layout, desk_.workbench().panel_names()));
@@ -51,13 +49,11 @@ class Viewer {
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// Opens what is open already.
-  void show(OpenedPlace opened, const std::string& where) {
-    desk_.show(with_sidecar(std::move(opened), where), where);
-  }
-  /// Opens the sequence that was open when the window was last closed, if any was.
-  void open_last() {
-    if (!settings_.recent.empty()) desk_.open(settings_.recent.front());
+  [[nodiscard]] Desk& desk() { return desk_; }
+
+  /// The sequence that was open when the window was last closed; empty when none was.
+  [[nodiscard]] std::string last_sequence() const {
+    return settings_.recent.empty() ? "" : settings_.recent.front();
   }
 
   /// Records what is done from now on.
@@ -90,34 +86,13 @@ class Viewer {
     return names;
   }
 
-  /// Bookmarks and the like are kept with the sequence, or with the settings where it cannot be written to.
-  [[nodiscard]] DeskPlace with_sidecar(OpenedPlace opened, const std::string& where) const {
-    std::error_code none;
-    opened.options.sidecar = SidecarPlaces{
-        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
-        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
-    return {std::move(opened.source), std::move(opened.config), std::move(opened.options),
-            std::move(opened.problem)};
-  }
-
-  /// A finished run as it is, a sequence to be run with the config as it stands.
-  [[nodiscard]] DeskPlace open(const std::string& where, const Config& config) const {
-    OpenedPlace opened;
-    if (is_run_folder(where)) {
-      PlaceArguments run;
-      run.place = where;
-      opened = open_place(run);
-    } else {
-      opened.config = config;
-      opened.source = source_.open(where, config);
-    }
-    return with_sidecar(std::move(opened), where);
-  }
-
-  [[nodiscard]] DeskOptions desk_options(const Config& config) const {
-    return {.open_place = [this](const std::string& where, const Config& now) { return open(where, now); },
+  DeskOptions desk_options(const ViewArguments& arguments, const Config& config) const {
+    return {.open_place = [source = arguments.place.source](
+                              const std::string& where,
+                              const Config& wanted) { return open_place_as(where, source, wanted); },
             .config = config,
             .settings = settings_,
+            .marks_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences",
             .plays_when_opened = kDemo,
             .wake = [] { Window::wake(); }};
   }
@@ -146,7 +121,6 @@ class Viewer {
     write_settings(settings_path_, settings_);
   }
 
-  SequenceArguments source_;
   std::string problem_, title_;
   fs::path settings_path_;
   Settings settings_;
@@ -163,20 +137,21 @@ void view(const ViewArguments& arguments) {
   if (!arguments.place.place.empty()) place = open_place(arguments.place);
   Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
-    viewer.show(std::move(*place), arguments.place.place);
-  else
-    viewer.open_last();
+    viewer.desk().show(std::move(*place), arguments.place.place);
+  else if (const std::string last = viewer.last_sequence(); !last.empty())
+    viewer.desk().open(last);
   if (!arguments.record.empty()) viewer.record(arguments.record);
   viewer.run();
 }
 
 /// Plays a recording in a window, which forgets it all afterwards.
 void view_replay(const ViewArguments& arguments) {
-  ReplayPlan plan(arguments.replay, arguments.place);
+  ReplayPlan plan(arguments.replay, arguments.place.place, arguments.place.source, arguments.place.config);
   plan.prepare_out(arguments.out, true);
   Window window(
       WindowOptions{.width = plan.start().size[0], .height = plan.start().size[1], .look = plan.look()});
-  plan.play(replay_shell(window), [] { Window::wake(); });
+  ReplayShell shell = replay_shell(window);
+  plan.play(shell, [] { Window::wake(); });
 }
 
 }  // namespace
@@ -194,14 +169,13 @@ void add_view_command(CLI::App& app) {
   command->add_option(
       "SEQUENCE", arguments->place.place,
       "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder");
-  command->add_option("--layout", arguments->layout,
-                      "The workbench's tiles and what is chosen in them, a JSON file");
-  CLI::Option* record =
+  arguments->place.add_to(*command);
+  command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
+  const auto* record =
       command->add_option("--record", arguments->record, "Writes what is done in the window to this file");
   command->add_option("--replay", arguments->replay, "Plays a file of --record in the window")
-      ->excludes(record);
+      ->excludes(const_cast<CLI::Option*>(record));
   command->add_option("--out", arguments->out, "Folder for a replay's screenshots")->capture_default_str();
-  arguments->place.add_to(*command);
   arguments->place.source.add_to(*command);
   arguments->place.config.add_to(*command, true);
   command->callback([arguments] {

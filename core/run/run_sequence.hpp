@@ -63,7 +63,7 @@ struct RunOptions {
   bool keep_features = false;  ///< leave each record its features: 25 kB a frame, for who shows them
   bool measure_orb_unit =
       false;  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
-  std::function<void(const FrameResult&)> on_frame;  ///< called after each frame, from the calling thread
+  std::function<void(const FrameResult&)> on_frame{};  ///< called after each frame, from the calling thread
 };
 
 /// Runs the configured method over a sequence; frames are read ahead on other threads.

@@ -32,21 +32,25 @@ using ::testing::IsEmpty;
 
 constexpr int kWidth = 1000, kHeight = 700, kDemoFrames = 10, kFrames = 8;
 
-DeskPlace place_of(std::shared_ptr<const FrameSource> source, const Config& config) {
-  return {std::move(source), config, {.keep_times = false}, ""};
+/// Without times, which differ from run to run.
+OpenedPlace untimed(std::shared_ptr<const FrameSource> source, const Config& config) {
+  OpenedPlace place{.source = std::move(source), .config = config, .options = {}, .problem = {}};
+  place.options.keep_times = false;
+  return place;
 }
 
 DeskOptions desk_options() {
   Config config;
   config.run.method = "stillpoint";
   return {.open_place =
-              [](const std::string& where, const Config& now) {
+              [](const std::string& where, const Config& wanted) {
                 OpenOptions options;
                 options.frames = where.starts_with("generated:") ? kDemoFrames : 0;
-                return place_of(open_sequence(where, options), now);
+                return untimed(open_sequence(where, options), wanted);
               },
           .config = config,
           .settings = {},
+          .marks_folder = {},
           .plays_when_opened = "generated:walking_static",
           .wake = {}};
 }
@@ -260,7 +264,7 @@ TEST(Desk, AThousandSequencesLeaveNothingBehind) {
   DeskOptions options = desk_options();
   options.config.run.method = "none";
   options.open_place = [](const std::string&, const Config& config) {
-    return place_of(std::make_shared<const TinySource>(), config);
+    return untimed(std::make_shared<const TinySource>(), config);
   };
   {
     Desk desk(std::move(options));
@@ -306,7 +310,7 @@ TEST(Desk, OpensBesideTheInterface) {
   options.open_place = [opened](const std::string& where, const Config& config) {
     if (where == "bad") throw InputError("bad: is no sequence.");
     opened.wait();
-    return place_of(std::make_shared<const TinySource>(), config);
+    return untimed(std::make_shared<const TinySource>(), config);
   };
   {
     Desk desk(std::move(options));
@@ -337,7 +341,7 @@ TEST(Desk, OfSeveralAskedForTheLastIsOpened) {
   options.open_place = [&](const std::string& where, const Config& config) {
     const std::lock_guard lock(mutex);
     asked.push_back(where);
-    return place_of(std::make_shared<const TinySource>(), config);
+    return untimed(std::make_shared<const TinySource>(), config);
   };
   {
     Desk desk(std::move(options));

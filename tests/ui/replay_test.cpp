@@ -30,10 +30,14 @@ class Replay : public ::testing::Test {
     {
       Desk desk({.open_place =
                      [](const std::string& where, const Config& config) {
-                       return DeskPlace{open_sequence(where), config, {.keep_times = false}, ""};
+                       OpenedPlace place{
+                           .source = open_sequence(where), .config = config, .options = {}, .problem = {}};
+                       place.options.keep_times = false;
+                       return place;
                      },
                  .config = {},
                  .settings = {},
+                 .marks_folder = {},
                  .plays_when_opened = {},
                  .wake = {}});
       if (!layout.empty())

@@ -64,6 +64,7 @@ class RunTrack {
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
   [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
+  /// Of the map, and after them those that left it because they moved.
   [[nodiscard]] std::vector<SavedPoint> points() const;
 
   /// Frames that odometry has seen here: all that are processed, but for a recorded run.

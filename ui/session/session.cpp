@@ -156,4 +156,16 @@ void Session::request_speed(double frames_per_second) {
   frames_per_second_ = std::clamp(frames_per_second, 0.1, 1000.0);
 }
 
+bool Session::idle() const {
+  const std::lock_guard lock(mutex_);
+  return resting_ && requests_.empty();
+}
+
+void Session::rest(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  resting_ = true;
+  asked_.wait(lock, stop, [this] { return !requests_.empty(); });
+  resting_ = false;
+}
+
 }  // namespace stillpoint

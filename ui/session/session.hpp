@@ -68,11 +68,11 @@ class Session {
 
   /// Starts it. `on_change` is called from it whenever view() has changed.
   void start(std::function<void()> on_change = {});
-  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
-  [[nodiscard]] bool idle() const;
   void request_frame(int frame) { request(request::GoTo{frame}); }
   void request_play(bool play) { request(request::Play{play}); }  ///< from the frame shown on
   void request_speed(double frames_per_second);
+  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
+  [[nodiscard]] bool idle() const;
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config) { request(request::RunAll{config}); }
 
@@ -113,12 +113,12 @@ class Session {
   void carry_out(const request::SavePreset& wanted);
 
   void work(const std::stop_token& stop);
-  void rest(const std::stop_token& stop);
   void attempt(const std::function<void()>& work);
   [[nodiscard]] bool take_requests();
   [[nodiscard]] bool at_rest() const;
   [[nodiscard]] int next_while_playing() const;
   void stop_playing_where_wanted();
+  void rest(const std::stop_token& stop);
   void work_step();
   void settle();
   // What is done when nothing else is asked for, a frame at a time.

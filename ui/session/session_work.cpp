@@ -161,18 +161,6 @@ void Session::settle() {
   publish();
 }
 
-bool Session::idle() const {
-  const std::lock_guard lock(mutex_);
-  return resting_ && requests_.empty();
-}
-
-void Session::rest(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  resting_ = true;
-  asked_.wait(lock, stop, [this] { return !requests_.empty(); });
-  resting_ = false;
-}
-
 void Session::work(const std::stop_token& stop) {
   target_ = std::max(target_, current_->index);
   if (current_->record == nullptr) target_ = 0;

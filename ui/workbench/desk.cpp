@@ -76,13 +76,19 @@ WorkbenchHost Desk::host() {
           .open = [this](const std::string& where) { open(where); },
           .request =
               [this](SessionRequest wanted) {
+                // What is opened next is run as this one is.
                 if (const auto* all = std::get_if<request::RunAll>(&wanted)) options_.config = all->config;
                 if (session_) session_->request(std::move(wanted));
               }};
 }
 
-std::unique_ptr<Session> Desk::make_session(const DeskPlace& place, const std::string& where) const {
-  auto session = std::make_unique<Session>(place.source, place.config, place.options);
+std::unique_ptr<Session> Desk::make_session(const OpenedPlace& place, const std::string& where) const {
+  SessionOptions options = place.options;
+  std::error_code none;
+  if (options_.marks_folder)
+    options.sidecar = SidecarPlaces{.folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+                                    .user_folder = *options_.marks_folder};
+  auto session = std::make_unique<Session>(place.source, place.config, options);
   session->start(options_.wake ? options_.wake : [] {});
   // What moves shows from the first frame that has another to be compared with.
   session->request_frame(place.config.motion.reference_gap);
@@ -90,10 +96,10 @@ std::unique_ptr<Session> Desk::make_session(const DeskPlace& place, const std::s
   return session;
 }
 
-void Desk::begin_opening(const std::string& where, std::optional<DeskPlace> place) {
+void Desk::begin_opening(const std::string& where, std::optional<OpenedPlace> place) {
   workbench_.set_opening(where);
   Opened begun{.where = where,
-               .failure = {},
+               .problem = {},
                .place = std::move(place),
                .session = nullptr,
                .configured = configured_};
@@ -103,7 +109,7 @@ void Desk::begin_opening(const std::string& where, std::optional<DeskPlace> plac
           if (!opened.place) opened.place = options_.open_place(opened.where, config);
           opened.session = make_session(*opened.place, opened.where);
         } catch (const std::exception& error) {
-          opened.failure = error.what();
+          opened.problem = error.what();
         }
         if (options_.wake) options_.wake();
         return std::move(opened);
@@ -117,7 +123,7 @@ void Desk::open(const std::string& where) {
     begin_opening(where, std::nullopt);
 }
 
-void Desk::show(DeskPlace place, const std::string& where) {
+void Desk::show(OpenedPlace place, const std::string& where) {
   if (opening_.valid()) opening_.get();
   given_ = place.source;
   opened_from_ = where;
@@ -132,22 +138,23 @@ void Desk::take_opened() {
   if (next_) {
     // Another was asked for meanwhile: this one ends unseen.
     begin_opening(*std::exchange(next_, std::nullopt), std::nullopt);
-  } else if (!opened.failure.empty()) {
-    workbench_.say(opened.failure, true);
+  } else if (!opened.problem.empty()) {
+    workbench_.say(opened.problem, true);
     return;
   } else {
     std::swap(session_, opened.session);
-    if (opened.configured != configured_)
-      session_->request_config(options_.config);
-    else
+    // A finished run comes with a config of its own.
+    if (opened.place->options.recorded)
       options_.config = opened.place->config;
+    else if (opened.configured != configured_)
+      session_->request_config(options_.config);
     opened_from_ = opened.where;
     remember(options_.settings.recent, lasting_name(opened.where));
     workbench_.set_recent(options_.settings.recent);
-    const DeskPlace& place = *opened.place;
-    workbench_.say(fmt::format("{}: {} frames", place.source->name(), place.source->size()));
-    for (const std::string& warning : place.source->warnings()) workbench_.say(warning);
-    if (!place.problem.empty()) workbench_.say(place.problem, !place.options.no_images.empty());
+    const FrameSource& source = *opened.place->source;
+    workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
+    for (const std::string& warning : source.warnings()) workbench_.say(warning);
+    if (!opened.place->options.no_images.empty()) workbench_.say(opened.place->options.no_images, true);
   }
   // Its worker finishes the frame at hand first, which must not hold up the interface.
   if (opened.session)

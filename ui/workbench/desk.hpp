@@ -8,28 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "ui/session/session.hpp"
+#include "ui/session/opened_place.hpp"
 #include "ui/shell/recording.hpp"
 #include "ui/workbench/settings.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {
 
-/// A sequence or a finished run, open and ready for a session.
-struct DeskPlace {
-  std::shared_ptr<const FrameSource> source;
-  Config config;
-  SessionOptions options;
-  std::string problem;  ///< what is missing though it could be opened, one sentence; empty when all is well
-};
-
 /// What a Desk works with.
 struct DeskOptions {
-  /// Opens a place: a folder, generated:KIND, a run's folder; called on threads of its own, with the config
-  /// as it stands. Throws InputError.
-  std::function<DeskPlace(const std::string&, const Config&)> open_place;
+  /// Opens a folder, a finished run's too, or generated:KIND, to be run with a config; called on threads of
+  /// its own. Throws InputError.
+  std::function<OpenedPlace(const std::string& where, const Config& config)> open_place;
   Config config{};
-  Settings settings{};              ///< look, layout and recent sequences as they were left
+  Settings settings{};  ///< look, layout and recent sequences as they were left
+  /// For marks in sequences that lie where nothing can be written; nothing: no marks are kept anywhere.
+  std::optional<std::filesystem::path> marks_folder{};
   std::string plays_when_opened{};  ///< a sequence that plays at once; empty: none does
   std::function<void()> wake{};     ///< has the interface drawn soon; called from any thread
 };
@@ -48,8 +42,8 @@ class Desk {
   /// Opens a sequence soon; when that fails the one open stays, and the workbench says why. Of several asked
   /// for meanwhile, the last is opened.
   void open(const std::string& where);
-  /// The same with a place that is open already.
-  void show(DeskPlace place, const std::string& where);
+  /// The same with what is open already.
+  void show(OpenedPlace place, const std::string& where);
 
   /// Draws the workbench, takes dropped folders, and takes in what was opened.
   void draw(UiFrame& frame);
@@ -73,16 +67,17 @@ class Desk {
 
  private:
   struct Opened {
-    std::string where, failure;
-    std::optional<DeskPlace> place;
+    std::string where, problem;
+    std::optional<OpenedPlace> place;
     std::unique_ptr<Session> session;
     int configured = 0;  ///< configured_ when it began
   };
 
   WorkbenchHost host();
-  void begin_opening(const std::string& where, std::optional<DeskPlace> place);
+  void begin_opening(const std::string& where, std::optional<OpenedPlace> place);
   void take_opened();
-  [[nodiscard]] std::unique_ptr<Session> make_session(const DeskPlace& place, const std::string& where) const;
+  [[nodiscard]] std::unique_ptr<Session> make_session(const OpenedPlace& place,
+                                                      const std::string& where) const;
 
   DeskOptions options_;
   Workbench workbench_;

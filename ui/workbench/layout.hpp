@@ -15,7 +15,7 @@ struct LayoutNode {
   enum class Division { kColumns, kRows };
   std::string panel;  ///< name of the panel; empty with children
   Division division = Division::kColumns;
-  std::vector<LayoutNode> children;
+  std::vector<LayoutNode> children{};
   std::map<std::string, std::string> choices{};  ///< of the panel's controls, as PanelChoices has them
   double share = 1.0;                            ///< of the parent's extent; siblings' shares add up to 1
 
