@@ -12,6 +12,8 @@ namespace {
 
 // Design px.
 constexpr float kGap = 5.0F, kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
+// In smaller tiles than these, controls are small too: the picture matters more.
+constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
 constexpr ImGuiWindowFlags kRootFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -55,7 +57,17 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
                         ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
+  const bool compact = rect.width < kCompactWidth * frame.scale || rect.height < kCompactHeight * frame.scale;
+  if (compact) {
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5.0F * frame.scale, 2.0F * frame.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {5.0F * frame.scale, 3.0F * frame.scale});
+  }
   if (visible) panel.draw(frame, session, wanted);
+  if (compact) {
+    ImGui::PopStyleVar(2);
+    ImGui::PopFont();
+  }
   ImGui::EndChild();
 }
 
