@@ -98,6 +98,13 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
+  /// Whether a panel holds frames against the ones before them.
+  [[nodiscard]] bool compares_frames() const {
+    return std::any_of(pictures_.panels.begin(), pictures_.panels.end(),
+                       [](const Panel* panel) { return panel->name() == "stages"; }) ||
+           (pictures_.workbench && contains(workbench_.layout(), "stages"));
+  }
+
   /// Writes FRAME_PANEL.png for each picture of the frame shown. @returns how many
   int paint(const SessionView& view, const fs::path& folder) {
     int written = 0;
@@ -143,6 +150,7 @@ void snapshot(const SnapshotArguments& arguments) {
         progress.advance(std::string(to_string(record.status)));
         throw_if_interrupted();
       });
+      if (painter.compares_frames()) session.complete();
       written += painter.paint(*session.view(), arguments.out);
       list += fmt::format("{:06d} {:.6f} {}\n", frame, session.view()->current->frame.timestamp,
                           to_string(session.view()->current->record->status));

@@ -110,7 +110,8 @@ class Viewer {
                   config_ = config;
                   session_->request_config(config);
                 },
-            .open = [this](const std::string& where) { open(where); }};
+            .open = [this](const std::string& where) { open(where); },
+            .compare = [this](bool compare) { session_->request_comparison(compare); }};
   }
 
   void draw(UiFrame& frame) {

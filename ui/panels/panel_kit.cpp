@@ -28,6 +28,17 @@ void tooltip_of_last(const char* tooltip) {
 
 }  // namespace
 
+const PairGeometry& PanelsShared::geometry(const SessionView& session) {
+  const auto same = [](const auto& weak, const auto& strong) {
+    return !weak.owner_before(strong) && !strong.owner_before(weak);
+  };
+  if (same(geometry_of_, session.current) && same(geometry_run_, session.run)) return geometry_;
+  geometry_ = pair_geometry(*session.current, *session.run, session.camera, session.config);
+  geometry_of_ = session.current;
+  geometry_run_ = session.run;
+  return geometry_;
+}
+
 // Controls
 // --------------------------------------------------------------------------------------------------------
 
@@ -43,14 +54,24 @@ float Controls::text_width(const char* label) const { return ImGui::CalcTextSize
 bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
                       const char* tooltip) {
   const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
+  const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
   float width = 0.0F;
-  for (const std::string& name : names) width += text_width(name.c_str()) + 2.0F * padding + gap;
+  for (const std::string& name : names) width += width_of(name) + gap;
   place(width - gap);
+  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  float right = ImGui::GetCursorScreenPos().x;
   bool changed = false;
   ImGui::PushID(id);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-    if (i > 0) ImGui::SameLine();
+    // A choice wider than its panel goes on in the next line rather than out of sight.
+    const float next = right + width_of(names[static_cast<std::size_t>(i)]);
+    if (i > 0 && next <= edge) {
+      ImGui::SameLine();
+    } else if (i > 0) {
+      right = ImGui::GetCursorScreenPos().x;
+    }
+    right += width_of(names[static_cast<std::size_t>(i)]) + gap;
     const bool on = i == chosen;
     if (on) {
       const Rgb ground = mix(frame_.theme.raised, frame_.theme.accent, 0.45F);
@@ -66,6 +87,7 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   }
   ImGui::PopStyleVar();
   ImGui::PopID();
+  right_ = right - gap;
   return changed;
 }
 

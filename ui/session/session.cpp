@@ -6,6 +6,7 @@
 #include <future>
 
 #include "core/motion/detect_motion.hpp"
+#include "ui/session/frame_neighbours.hpp"
 
 namespace stillpoint {
 namespace {
@@ -99,10 +100,11 @@ FrameView Session::frame_view(int index) {
     view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
   view.depth_motion = std::move(extras.depth_motion);
   view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
+  if (!options_.keep_times) clear_times(view);
   return view;
 }
 
-void Session::show(int frame) {
+std::shared_ptr<const FrameView> Session::held_view(int frame, std::shared_ptr<const FrameView> before) {
   /// A frame's view and the record it points to, kept alive together.
   struct Shown {
     FrameView view;
@@ -113,9 +115,28 @@ void Session::show(int frame) {
   if (frame < run_->processed()) {
     shown->record = run_->record(frame);
     shown->view.record = &shown->record;
+    shown->view.history = history_of(frame, [this](int index) { return run_->record(index); });
+    shown->view.before = std::move(before);
   }
   const FrameView* view = &shown->view;
-  current_ = std::shared_ptr<const FrameView>(std::move(shown), view);
+  return {std::move(shown), view};
+}
+
+void Session::show(int frame) {
+  // Going forward, the frame before is the one shown until now.
+  const bool follows = current_ && current_->index + 1 == frame && current_->record != nullptr;
+  current_ = held_view(frame, follows ? alone(*current_) : nullptr);
+  publish();
+}
+
+bool Session::lacks_before() const {
+  return current_->record != nullptr && current_->index > 0 && current_->before == nullptr;
+}
+
+void Session::complete() {
+  if (!lacks_before()) return;
+  const int frame = current_->index;
+  current_ = held_view(frame, alone(*held_view(frame - 1, nullptr)));
   publish();
 }
 
@@ -191,6 +212,12 @@ void Session::request_speed(double frames_per_second) {
   frames_per_second_ = std::clamp(frames_per_second, 0.1, 1000.0);
 }
 
+void Session::request_comparison(bool wanted) {
+  if (compares_.exchange(wanted) == wanted) return;
+  const std::lock_guard lock(mutex_);
+  asked_.notify_all();
+}
+
 void Session::request_config(const Config& config) {
   const std::lock_guard lock(mutex_);
   requests_.config = config;
@@ -239,8 +266,14 @@ void Session::work(const std::stop_token& stop) {
       const bool at_rest = current_->index == target_ && current_->record != nullptr;
       if (!playing_ && at_rest) {
         if (asked) publish();
+        if (compares_ && lacks_before()) {
+          complete();
+          continue;
+        }
         std::unique_lock lock(mutex_);
-        asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
+        asked_.wait(lock, stop, [this] {
+          return requests_.frame || requests_.play || requests_.config || (compares_ && lacks_before());
+        });
         continue;
       }
       if (playing_ && at_rest && Clock::now() < due) {

@@ -50,6 +50,9 @@ class Session {
   /// @param on_frame told the record of each frame newly processed
   void go_to(int frame, const std::function<void(const FrameRecord&)>& on_frame = {});
 
+  /// Works out FrameView::before of the frame shown, where it is not at hand. Not beside a worker.
+  void complete();
+
   /// A record of the session's run with all its features. Not beside a worker.
   [[nodiscard]] FrameRecord record(int index) const { return run_->record(index); }
 
@@ -60,6 +63,8 @@ class Session {
   void request_frame(int frame);  ///< as go_to(), soon
   void request_play(bool play);   ///< frame after frame from the one shown on
   void request_speed(double frames_per_second);
+  /// Whether the frame before the one shown is wanted as well: made when there is nothing else to do.
+  void request_comparison(bool wanted);
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config);
 
@@ -82,6 +87,9 @@ class Session {
   void show(int frame);
   void publish();
   [[nodiscard]] FrameView frame_view(int index);
+  [[nodiscard]] std::shared_ptr<const FrameView> held_view(int index,
+                                                           std::shared_ptr<const FrameView> before);
+  [[nodiscard]] bool lacks_before() const;
   [[nodiscard]] Extras extras_of(int index);
   void keep(Extras extras);
   [[nodiscard]] RunTrack::ReadFrame reader();
@@ -109,7 +117,8 @@ class Session {
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
-  std::jthread worker_;  // last: it ends before what it works with
+  std::atomic<bool> compares_ = false;  // FrameView::before is wanted
+  std::jthread worker_;                 // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

@@ -162,7 +162,7 @@ LayoutNode default_layout(std::string_view method) {
               {tile(0.25, "features_after"), tile(0.25, "forward_mask"), tile(0.25, "backward_mask"),
                tile(0.25, found)}),
        divide(0.55, kColumns,
-              {divide(0.25, kRows, {tile(0.6, beside), tile(0.4, "inspector")}), tile(0.39, "trajectory"),
+              {divide(0.25, kRows, {tile(0.47, beside), tile(0.53, "inspector")}), tile(0.39, "trajectory"),
                divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
 }
 
