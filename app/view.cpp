@@ -3,13 +3,16 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/open_place.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/run/open_run.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/session/session.hpp"
 #include "ui/shell/window.hpp"
@@ -23,11 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDemo = "generated:walking_static";
 
-struct ViewArguments {
-  std::string sequence;
-  ConfigArguments config;
-  SequenceArguments source;
-};
+using ViewArguments = PlaceArguments;
 
 WindowOptions window_options(const Settings& settings) {
   return {.width = settings.window_size[0], .height = settings.window_size[1], .look = settings.look};
@@ -53,16 +52,27 @@ class Viewer {
   /// Opens a sequence; when that fails the one open stays, and the window says why.
   void open(const std::string& where) {
     try {
-      show(arguments_.source.open(where, config_), where);
+      if (is_run_folder(where)) {
+        PlaceArguments run;
+        run.place = where;
+        show(open_place(run), where);
+      } else {
+        show(open_sequence_at(where), where);
+      }
     } catch (const InputError& error) {
       workbench_.say(error.what(), true);
     }
   }
 
-  /// Shows an open sequence. @param where it was opened from
-  void show(std::shared_ptr<const FrameSource> source, const std::string& where) {
+  /// Shows an open sequence or a finished run. @param where it was opened from
+  void show(OpenedPlace place, const std::string& where) {
+    config_ = place.config;
     session_.reset();
-    session_ = std::make_unique<Session>(std::move(source), config_);
+    std::error_code none;
+    place.options.sidecar = SidecarPlaces{
+        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
+    session_ = std::make_unique<Session>(std::move(place.source), config_, place.options);
     session_->start([] { Window::wake(); });
     // What moves shows from the first frame that has another to be compared with.
     session_->request_frame(config_.motion.reference_gap);
@@ -72,8 +82,7 @@ class Viewer {
     remember(settings_.recent,
              fs::exists(where, ignored) ? fs::absolute(where).lexically_normal().string() : where);
     workbench_.set_recent(settings_.recent);
-    const auto& warnings = session_->source().warnings();
-    workbench_.say(warnings.empty() ? "" : warnings.front());
+    workbench_.say(place.problem, !place.options.no_images.empty());
   }
 
   /// The sequence that was open when the window was last closed; empty when none was.
@@ -95,6 +104,15 @@ class Viewer {
   }
 
  private:
+  /// A sequence, to be run with the config as it stands now.
+  [[nodiscard]] OpenedPlace open_sequence_at(const std::string& where) const {
+    OpenedPlace opened;
+    opened.config = config_;
+    opened.source = arguments_.source.open(where, config_);
+    if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
+    return opened;
+  }
+
   static std::vector<std::string> names_of(const std::vector<std::unique_ptr<Panel>>& panels) {
     std::vector<std::string> names;
     for (const auto& panel : panels) names.push_back(panel->name());
@@ -111,6 +129,7 @@ class Viewer {
                   session_->request_config(config);
                 },
             .open = [this](const std::string& where) { open(where); },
+            .request = [this](SessionRequest wanted) { session_->request(std::move(wanted)); },
             .compare = [this](bool compare) { session_->request_comparison(compare); }};
   }
 
@@ -141,13 +160,12 @@ class Viewer {
 
 /// Begins with the sequence named, else with the one open last, else with the start page.
 void view(const ViewArguments& arguments) {
-  const Config config = arguments.config.config();
   // What was named and cannot be opened is told before there is a window.
-  std::shared_ptr<const FrameSource> source;
-  if (!arguments.sequence.empty()) source = arguments.source.open(arguments.sequence, config);
-  Viewer viewer(arguments, config);
-  if (source)
-    viewer.show(std::move(source), arguments.sequence);
+  std::optional<OpenedPlace> place;
+  if (!arguments.place.empty()) place = open_place(arguments);
+  Viewer viewer(arguments, place ? place->config : arguments.config.config());
+  if (place)
+    viewer.show(std::move(*place), arguments.place);
   else if (const std::string last = viewer.last_sequence(); !last.empty())
     viewer.open(last);
   viewer.run();
@@ -157,7 +175,7 @@ void view(const ViewArguments& arguments) {
 
 void view_demo() {
   ViewArguments arguments;
-  arguments.sequence = kDemo;
+  arguments.place = kDemo;
   view(arguments);
 }
 
@@ -165,8 +183,10 @@ void add_view_command(CLI::App& app) {
   const auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Opens the workbench in a window, on a sequence or as it was left");
-  command->add_option("SEQUENCE", arguments->sequence,
-                      "A TUM RGB-D folder, a folder of colour frames, or generated:KIND");
+  command->add_option(
+      "SEQUENCE", arguments->place,
+      "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder");
+  arguments->add_to(*command);
   arguments->source.add_to(*command);
   arguments->config.add_to(*command, true);
   command->callback([arguments] { view(*arguments); });

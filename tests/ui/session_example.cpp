@@ -172,4 +172,96 @@ SessionView handmade_example() {
   return view;
 }
 
+namespace {
+
+/// The run again, parted from it at a frame by a mask, counts and a pose of its own.
+GhostView handmade_ghost(const SessionView& session, const std::string& name, int parts, double millimetres) {
+  GhostView ghost;
+  ghost.name = name;
+  ghost.config.motion.border_px = 7;
+  auto run = handmade_run("paper", millimetres);
+  for (FrameRecord& record : run->records) {
+    record.world_from_camera.translation().x() = 0.01 * record.index;
+    if (record.index < parts) continue;
+    record.world_from_camera.translation().y() = 0.002 * (record.index - parts + 1);
+    record.inliers -= 40;
+    record.mask_share *= 0.5;
+  }
+  auto current = std::make_shared<FrameView>(*session.current);
+  current->mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  cv::circle(current->mask, {220, 120}, 40, 255, cv::FILLED);
+  current->record = &run->records[static_cast<std::size_t>(current->index)];
+  ghost.current = current;
+  ghost.diverged = parts;
+  ghost.run = run;
+  return ghost;
+}
+
+}  // namespace
+
+SessionView debug_example() {
+  SessionView view = handmade_example();
+  auto run = std::make_shared<RunView>(*view.run);
+  for (FrameRecord& record : run->records) {
+    record.world_from_camera.translation().x() = 0.01 * record.index;
+    run->trajectory.push_back({record.timestamp, record.world_from_camera});
+  }
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->record = &run->records[24];
+  view.run = run;
+  view.current = current;
+  DebugView& debug = view.debug;
+  debug.bookmarks = {{5, "the walker comes in"}, {24, ""}, {31, "lost soon after"}};
+  debug.breakpoints = {
+      {{"inliers < 215", true}, "", 0, {8, 9, 10, 19, 20, 21, 30, 31, 32}},
+      {{"lost", true}, "", 0, {18}},
+      {{"rpee > 2 cm", true}, "column 1: there is no figure 'rpee'; perhaps rpe is meant", 0, {}},
+      {{"keyframe", false}, "", 0, {0, 9, 18, 27, 36}}};
+  debug.stopped_by = 0;
+  debug.span = FrameSpan{10, 20};
+  debug.ghosts.push_back(handmade_ghost(view, "motion.border_px 7", 12, 2.5));
+  debug.ghosts.push_back(handmade_ghost(view, "method none", 20, 3.5));
+  debug.ghosts.back().busy = true;
+  for (int i = 1; i < 40; ++i) {
+    if (i == 18) continue;
+    RemovalError error{.frame = i,
+                       .with_removal_m = 0.001 * (2 + i % 5),
+                       .without_removal_m = 0.001 * (2 + i % 5) + 0.004 * (i % 3),
+                       .told_m = 0.0015};
+    error.helped = i % 3 != 0;
+    if (i % 13 == 0) {
+      error.with_removal_m = error.without_removal_m + 0.006;
+      error.helped = false;
+      error.hurt = true;
+    }
+    debug.removal.push_back(error);
+  }
+  return view;
+}
+
+SessionView long_example(int frames, int worst) {
+  SessionView view = handmade_example();
+  auto run = std::make_shared<RunView>();
+  run->name = "paper";
+  for (int i = 0; i < frames; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.timestamp = i / 30.0;
+    record.status = i == 0 ? FrameStatus::initialised : FrameStatus::tracked;
+    record.estimated = true;
+    record.inliers = i == worst ? 12 : 200 + 37 * i % 60;
+    record.mask_share = 0.001 * (i % 70);
+    record.features_kept = 400;
+    record.keyframe = i % 20 == 0;
+    run->records.push_back(record);
+  }
+  auto current = std::make_shared<FrameView>(*view.current);
+  current->record = &run->records[24];
+  view.current = current;
+  view.run = run;
+  view.baseline = nullptr;
+  view.frame_count = view.processed = frames;
+  return view;
+}
+
 }  // namespace stillpoint::testing

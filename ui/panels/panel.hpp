@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 
@@ -18,6 +19,7 @@ struct PanelActions {
   std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
   std::vector<SessionRequest> requests;                             ///< in order
   bool compare_frames = false;                                      ///< FrameView::before is wanted
+  std::optional<LaneFigure> worst_by;                               ///< what "worst" is to go by from now on
 };
 
 /// Something a panel can have done, by menu, key and palette, whether or not it is drawn.

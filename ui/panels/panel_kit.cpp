@@ -53,6 +53,7 @@ float Controls::text_width(const char* label) const { return ImGui::CalcTextSize
 
 bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
                       const char* tooltip) {
+  if (!frame_.controls) return false;
   const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
   const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
   float width = 0.0F;
@@ -92,6 +93,7 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
 }
 
 bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
+  if (!frame_.controls) return false;
   place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
   const bool changed = ImGui::Checkbox(label, &on);
   tooltip_of_last(tooltip);
@@ -99,6 +101,7 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
+  if (!frame_.controls) return false;
   const float name = text_width(label);
   place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
@@ -115,6 +118,7 @@ void Controls::round(int rounds, int& chosen) {
 }
 
 bool Controls::button(const char* label, const char* tooltip, bool* held) {
+  if (!frame_.controls) return false;
   place(text_width(label) + 2.0F * ImGui::GetStyle().FramePadding.x);
   const bool pressed = ImGui::Button(label);
   if (held != nullptr) *held = ImGui::IsItemActive();
@@ -160,6 +164,10 @@ void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radi
     case Sign::kDiamond:
       list.AddQuadFilled({low.x, centre.y}, {centre.x, low.y}, {high.x, centre.y}, {centre.x, high.y},
                          colour);
+      return;
+    case Sign::kFlag:
+      list.AddLine({low.x, low.y}, {low.x, high.y}, colour, thin);
+      list.AddTriangleFilled({low.x, low.y}, {high.x, low.y + 0.6F * r}, {low.x, low.y + 1.2F * r}, colour);
       return;
     case Sign::kLine:
       list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
@@ -327,6 +335,20 @@ ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb 
                                             to_u32(frame.theme.background, 0.82F), 3.0F * frame.scale);
   small_text(frame, {at.x + pad, at.y + 0.25F * pad}, text, colour);
   return size;
+}
+
+void draw_preview_badge(const UiFrame& frame, const SessionView& session, ImVec2 corner) {
+  if (!shows_preview(session)) return;
+  const std::string text = "Preview";
+  const ImVec2 extent = small_extent(frame, text);
+  const float pad = 5.0F * frame.scale, inset = 6.0F * frame.scale;
+  const ImVec2 high{std::round(corner.x - inset), std::round(corner.y + inset + extent.y + pad)};
+  const ImVec2 low{high.x - extent.x - 2.0F * pad, high.y - extent.y - pad};
+  // Dark ink on the warning's colour reads on any picture and in either theme.
+  const Rgb ground = role_colour(Role::kWarning, frame.theme.name);
+  const Rgb ink = frame.theme.name == ThemeName::kDark ? okabe_ito::kBlack : Rgb{0xFF, 0xFF, 0xFF};
+  ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(ground), 3.0F * frame.scale);
+  small_text(frame, {low.x + pad, low.y + 0.5F * pad}, text, ink);
 }
 
 }  // namespace stillpoint

@@ -41,7 +41,7 @@ class StagesPanel final : public NamedPanel {
              .title = "Next stage of the frame",
              .group = "Playback",
              .icon = icons::kChevronDown,
-             .keys = {{Key::kPeriod, {}}},
+             .keys = {{Key::kDown, {}}},
              .repeats = true,
              .shows = true,
              .run = step(1)},
@@ -49,7 +49,7 @@ class StagesPanel final : public NamedPanel {
              .title = "Previous stage of the frame",
              .group = "Playback",
              .icon = icons::kChevronUp,
-             .keys = {{Key::kComma, {}}},
+             .keys = {{Key::kUp, {}}},
              .repeats = true,
              .shows = true,
              .run = step(-1)}};
@@ -116,8 +116,8 @@ class StagesPanel final : public NamedPanel {
   void draw_controls(const UiFrame& frame, const SessionView& session, PanelActions& actions,
                      std::size_t current) {
     Controls controls(frame);
-    if (controls.button(icons::kChevronUp, "The stage before (,)")) step_by(session, actions, -1);
-    if (controls.button(icons::kChevronDown, "The next stage (.)")) step_by(session, actions, 1);
+    if (controls.button(icons::kChevronUp, "The stage before (Up)")) step_by(session, actions, -1);
+    if (controls.button(icons::kChevronDown, "The next stage (Down)")) step_by(session, actions, 1);
     const StageInfo& stage = stages_[current];
     if (stage.two_ways) controls.choice("direction", {"Forward", "Backward"}, direction_);
     controls.choice("against", {kAgainst.begin(), kAgainst.end()}, against_,

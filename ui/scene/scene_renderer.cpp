@@ -139,7 +139,9 @@ void SceneRenderer::upload_paths(const SceneData& scene, const SceneView& view, 
     paths_[i].tolerance_m = tolerance;
     ScenePath path{.name = "",
                    .role = scene.paths[i].role,
-                   .positions = simplified(scene.paths[i].positions, tolerance)};
+                   .positions = simplified(scene.paths[i].positions, tolerance),
+                   .colour = scene.paths[i].colour,
+                   .dash_m = scene.paths[i].dash_m};
     fill(paths_[i].batch, Layout::kSegments, path_segments(path, theme));
   }
 }

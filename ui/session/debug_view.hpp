@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/config.hpp"
+#include "core/run/removal_errors.hpp"
 
 namespace stillpoint {
 
@@ -62,16 +63,6 @@ struct GhostView {
   std::optional<int> diverged;               ///< first frame whose record differs from the session's own run
 };
 
-/// Errors of one frame's step from the pose before, solved three ways from the same map, against the truth:
-/// translational, m. NaN where it was not, or cannot be, solved.
-struct RemovalError {
-  int frame = 0;
-  double with_removal_m = 0.0;
-  double without_removal_m = 0.0;
-  double told_m = 0.0;  ///< with the true mask
-  bool hurt = false;    ///< removal made it worse by more than the noise of such steps
-};
-
 /// The debugger's part of SessionView.
 struct DebugView {
   std::vector<Bookmark> bookmarks;  ///< by frame
@@ -85,6 +76,7 @@ struct DebugView {
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
   double preview_ms = 0.0;                   ///< what computing it took
+  std::string notice;                        ///< what was written last, one sentence
   std::string run_hash;                      ///< of all records so far, as `stillpoint run` prints it
   std::string sequence_hash;                 ///< of the sequence, as sidecar and run folder keep it
 };

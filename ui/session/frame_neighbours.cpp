@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ui/session/shown_run.hpp"
+
 namespace stillpoint {
 
 std::vector<std::shared_ptr<const FrameRecord>> history_of(int index,
@@ -13,20 +15,11 @@ std::vector<std::shared_ptr<const FrameRecord>> history_of(int index,
 }
 
 std::shared_ptr<const FrameView> alone(const FrameView& view) {
-  struct Kept {
-    FrameView view;
-    FrameRecord record;
-  };
-  auto kept = std::make_shared<Kept>();
-  kept->view = view;
-  kept->view.before.reset();
-  kept->view.history.clear();
-  if (view.record != nullptr) {
-    kept->record = *view.record;
-    kept->view.record = &kept->record;
-  }
-  const FrameView* held = &kept->view;
-  return {std::move(kept), held};
+  FrameView kept = view;
+  kept.before.reset();
+  kept.history.clear();
+  kept.record = nullptr;
+  return hold(std::move(kept), view.record != nullptr ? std::optional(*view.record) : std::nullopt);
 }
 
 void clear_times(FrameView& view) {

@@ -62,4 +62,15 @@ struct SessionView {
   std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
 };
 
+/// Whether the sliders' config, not the run's, made the motion stages that are shown.
+[[nodiscard]] inline bool shows_preview(const SessionView& session) {
+  return session.debug.preview != nullptr && session.debug.preview->index == session.current->index;
+}
+
+/// What panels of a frame's images draw: the frame shown, its motion stages under the sliders' config while
+/// there is a preview of it. Its record is the run's own.
+[[nodiscard]] inline const std::shared_ptr<const FrameView>& shown_frame(const SessionView& session) {
+  return shows_preview(session) ? session.debug.preview : session.current;
+}
+
 }  // namespace stillpoint

@@ -32,6 +32,7 @@ struct UiFrame {
   ImVec2 size;                               ///< px, of the whole
   float scale = 1.0F;                        ///< px a design pixel: multiply lengths by it
   double time_s = 0.0;                       ///< of the interface's own clock; offscreen it ticks by frames
+  bool controls = true;                      ///< false in pictures for print: panels leave out their buttons
   std::vector<std::string> dropped_files{};  ///< since the frame before
   bool close_requested = false;              ///< the person closes the window
   Look wanted_look{};                        ///< from the next frame on

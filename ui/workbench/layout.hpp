@@ -69,6 +69,15 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
 /// What a newcomer sees of a run by this method.
 [[nodiscard]] LayoutNode default_layout(std::string_view method = "paper");
 
+/// A layout for one kind of work.
+struct NamedLayout {
+  std::string_view name, title;  ///< "failures", "Failures"
+  LayoutNode (*make)(std::string_view method);
+};
+
+/// Inspect (the default layout), Motion, Compare, Failures.
+[[nodiscard]] std::vector<NamedLayout> named_layouts();
+
 /// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input"}, {"share": 0.6, "rows": […]}]}.
 [[nodiscard]] std::string to_json(const LayoutNode& root);
 

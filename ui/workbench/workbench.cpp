@@ -254,6 +254,7 @@ void Workbench::draw_tile_menu(const std::string& name) {
 }
 
 void Workbench::carry_out(const PanelActions& wanted) {
+  if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
   compare_frames_ |= wanted.compare_frames;
   if (host_.request)

@@ -7,6 +7,7 @@
 
 #include "ui/panels/panel.hpp"
 #include "ui/session/actions.hpp"
+#include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"
@@ -69,7 +70,13 @@ class Workbench {
   void add_view_actions();
   void add_panel_actions();
   void add_panel_command(const std::string& panel, PanelCommand command);
+  void add_layout_actions();
+  void add_debug_actions();
+  void add_mark_actions();
   void go_to(int frame);
+  void ask(SessionRequest request);
+  void toggle_bookmark();
+  [[nodiscard]] const std::vector<int>& worst();
   void toggle_panel(const std::string& name);
   void scale_by(float factor);
   [[nodiscard]] bool can_go() const { return session_ != nullptr && host_.go_to_frame; }
@@ -108,6 +115,18 @@ class Workbench {
   OpenDialog open_dialog_;
   bool shortcuts_open_ = false;
   double speed_ = 30.0;  // frames a second
+
+  // What "worst" goes by, when a person has chosen; and the list it gave last.
+  struct WorstKey {
+    const RunView* run = nullptr;
+    std::uint64_t revision = 0;
+    std::size_t records = 0;
+    LaneFigure figure = LaneFigure::kRpeFrame;
+    bool operator==(const WorstKey&) const = default;
+  };
+  std::optional<LaneFigure> worst_by_;
+  WorstKey worst_key_;
+  std::vector<int> worst_;
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
