@@ -42,6 +42,9 @@ enum class StageKind {
   kBundle,
 };
 
+/// Whether it belongs to what all methods share.
+[[nodiscard]] constexpr bool of_odometry(StageKind kind) { return kind >= StageKind::kFeatures; }
+
 /// A number a stage ends with.
 struct StageFigure {
   std::string name;
