@@ -85,6 +85,7 @@ class RunTrack {
   /// What a recorded run removed from a frame; empty where nothing was.
   [[nodiscard]] cv::Mat recorded_mask(int index) const;
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
+  [[nodiscard]] bool keeps_times() const { return options_.keep_times; }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
   [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <future>
 
+#include "ui/session/frame_neighbours.hpp"
+
 namespace stillpoint {
 
 Session::Session(std::shared_ptr<const FrameSource> source, const Config& config,
@@ -64,7 +66,9 @@ void Session::process_one() {
 }
 
 void Session::show(int frame) {
-  current_ = run_->frame_view(frame);
+  // Going forward, the frame before is the one shown until now.
+  const bool follows = current_ && current_->index + 1 == frame && current_->record != nullptr;
+  current_ = run_->frame_view(frame, follows ? alone(*current_) : nullptr);
   for (Ghost& ghost : ghosts_) {
     const RunTrack& track = ghost.run->track();
     if (frame >= track.processed())
@@ -74,6 +78,18 @@ void Session::show(int frame) {
   }
   debug_.preview.reset();
   preview_due_ = debug_.preview_config.has_value();
+  publish();
+}
+
+bool Session::lacks_before() const {
+  return current_->record != nullptr && current_->index > run_->track().begins_at() &&
+         current_->before == nullptr;
+}
+
+void Session::complete() {
+  if (!lacks_before()) return;
+  const int frame = current_->index;
+  current_ = run_->frame_view(frame, alone(*run_->frame_view(frame - 1)));
   publish();
 }
 
@@ -166,11 +182,18 @@ bool Session::idle() const {
   return resting_ && requests_.empty();
 }
 
-void Session::rest(const std::stop_token& stop) {
+void Session::rest(const std::stop_token& stop, bool until_comparison) {
   std::unique_lock lock(mutex_);
   resting_ = true;
-  asked_.wait(lock, stop, [this] { return !requests_.empty(); });
+  asked_.wait(lock, stop,
+              [&] { return !requests_.empty() || (until_comparison && compares_ && lacks_before()); });
   resting_ = false;
+}
+
+void Session::request_comparison(bool wanted) {
+  if (compares_.exchange(wanted) == wanted) return;
+  const std::lock_guard lock(mutex_);
+  asked_.notify_all();
 }
 
 }  // namespace stillpoint

@@ -50,7 +50,7 @@ void Session::work_step() {
 
 bool Session::has_background() const {
   const int processed = run_->track().processed();
-  return preview_due_ || sidecar_due_ || processed < wanted_ ||
+  return preview_due_ || sidecar_due_ || processed < wanted_ || (compares_ && lacks_before()) ||
          (worker_.joinable() && stages_are_missing()) ||
          std::any_of(ghosts_.begin(), ghosts_.end(),
                      [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
@@ -65,6 +65,10 @@ void Session::background_step() {
     }
     compute_preview();
     publish();
+    return;
+  }
+  if (compares_ && lacks_before()) {
+    complete();
     return;
   }
   if (sidecar_due_) {
@@ -185,7 +189,7 @@ void Session::work(const std::stop_token& stop) {
         continue;
       }
       if (waits && !playing_) {
-        rest(stop);
+        rest(stop, true);
         continue;
       }
       if (waits) {
@@ -204,7 +208,7 @@ void Session::work(const std::stop_token& stop) {
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
-      rest(stop);
+      rest(stop, false);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/motion/detect_motion.hpp"
+#include "ui/session/frame_neighbours.hpp"
 
 namespace stillpoint {
 namespace {
@@ -96,12 +97,17 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
   // Without its images, a finished run still tells what it removed.
   if (!pair && view.mask.empty()) view.mask = track_.recorded_mask(index);
+  if (!track_.keeps_times()) clear_times(view);
   return view;
 }
 
-std::shared_ptr<const FrameView> ShownRun::frame_view(int index) {
+std::shared_ptr<const FrameView> ShownRun::frame_view(int index, std::shared_ptr<const FrameView> before) {
   FrameView view = images_of(index, track_.config(), extras_of(index));
   const bool processed = index < track_.processed();
+  if (processed) {
+    view.history = history_of(index, [this](int past) { return track_.record(past); });
+    view.before = std::move(before);
+  }
   return hold(std::move(view), processed ? std::optional(track_.record(index)) : std::nullopt);
 }
 
