@@ -26,6 +26,19 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
   return mask;
 }
 
+void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
+  if (frame.has_depth()) {
+    colour_.reset();
+    return;
+  }
+  const Stopwatch watch;
+  if (!colour_) colour_.emplace(camera_, config_.colour_motion);
+  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour);
+  result.mask = result.colour_motion.mask;
+  result.record.mask_share = result.colour_motion.mask_share;
+  result.record.ms.motion += watch.milliseconds();
+}
+
 void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
   if (!frame.has_depth()) return;
   const Stopwatch watch;
@@ -74,7 +87,7 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
 
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {
   constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves, not behind it
-  if (mask.empty()) return;
+  if (mask.empty() || config_.map.purge_moving == 0) return;
   for (int& id : last_->points) {
     if (id == kNone || !map_.has_point(id)) continue;
     const Eigen::Vector3d p = camera_from_world * map_.point(id).position;

@@ -83,7 +83,11 @@ void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
 }
 
 void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
-  if (config_.run.method == "none" || config_.run.method == "stillpoint") return;
+  if (config_.run.method == "none") return;
+  if (config_.run.method == "stillpoint") {
+    detect_in_colour(frame, result);
+    return;
+  }
   if (config_.run.method == "oracle") {
     if (known_mask.size() != frame.gray.size()) return;
     result.mask = known_mask;
@@ -176,7 +180,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
     Current first = remove_moving(frame, found, result.mask, velocity_, record);
     first.camera_from_world = start;
-    first.seek_consensus = finds_movers_by_pose;
+    first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
     if (estimate(first, record)) {
       start = first.camera_from_world;

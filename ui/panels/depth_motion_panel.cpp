@@ -18,9 +18,15 @@ constexpr std::array<const char*, kStages> kNames{
 /// and what becomes of it on surfaces.
 class DepthMotionPanel final : public NamedPanel {
  public:
-  explicit DepthMotionPanel(Shared shared) : NamedPanel("depth_motion", "Depth motion", std::move(shared)) {}
+  explicit DepthMotionPanel(Shared shared)
+      : NamedPanel("depth_motion", "Depth motion", shared), colour_(make_colour_motion_panel(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    // What is judged in colour instead stands where one looks for it.
+    if (!session.current->colour_motion.points.empty()) {
+      colour_->draw(frame, session, actions);
+      return;
+    }
     const std::string missing = missing_stages(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -234,6 +240,7 @@ class DepthMotionPanel final : public NamedPanel {
     return footer;
   }
 
+  std::unique_ptr<Panel> colour_;  // of frames without depth
   int shown_ = 0, reference_ = 0;
   std::array<FrameTexture, kStages> textures_;
   FrameTexture segments_, ground_;
