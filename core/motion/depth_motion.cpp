@@ -7,6 +7,7 @@
 #include "core/motion/depth_evidence.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/segments.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -72,12 +73,16 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
                                      const std::vector<ReferenceView>& references, const MotionMemory* memory,
                                      const Pose& previous_from_current, const DepthMotionConfig& config) {
   DepthMotionTrace trace;
+  Stopwatch watch;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
   trace.log_odds = trace.prior.clone();
+  trace.ms.memory = watch.lap();
   for (const ReferenceView& reference : references) {
     trace.references.push_back(compare_with_reference(current, reference, config));
     trace.log_odds += trace.references.back().log_odds;
+    trace.references.back().reference = reference;
+    trace.references.back().ms = watch.lap();
   }
   const double limit = config.max_log_odds;
   cv::min(trace.log_odds, limit, trace.log_odds);
@@ -85,6 +90,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
 
   trace.segments = segment_surfaces(current, config, trace.labels);
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
+  trace.ms.segments = watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);
   trace.mask = fit_to_depth(trace.small_mask, current, full_depth);
@@ -95,6 +101,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   LabelledRegions found = find_regions(trace.mask);
   trace.regions = std::move(found.regions);
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  trace.ms.mask = watch.lap();
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
   // What a patch was found to be is what its pixels are remembered as.

@@ -12,6 +12,7 @@ namespace stillpoint {
 
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
+  record.prior_pose = predicted;
   view_ = std::make_shared<const RgbdView>(
       make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   cv::Mat mask;
@@ -41,6 +42,7 @@ void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
 void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
   if (!frame.has_depth()) return;
   const Stopwatch watch;
+  result.record.motion_pose = camera_from_world;
   const Pose previous_from_current = past_views_.empty()
                                          ? Pose::Identity()
                                          : past_views_.back().camera_from_world * camera_from_world.inverse();

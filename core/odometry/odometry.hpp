@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -60,6 +61,11 @@ class Odometry {
   [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
                                                        const std::vector<PastFrame>& before) const;
 
+  /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
+  void drop_images();
+  /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
+  void restore_images(int next, const std::function<Frame(int)>& read);
+
   /// Lets a pending bundle adjustment enter the map: after the last frame.
   void finish();
 
@@ -67,6 +73,8 @@ class Odometry {
   [[nodiscard]] const Config& config() const { return config_; }
 
  private:
+  friend class MotionReplay;
+
   /// The frame being tracked.
   struct Current {
     std::shared_ptr<const FeatureSet> features;  // static ones
