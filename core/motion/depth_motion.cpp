@@ -5,11 +5,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/depth_evidence.hpp"
+#include "core/motion/patch_motion.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/segments.hpp"
 
 namespace stillpoint {
 namespace {
+
+constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
+constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
 /// The pixels of moving patches.
 cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
@@ -20,6 +24,42 @@ cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments
           label >= 0 && segments[static_cast<std::size_t>(label)].moving)
         mask.at<uchar>(y, x) = 255;
   return mask;
+}
+
+/// What patches say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each says
+/// only a part of it.
+cv::Mat evidence_of_patches(const DepthMotionTrace& trace, const DepthMotionConfig& config) {
+  std::vector<float> of_patch(trace.segments.size(), 0.0F);
+  bool any = false;
+  for (const ReferenceEvidence& reference : trace.references)
+    for (std::size_t i = 0; i < reference.patches.size(); ++i) {
+      any = true;
+      of_patch[i] += std::clamp(static_cast<float>(config.patch_share) * reference.patches[i].log_odds,
+                                -kMostStill, kMostMoved);
+    }
+  if (!any) return {};
+  cv::Mat image = cv::Mat::zeros(trace.labels.size(), CV_32FC1);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x)
+      if (const int label = trace.labels.at<int>(y, x); label >= 0)
+        image.at<float>(y, x) = of_patch[static_cast<std::size_t>(label)];
+  return image;
+}
+
+/// Memory and evidence together. What is firmly known to move is let go but slowly: people who stop go on.
+cv::Mat with_memory(const cv::Mat& prior, const cv::Mat& evidence, const DepthMotionConfig& config) {
+  const auto limit = static_cast<float>(config.max_log_odds), firm = static_cast<float>(config.firm_log_odds),
+             release = static_cast<float>(config.release);
+  cv::Mat odds(prior.size(), CV_32FC1);
+  for (int y = 0; y < odds.rows; ++y) {
+    const auto *before = prior.ptr<float>(y), *says = evidence.ptr<float>(y);
+    auto* out = odds.ptr<float>(y);
+    for (int x = 0; x < odds.cols; ++x) {
+      const float share = before[x] > firm && says[x] < 0 ? release : 1.0F;
+      out[x] = std::clamp(before[x] + share * says[x], -kStillLimit, limit);
+    }
+  }
+  return odds;
 }
 
 void drop_small_regions(cv::Mat& mask, double min_area_share) {
@@ -74,16 +114,22 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   DepthMotionTrace trace;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  trace.log_odds = trace.prior.clone();
-  for (const ReferenceView& reference : references) {
-    trace.references.push_back(compare_with_reference(current, reference, config));
-    trace.log_odds += trace.references.back().log_odds;
-  }
-  const double limit = config.max_log_odds;
-  cv::min(trace.log_odds, limit, trace.log_odds);
-  cv::max(trace.log_odds, -limit, trace.log_odds);
-
   trace.segments = segment_surfaces(current, config, trace.labels);
+  cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  for (ReferenceView reference : references) {
+    PatchMotions patches;
+    if (reference.old) {
+      patches = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+      reference.reference_from_current = patches.reference_from_current;
+    }
+    trace.references.push_back(compare_with_reference(current, reference, config));
+    trace.references.back().patches = std::move(patches.patches);
+    evidence += trace.references.back().log_odds;
+  }
+  trace.slow = evidence_of_patches(trace, config);
+  if (!trace.slow.empty()) evidence += trace.slow;
+  trace.log_odds = with_memory(trace.prior, evidence, config);
+
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);
