@@ -199,13 +199,17 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
-  // What a patch was found to be is what its pixels are remembered as.
+  // What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
+  // firm, or memory would creep along every surface a mover touches.
+  const auto limit = static_cast<float>(config.moving_log_odds);
   for (int y = 0; y < trace.labels.rows; ++y)
     for (int x = 0; x < trace.labels.cols; ++x) {
       const int label = trace.labels.at<int>(y, x);
       if (label < 0) continue;
+      const Segment& segment = trace.segments[static_cast<std::size_t>(label)];
       float& odds = trace.log_odds.at<float>(y, x);
-      odds = 0.5F * (odds + trace.segments[static_cast<std::size_t>(label)].log_odds);
+      const float joined = 0.5F * (odds + segment.log_odds);
+      odds = std::min(joined, std::max({odds, segment.evidence, limit}));
     }
   return trace;
 }

@@ -151,18 +151,64 @@ Vector6d common_twist(const Camera& camera, const std::vector<Measured>& measure
   return twist;
 }
 
+/// What registration leaves of most patches' shift and step beyond what measuring explains: depth and colour
+/// taken at different moments, rows read one after the other, a pose that is not exact.
+struct Slack {
+  double shift = kRegistration;  // px
+  double step = 0.0;             // m
+};
+
+double middle_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::Vector3d>& residuals,
+               const std::vector<double>& votes) {
+  constexpr double kMedianOfTwo = 1.386, kMedianOfOne = 0.455;  // of chi-square variables
+  std::vector<double> shifts, steps;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i].valid || votes[i] < 1.0 || measured[i].covariance.trace() > 0.1) continue;
+    shifts.push_back(residuals[i].head<2>().squaredNorm() / kMedianOfTwo -
+                     0.5 * measured[i].covariance.trace());
+    steps.push_back(residuals[i].z() * residuals[i].z() / kMedianOfOne - measured[i].step_variance);
+  }
+  Slack slack;
+  if (shifts.size() < kMinPatches) return slack;
+  slack.shift = std::max(kRegistration, std::sqrt(std::max(0.0, middle_of(shifts))));
+  slack.step = std::sqrt(std::max(0.0, middle_of(steps)));
+  return slack;
+}
+
 /// log p(measured | moves) - log p(measured | stands still), both Gaussian.
-double log_odds_of(const Measured& m, const Eigen::Vector3d& r) {
+double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& slack) {
   const auto square = [](double s) { return Eigen::Matrix2d(s * s * Eigen::Matrix2d::Identity()); };
-  const Eigen::Matrix2d still = m.covariance + square(kRegistration),
-                        moved = m.covariance + square(kTypicalShift);
+  const Eigen::Matrix2d still = m.covariance + square(slack.shift), moved = still + square(kTypicalShift);
   const Eigen::Vector2d shift = r.head<2>();
   const double by_shift = 0.5 * (shift.dot(still.inverse() * shift) - shift.dot(moved.inverse() * shift)) -
                           0.5 * std::log(moved.determinant() / still.determinant());
-  const double still_z = m.step_variance, moved_z = m.step_variance + kTypicalStep * kTypicalStep;
+  const double still_z = m.step_variance + slack.step * slack.step,
+               moved_z = still_z + kTypicalStep * kTypicalStep;
   const double by_step =
       0.5 * r.z() * r.z() * (1.0 / still_z - 1.0 / moved_z) - 0.5 * std::log(moved_z / still_z);
   return by_shift + by_step;
+}
+
+void judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
+           const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
+  std::vector<Eigen::Vector3d> residuals(measured.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (measured[i].valid)
+      residuals[i] = residual_of(measured[i], by_twist(camera, measured[i].place), twist);
+  const Slack slack = slack_of(measured, residuals, votes);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i].valid) continue;
+    const Eigen::Vector3d& r = residuals[i];
+    patches[i] = {{static_cast<float>(r.x()), static_cast<float>(r.y())},
+                  static_cast<float>(r.z()),
+                  static_cast<float>(log_odds_of(measured[i], r, slack))};
+  }
 }
 
 }  // namespace
@@ -192,16 +238,8 @@ PatchMotions measure_patches(const RgbdView& current, const ReferenceView& refer
     if (result.measured < kMinPatches) return result;
     const Vector6d twist = common_twist(current.camera, measured, votes);
     // The last measurement is judged against what is left of the twist.
-    if (twist.norm() < kSettled || round + 1 == kRounds) {
-      for (std::size_t i = 0; i < measured.size(); ++i) {
-        if (!measured[i].valid) continue;
-        const Eigen::Vector3d r =
-            residual_of(measured[i], by_twist(current.camera, measured[i].place), twist);
-        result.patches[i] = {{static_cast<float>(r.x()), static_cast<float>(r.y())},
-                             static_cast<float>(r.z()),
-                             static_cast<float>(log_odds_of(measured[i], r))};
-      }
-    }
+    if (twist.norm() < kSettled || round + 1 == kRounds)
+      judge(current.camera, measured, twist, votes, result.patches);
     result.reference_from_current = se3_exp(twist) * result.reference_from_current;
     if (twist.norm() < kSettled) break;
   }
