@@ -50,7 +50,7 @@ struct DepthMotionConfig {
   double smoothing = 0.6;      ///< weight of neighbours on the same surface against a patch's own evidence
   double moving_log_odds = 0.35;   ///< above it a patch moves
   double min_area_share = 0.0015;  ///< smaller regions are noise, share of the image
-  int margin_px = 2;               ///< added about the mask at the end
+  int margin_px = 0;               ///< added about the mask at the end
 };
 
 /// ORB features spread over the image.

@@ -47,14 +47,11 @@ void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::M
 /// only a part of it.
 cv::Mat evidence_of_patches(const DepthMotionTrace& trace, const DepthMotionConfig& config) {
   std::vector<float> of_patch(trace.segments.size(), 0.0F);
-  bool any = false;
   for (const ReferenceEvidence& reference : trace.references)
     for (std::size_t i = 0; i < reference.patches.size(); ++i) {
-      any = true;
       of_patch[i] += std::clamp(static_cast<float>(config.patch_share) * reference.patches[i].log_odds,
                                 -kMostStill, kMostMoved);
     }
-  if (!any) return {};
   cv::Mat image = cv::Mat::zeros(trace.labels.size(), CV_32FC1);
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)
@@ -182,7 +179,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
     add_pixels(trace.references.back(), trace.labels, evidence);
   }
   trace.slow = evidence_of_patches(trace, config);
-  if (!trace.slow.empty()) evidence += trace.slow;
+  evidence += trace.slow;
   trace.log_odds = with_memory(trace.prior, evidence, config);
 
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
