@@ -31,12 +31,16 @@ void SequenceArguments::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of a generated sequence")->check(CLI::Range(0, 1'000'000'000));
 }
 
-std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config) const {
+OpenOptions SequenceArguments::options(const Config& config) const {
   OpenOptions options;
   if (!camera.empty()) options.camera = camera_from_argument(camera);
   options.frames = frames;
   options.seed = static_cast<unsigned>(seed >= 0 ? seed : config.run.seed);
-  auto source = open_sequence(where, options);
+  return options;
+}
+
+std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config) const {
+  auto source = open_sequence(where, options(config));
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   return source;

@@ -18,6 +18,8 @@ struct ConfigArguments {
   int threads = 0;                       ///< 0 = the config's
 
   void add_to(CLI::App& command, bool with_method);
+  /// Whether any was given but the number of threads.
+  [[nodiscard]] bool given() const { return !preset.empty() || !assignments.empty() || !method.empty(); }
   /// @throws InputError for unknown presets, keys and values out of range.
   [[nodiscard]] Config config() const;
 };
@@ -29,6 +31,10 @@ struct SequenceArguments {
   int seed = -1;       ///< of generated sequences; negative = the config's
 
   void add_to(CLI::App& command);
+  /// Whether any was given.
+  [[nodiscard]] bool given() const { return !camera.empty() || frames > 0 || seed >= 0; }
+  /// What open_sequence is given.
+  [[nodiscard]] OpenOptions options(const Config& config) const;
   /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config) const;
 };

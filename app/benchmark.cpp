@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/evaluation/tables.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
@@ -129,14 +130,16 @@ std::filesystem::path runs_folder(const std::string& out, std::string sequence,
   return std::filesystem::path(out) / name;
 }
 
-RunResult run_one(const FrameSource& source, const Config& config, int frames) {
+/// @param records null where the run is not kept
+RunResult run_one(const FrameSource& source, const Config& config, int frames, RecordsWriter* records) {
   RunOptions options;
   options.count = frames;
   options.stop = &stop_requested();
   options.measure_orb_unit = true;
   const int total = frames > 0 ? std::min(frames, source.size()) : source.size();
   Progress progress(fmt::format("{} ({})", source.name(), config.run.method), total);
-  options.on_frame = [&progress](const FrameResult& frame) {
+  options.on_frame = [&progress, records](const FrameResult& frame) {
+    if (records != nullptr) records->add(frame);
     progress.advance(std::string(to_string(frame.record.status)));
   };
   return run_sequence(source, config, options);
@@ -148,18 +151,32 @@ void benchmark(const BenchmarkArguments& arguments) {
   std::vector<BenchmarkRow> rows;
   std::vector<RunReport> reports;
   std::set<std::string> taken;
-  for (const auto& source : sources) {
+  const std::vector<std::string> places = expanded(arguments.sequences);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const auto& source = sources[i];
+    std::optional<SequenceOrigin> origin;
+    if (!arguments.out.empty()) origin = origin_of(*source, places[i], arguments.frames.options(config));
     BenchmarkRow row{source->name(), {}};
     const auto runs = runs_folder(arguments.out, source->name(), taken);
     for (const std::string& method : arguments.methods) {
       set_parameter(config, "run.method=" + method);
-      const RunResult result = run_one(*source, config, arguments.frames.frames);
-      if (result.interrupted) break;
+      std::optional<RecordsWriter> records;
+      if (origin) {
+        prepare_run_folder(runs / method, arguments.force);
+        records.emplace(runs / method, *origin, config);
+      }
+      const RunResult result =
+          run_one(*source, config, arguments.frames.frames, records ? &*records : nullptr);
+      if (result.interrupted) {
+        // Half a run is no run to compare with.
+        if (records) std::filesystem::remove(runs / method / kRecordsName);
+        break;
+      }
       reports.push_back(report_on(result, *source));
       row.cells.push_back(cell_of(reports.back()));
-      if (arguments.out.empty()) continue;
-      prepare_run_folder(runs / method, arguments.force);
-      write_run(runs / method, result, reports.back(), *source);
+      if (!records) continue;
+      write_run(runs / method, result, reports.back(), *source, *origin);
+      records->finish(result, source->ground_truth());
     }
     rows.push_back(std::move(row));
     // After each sequence, so that an interrupted benchmark keeps what it has.

@@ -9,7 +9,11 @@ void add_commands(CLI::App& app) {
   add_generate_command(app);
   add_motion_command(app);
   add_snapshot_command(app);
+  add_figures_command(app);
+  add_report_command(app);
   add_view_command(app);
+  add_export_command(app);
+  add_replay_command(app);
   add_config_command(app);
 }
 

@@ -7,6 +7,11 @@ namespace stillpoint {
 // Each subcommand lives in a file of its own and adds itself: its options, its help and its callback. A
 // callback throws InputError for bad input; main() reports it and sets the exit status.
 
+/// Thrown by a callback that has said all there is to say, to end the program with a status of its own.
+struct ExitStatus {
+  int status = 0;
+};
+
 /// All of them, in the order the help lists them.
 void add_commands(CLI::App& app);
 
@@ -16,7 +21,11 @@ void add_benchmark_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);
+void add_figures_command(CLI::App& app);
+void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
+void add_export_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 
 /// Opens the window on the generated demo: what `stillpoint` alone does.

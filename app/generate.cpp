@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/write_sequence.hpp"
 
@@ -47,8 +48,12 @@ void generate(const GenerateOptions& options) {
   write.force = options.force;
   write.threads = options.threads;
   write.progress = ProgressLine();
-  write_sequence(*sequence, options.out, write);
-  fmt::print("{}: {} frames of {}, seed {}\n", options.out, sequence->size(), sequence->name(), options.seed);
+  write.stop = &stop_requested();
+  const int written = write_sequence(*sequence, options.out, write);
+  fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
+  if (written < sequence->size())
+    fmt::print("stopped early; {}\n", written > 0 ? "what was filmed is a sequence" : "nothing was filmed");
+  throw_if_interrupted();
 }
 
 }  // namespace

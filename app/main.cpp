@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
   } catch (const stillpoint::Interrupted& interrupted) {
     (void)output_arrived();
     return 128 + interrupted.signal;
+  } catch (const stillpoint::ExitStatus& exit) {
+    return output_arrived() ? exit.status : 1;
   } catch (const stillpoint::InputError& error) {
     std::fprintf(stderr, "stillpoint: %s\n", error.what());
     return 1;

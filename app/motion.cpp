@@ -15,6 +15,7 @@
 #include "app/commands.hpp"
 #include "app/motion_figures.hpp"
 #include "app/motion_pictures.hpp"
+#include "app/progress.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/motion/detect_motion.hpp"
@@ -71,12 +72,37 @@ FrameRange parse_range(const std::string& text, int size) {
   return range;
 }
 
+/// Whether all of `text` from `first` on is digits, at least one.
+bool is_number_from(const std::string& text, std::size_t first) {
+  return text.size() > first && std::all_of(text.begin() + static_cast<std::ptrdiff_t>(first), text.end(),
+                                            [](unsigned char letter) { return std::isdigit(letter) != 0; });
+}
+
+/// Removes an earlier result's pictures, those of each pair and of each round, and the folders that are empty
+/// then.
+void clear_earlier(const fs::path& folder) {
+  remove_round_pictures(folder);
+  std::vector<fs::path> below;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_directory() &&
+        (is_number_from(name, 0) || (name.starts_with("round_") && is_number_from(name, 6))))
+      below.push_back(entry.path());
+  }
+  for (const fs::path& one : below) {
+    clear_earlier(one);
+    fs::remove(one, ignored);  // which leaves a folder that is not empty
+  }
+}
+
 /// The out folder with its two lists; pictures go beside them.
 class MotionOutput {
  public:
   MotionOutput(const fs::path& folder, bool force, bool all_rounds)
       : folder_(folder), all_rounds_(all_rounds), pairs_(nlohmann::json::array()) {
     prepare_out_folder(folder, {"motion.csv", "motion.json"}, force);
+    if (fs::exists(folder / "motion.csv")) clear_earlier(folder);
     csv_.open(folder / "motion.csv");
     csv_ << motion_csv_heading() << '\n' << std::flush;
     if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder / "motion.csv").string()));
@@ -184,7 +210,7 @@ void run_sequence(const MotionOptions& options, const Config& config) {
                                  options.first, source->size(), gap));
   MotionOutput output(options.out, options.force, options.all_rounds);
   int pairs = 0, without_mask = 0;
-  for (int index = range.begin; index < range.end; index += range.step) {
+  for (int index = range.begin; index < range.end && !stop_requested(); index += range.step) {
     const Frame reference = source->read(index - gap), target = source->read(index);
     const std::string reference_name = std::to_string(index - gap), target_name = std::to_string(index);
     MotionTrace trace;
@@ -203,6 +229,7 @@ void run_sequence(const MotionOptions& options, const Config& config) {
   output.finish(config);
   std::printf("%d pairs, %d of them without a mask; figures in %s\n", pairs, without_mask,
               (fs::path(options.out) / "motion.csv").c_str());
+  throw_if_interrupted();
 }
 
 }  // namespace

@@ -180,6 +180,15 @@ cv::Mat draw_features(const cv::Mat& colour, const MotionRound& round) {
                                {fmt::format("{} removed", removed), marker(mark_square, kVermilion)}});
 }
 
+void remove_round_pictures(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const char* direction : {"forward", "backward"})
+    for (const char* kind : {"compensated", "difference", "raw_mask", "mask", "tracks"})
+      std::filesystem::remove(folder / fmt::format("{}_{}.png", kind, direction), ignored);
+  for (const char* name : {"mask_backward_in_target.png", "mask_union.png", "overlay.png", "features.png"})
+    std::filesystem::remove(folder / name, ignored);
+}
+
 void write_round_pictures(const std::filesystem::path& folder, const MotionRound& round,
                           const cv::Mat& reference, const cv::Mat& target) {
   const auto write_direction = [&](const DirectionTrace& direction, const std::string& name,

@@ -27,4 +27,7 @@ namespace stillpoint {
 void write_round_pictures(const std::filesystem::path& folder, const MotionRound& round,
                           const cv::Mat& reference, const cv::Mat& target);
 
+/// Removes what write_round_pictures writes, and nothing else.
+void remove_round_pictures(const std::filesystem::path& folder);
+
 }  // namespace stillpoint

@@ -2,11 +2,14 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/run/condition.hpp"
+#include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 
@@ -14,13 +17,42 @@ namespace stillpoint {
 namespace {
 
 struct RunArguments {
-  std::string sequence, out;
+  std::string sequence, out, break_at;
   bool force = false, measure_unit = false;
   ConfigArguments config;
   SequenceArguments frames;
 };
 
+constexpr int kConditionHeld = 3;  // exit status
+
+std::optional<Condition> break_condition(const RunArguments& arguments) {
+  if (arguments.break_at.empty()) return std::nullopt;
+  try {
+    return Condition(arguments.break_at);
+  } catch (const ConditionError& error) {
+    throw InputError(fmt::format("--break: {}\n  {}\n  {:>{}}", error.what(), arguments.break_at, "^",
+                                 error.column() + 1));
+  }
+}
+
+/// Tells where a condition holds. @returns whether it does anywhere
+bool tell_frames(const Condition& condition, const RunResult& result, const RunReport& report) {
+  const auto frames = condition.frames(
+      FrameFigures(result.records, report.evaluation ? &*report.evaluation : nullptr, result.scores));
+  fmt::print("  {}: ", condition.text());
+  if (frames.empty())
+    fmt::print("at no frame\n");
+  else
+    fmt::print("at {} of {} frames: {}\n", frames.size(), result.records.size(), frames_text(frames));
+  return !frames.empty();
+}
+
 void run(const RunArguments& arguments) {
+  if (arguments.break_at == "help") {
+    fmt::print("{}", condition_help());
+    return;
+  }
+  const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
   const auto source = arguments.frames.open(arguments.sequence, config);
   if (!source->has_depth())
@@ -33,13 +65,20 @@ void run(const RunArguments& arguments) {
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();
-  if (!arguments.out.empty()) prepare_run_folder(arguments.out, arguments.force);
+  std::optional<SequenceOrigin> origin;
+  std::optional<RecordsWriter> records;
+  if (!arguments.out.empty()) {
+    prepare_run_folder(arguments.out, arguments.force);
+    origin = origin_of(*source, arguments.sequence, arguments.frames.options(config));
+    records.emplace(arguments.out, *origin, config);
+  }
   options.measure_orb_unit = arguments.measure_unit;
   const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
   RunResult result;
   {
     Progress progress(fmt::format("{} ({})", source->name(), config.run.method), total);
-    options.on_frame = [&progress](const FrameResult& frame) {
+    options.on_frame = [&](const FrameResult& frame) {
+      if (records) records->add(frame);
       progress.advance(std::string(to_string(frame.record.status)));
     };
     result = run_sequence(*source, config, options);
@@ -47,8 +86,9 @@ void run(const RunArguments& arguments) {
   const RunReport report = report_on(result, *source);
   // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
-  if (!arguments.out.empty()) {
-    write_run(arguments.out, result, report, *source);
+  if (records) {
+    write_run(arguments.out, result, report, *source, *origin);
+    records->finish(result, source->ground_truth());
     fmt::print("  written to    {}\n", arguments.out);
   }
   if (result.interrupted) {
@@ -56,9 +96,11 @@ void run(const RunArguments& arguments) {
                arguments.out.empty() ? "" : "; what was done is kept");
     throw_if_interrupted();
   }
+  const bool held = condition && tell_frames(*condition, result, report);
   if (report.tracked == 0)
     throw InputError(fmt::format("{}: no frame could be tracked ({})", arguments.sequence,
                                  result.records.empty() ? "there was none" : result.records.front().note));
+  if (held) throw ExitStatus{kConditionHeld};
 }
 
 }  // namespace
@@ -73,6 +115,10 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
   command->add_flag("--measure-unit", arguments->measure_unit,
                     "Also time OpenCV's ORB on every frame, the unit in which speed is compared");
+  command->add_option(
+      "--break", arguments->break_at,
+      "Tell the frames at which a condition holds, such as 'rpe > 5 cm || lost'; the status is then "
+      "3. `help` lists what it may be made of");
   arguments->config.add_to(*command, true);
   arguments->frames.add_to(*command);
   command->callback([arguments] { run(*arguments); });

@@ -1,156 +1,153 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
+#include <optional>
 
-#include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/open_place.hpp"
+#include "app/painter.hpp"
 #include "app/progress.hpp"
+#include "app/video_file.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
-#include "ui/panels/panel.hpp"
+#include "core/run/condition.hpp"
 #include "ui/session/frame_ranges.hpp"
 #include "ui/session/session.hpp"
-#include "ui/shell/offscreen.hpp"
 #include "ui/workbench/settings.hpp"
-#include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorkbench = "workbench";
-constexpr const char* kWorkbenchSize = "1600x900";
-constexpr const char* kPanelSize = "960x780";
-
 struct SnapshotArguments {
-  std::string sequence, out, frames = "-1", panels = "all", size, theme = "dark", layout;
-  double scale = 1.0;
+  PlaceArguments place;
+  std::string out, video, frames, when, panels, size, theme = "dark", layout;
+  double scale = 1.0, fps = 30.0;
   bool force = false, no_baseline = false, timings = false;
-  ConfigArguments config;
-  SequenceArguments source;
 };
 
-/// What is to be drawn of each frame.
-struct Pictures {
-  bool workbench = false;
-  std::vector<Panel*> panels;
-};
-
-Pictures chosen_pictures(const std::string& names, const std::vector<std::unique_ptr<Panel>>& panels) {
-  Pictures pictures;
-  std::vector<std::string> known;
-  for (const auto& panel : panels) known.push_back(panel->name());
-  for (const std::string& name : split_list(names)) {
-    if (name == kWorkbench) {
-      pictures.workbench = true;
-      continue;
-    }
-    bool found = false;
-    for (const auto& panel : panels) {
-      if (name != "all" && name != panel->name()) continue;
-      found = true;
-      if (std::find(pictures.panels.begin(), pictures.panels.end(), panel.get()) == pictures.panels.end())
-        pictures.panels.push_back(panel.get());
-    }
-    if (!found)
-      throw InputError(fmt::format("--panels {}: there is no such panel; there are all, {}, {}", name,
-                                   kWorkbench, fmt::join(known, ", ")));
-  }
-  if (!pictures.workbench && pictures.panels.empty()) throw InputError("--panels: names no panel");
-  return pictures;
+PainterOptions painter_options(const SnapshotArguments& arguments, const std::string& method) {
+  PainterOptions options;
+  options.panels = arguments.panels;
+  if (options.panels.empty()) options.panels = arguments.out.empty() ? "workbench" : "all";
+  if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
+  options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
+  options.layout = arguments.layout;
+  options.method = method;
+  return options;
 }
 
-void write_png(const fs::path& path, const cv::Mat& image) {
-  // Fast rather than small: packing would take longer than drawing.
-  bool written = false;
-  try {
-    written = cv::imwrite(path.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 3});
-  } catch (const cv::Exception&) {
-  }
-  std::error_code error;
-  if (!written || fs::file_size(path, error) == 0 || error)
-    throw InputError(
-        fmt::format("{}: cannot be written (no permission, or the disk is full)", path.string()));
-}
-
-/// Draws pictures of frames, in one GL context for all of them. It goes first, then the panels, whose
-/// textures it holds.
-class Painter {
+/// Where images go: files one by one, a video, or both.
+class Pictures {
  public:
-  Painter(const SnapshotArguments& arguments, const std::string& method)
-      : look_{parse_theme(arguments.theme), static_cast<float>(arguments.scale)},
-        workbench_size_(parse_size(arguments.size.empty() ? kWorkbenchSize : arguments.size)),
-        panel_size_(parse_size(arguments.size.empty() ? kPanelSize : arguments.size)),
-        offscreen_({.width = workbench_size_.first, .height = workbench_size_.second, .look = look_}),
-        panels_(make_panels()),
-        workbench_(make_panels()),
-        pictures_(chosen_pictures(arguments.panels, panels_)) {
-    workbench_.set_layout(default_layout(method));
-    if (!arguments.layout.empty())
-      workbench_.set_layout(read_layout(arguments.layout, workbench_.panel_names()));
+  Pictures(const SnapshotArguments& arguments, const Painter& painter) : folder_(arguments.out) {
+    if (arguments.out.empty() && arguments.video.empty())
+      throw InputError("--out or --video must say where the images go");
+    if (!arguments.video.empty()) {
+      if (painter.picture_count() != 1)
+        throw InputError(fmt::format("--video takes one picture of each frame, and --panels names {}",
+                                     painter.picture_count()));
+      video_.emplace(arguments.video, arguments.fps, arguments.force);
+    }
+    if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
-  ~Painter() { offscreen_.make_current(); }
-  Painter(const Painter&) = delete;
-  Painter& operator=(const Painter&) = delete;
 
-  /// Writes FRAME_PANEL.png for each picture of the frame shown. @returns how many
-  int paint(const SessionView& view, const fs::path& folder) {
-    int written = 0;
-    if (pictures_.workbench) {
-      offscreen_.resize(workbench_size_.first, workbench_size_.second);
-      const cv::Mat image = offscreen_.render([&](UiFrame& frame) { workbench_.draw(frame, &view); });
-      write_png(folder / fmt::format("{:06d}_{}.png", view.current->index, kWorkbench), image);
-      ++written;
+  void add(const SessionView& view, const std::vector<Painter::Picture>& pictures) {
+    for (const auto& [name, image] : pictures) {
+      if (video_) video_->add(image);
+      if (folder_.empty()) continue;
+      write_image(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
+      ++files_;
     }
-    if (!pictures_.panels.empty()) offscreen_.resize(panel_size_.first, panel_size_.second);
-    for (Panel* panel : pictures_.panels) {
-      const cv::Mat image =
-          offscreen_.render([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *panel); });
-      write_png(folder / fmt::format("{:06d}_{}.png", view.current->index, panel->name()), image);
-      ++written;
+    list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
+                         to_string(view.current->record->status));
+    ++frames_;
+  }
+
+  /// Ends what was begun. @returns what was written, in a sentence
+  [[nodiscard]] std::string finish(const std::string& video_name) {
+    std::string told;
+    if (!folder_.empty()) {
+      // What was drawn, and the sign that this folder is ours.
+      write_text_file(folder_ / "snapshots.txt", "# frame, timestamp in s, status\n" + list_);
+      told = fmt::format("{} images of {} frames written to {}\n", files_, frames_, folder_.string());
     }
-    return written;
+    if (video_ && frames_ > 0) {
+      video_->finish();
+      told += fmt::format("video of {} frames written to {}\n", frames_, video_name);
+    }
+    return told;
   }
 
  private:
-  Look look_;
-  std::pair<int, int> workbench_size_, panel_size_;
-  Offscreen offscreen_;
-  std::vector<std::unique_ptr<Panel>> panels_;
-  Workbench workbench_;
-  Pictures pictures_;
+  fs::path folder_;
+  std::optional<VideoFile> video_;
+  std::string list_;
+  int files_ = 0, frames_ = 0;
 };
 
-void snapshot(const SnapshotArguments& arguments) {
-  const Config config = arguments.config.config();
-  std::shared_ptr<const FrameSource> source = arguments.source.open(arguments.sequence, config);
-  const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
-  Painter painter(arguments, config.run.method);
-  prepare_out_folder(arguments.out, {"snapshots.txt"}, arguments.force);
+std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
+  if (arguments.when.empty()) return std::nullopt;
+  try {
+    return Condition(arguments.when);
+  } catch (const ConditionError& error) {
+    throw InputError(
+        fmt::format("--when: {}\n  {}\n  {:>{}}", error.what(), arguments.when, "^", error.column() + 1));
+  }
+}
 
-  Session session(source, config, {.baseline = !arguments.no_baseline, .keep_times = arguments.timings});
-  int written = 0;
-  std::string list;
+/// Those of `frames` at which the condition holds.
+std::vector<int> frames_where(const Condition& condition, const RunView& run,
+                              const std::vector<int>& frames) {
+  std::vector<int> chosen;
+  for (const int frame : condition.frames(FrameFigures(run.records, &run.evaluation)))
+    if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
+  return chosen;
+}
+
+void snapshot(const SnapshotArguments& arguments) {
+  const std::optional<Condition> condition = when_condition(arguments);
+  OpenedPlace place = open_place(arguments.place);
+  const bool finished_run = place.options.recorded != nullptr;
+  if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
+  const std::string& method = place.config.run.method;
+  const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
+  std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
+  Painter painter(painter_options(arguments, method));
+  Pictures pictures(arguments, painter);
+
+  place.options.keep_times = arguments.timings || finished_run;
+  place.options.baseline = !arguments.no_baseline;
+  if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
+  // The records of a finished run hold all but what these show.
+  place.options.catch_up =
+      method == "stillpoint" && (painter.draws("depth_motion") || painter.draws("workbench"));
+  Session session(place.source, place.config, place.options);
   {
-    Progress progress(fmt::format("{} ({})", source->name(), config.run.method), frames.back() + 1);
-    for (const int frame : frames) {
-      session.go_to(frame, [&](const FrameRecord& record) {
-        progress.advance(std::string(to_string(record.status)));
+    Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
+    const auto on_frame = [&](const FrameRecord& record) {
+      progress.advance(std::string(to_string(record.status)));
+      throw_if_interrupted();
+    };
+    try {
+      if (condition) {
+        session.go_to(frames.back(), on_frame);
+        frames = frames_where(*condition, *session.view()->run, frames);
+      }
+      for (const int frame : frames) {
+        session.go_to(frame, on_frame);
+        const auto view = session.view();
+        pictures.add(*view, painter.paint(*view));
         throw_if_interrupted();
-      });
-      written += painter.paint(*session.view(), arguments.out);
-      list += fmt::format("{:06d} {:.6f} {}\n", frame, session.view()->current->frame.timestamp,
-                          to_string(session.view()->current->record->status));
+      }
+    } catch (const Interrupted&) {  // what was drawn is kept; it is thrown again below
     }
   }
-  // What was drawn, and the sign that this folder is ours.
-  write_text_file(fs::path(arguments.out) / "snapshots.txt", "# frame, timestamp in s, status\n" + list);
-  fmt::print("{} images of {} frames written to {}\n", written, frames.size(), arguments.out);
+  fmt::print("{}", pictures.finish(arguments.video));
+  throw_if_interrupted();
 }
 
 }  // namespace
@@ -158,22 +155,34 @@ void snapshot(const SnapshotArguments& arguments) {
 void add_snapshot_command(CLI::App& app) {
   const auto arguments = std::make_shared<SnapshotArguments>();
   CLI::App* command = app.add_subcommand(
-      "snapshot", "Panels of the workbench as images, without a display: input, masks, trajectory, plots");
+      "snapshot",
+      "Panels of the workbench as images or a video, without a display: masks, trajectory, plots");
   command
-      ->add_option("SEQUENCE", arguments->sequence,
-                   "A TUM RGB-D folder, a folder of colour frames, or generated:KIND")
+      ->add_option(
+          "SEQUENCE", arguments->place.place,
+          "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder")
       ->required();
-  command
-      ->add_option("--frames", arguments->frames,
-                   "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last; with commas between")
+  command->add_option(
+      "--frames", arguments->frames,
+      "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last, and what is drawn when nothing "
+      "is said; with commas between");
+  command->add_option(
+      "--when", arguments->when,
+      "Draw only frames at which a condition holds, such as 'rpe > 5 cm || lost', among all or those of "
+      "--frames; `stillpoint run --break help` tells of conditions");
+  command->add_option("--panels", arguments->panels,
+                      "all (otherwise), workbench, or panels' names with commas between");
+  command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing");
+  command->add_option("--video", arguments->video,
+                      "A video of the frames, .mp4, .mkv or .avi: of the workbench, or of the panel named");
+  command->add_option("--fps", arguments->fps, "Frames a second of the video")
+      ->check(CLI::Range(0.1, 240.0))
       ->capture_default_str();
-  command->add_option("--panels", arguments->panels, "all, workbench, or panels' names with commas between")
-      ->capture_default_str();
-  command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing")
-      ->required();
+  const PainterOptions sizes;
   command->add_option("--size", arguments->size,
-                      fmt::format("Of an image, px; otherwise {} for the workbench and {} for a panel",
-                                  kWorkbenchSize, kPanelSize));
+                      fmt::format("Of an image, px; otherwise {}x{} for the workbench and {}x{} for a panel",
+                                  sizes.workbench_size.first, sizes.workbench_size.second,
+                                  sizes.panel_size.first, sizes.panel_size.second));
   command->add_option("--scale", arguments->scale, "Of text and spacing")->check(CLI::Range(0.5, 4.0));
   command->add_option("--theme", arguments->theme, "dark or light")->capture_default_str();
   command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
@@ -181,14 +190,15 @@ void add_snapshot_command(CLI::App& app) {
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");
   command
-      ->add_option("--length", arguments->source.frames,
+      ->add_option("--length", arguments->place.source.frames,
                    "Only so many frames of the sequence, from the first on")
       ->check(CLI::Range(1, 10'000'000));
-  command->add_option("--camera", arguments->source.camera,
+  command->add_option("--camera", arguments->place.source.camera,
                       "A camera's name or a TOML file; otherwise the folder tells");
-  command->add_option("--seed", arguments->source.seed, "Seed of a generated sequence")
+  command->add_option("--seed", arguments->place.source.seed, "Seed of a generated sequence")
       ->check(CLI::Range(0, 1'000'000'000));
-  arguments->config.add_to(*command, true);
+  arguments->place.add_to(*command);
+  arguments->place.config.add_to(*command, true);
   command->callback([arguments] { snapshot(*arguments); });
 }
 

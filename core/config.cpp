@@ -84,6 +84,9 @@ std::vector<Parameter> parameters(Config& c) {
                  "the true masks say (a reference)"});
   number("run.threads", &c.run.threads, 1, 64, "threads", "worker threads; any number gives the same bytes");
   number("run.seed", &c.run.seed, 0, 1e9, "", "of generated sequences");
+  number(
+      "run.check_removal", &c.run.check_removal, 0, 1, "",
+      "1: each pose is also solved without removal, and with the true mask where known; changes no result");
 
   MotionConfig& m = c.motion;
   number("motion.max_corners", &m.max_corners, 16, 20000, "corners", "corners followed per direction");
@@ -211,8 +214,10 @@ Config read_config(const std::string& path) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path, none))
     throw InputError(fmt::format("{}: the configuration cannot be read", path));
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return config_from_toml({std::istreambuf_iterator<char>(file), {}}, path);
+}
 
+Config config_from_toml(const std::string& text, const std::string& path) {
   toml::table table;
   try {
     table = toml::parse(text, path);
@@ -235,18 +240,22 @@ Config read_config(const std::string& path) {
   return config;
 }
 
-Config load_config(const std::string& preset_or_path) {
-  if (preset_or_path.ends_with(".toml")) return read_config(preset_or_path);
-  const std::filesystem::path folder = assets_folder() / "presets";
-  const std::filesystem::path file = folder / (preset_or_path + ".toml");
+std::vector<std::string> preset_names() {
   std::error_code none;
-  if (std::filesystem::exists(file, none)) return read_config(file.string());
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "presets", none))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
+  return names;
+}
+
+Config load_config(const std::string& preset_or_path) {
+  if (preset_or_path.ends_with(".toml")) return read_config(preset_or_path);
+  const std::filesystem::path file = assets_folder() / "presets" / (preset_or_path + ".toml");
+  std::error_code none;
+  if (std::filesystem::exists(file, none)) return read_config(file.string());
   throw InputError(fmt::format("there is no preset '{}'; the presets are: {} (or give a .toml file)",
-                               preset_or_path, fmt::join(names, ", ")));
+                               preset_or_path, fmt::join(preset_names(), ", ")));
 }
 
 void set_parameter(Config& config, std::string_view assignment) {

@@ -29,6 +29,7 @@ struct MotionConfig {
   double converged_shift_px = 0.1;  ///< rounds stop when no image corner moves more than this under the new H
   int min_tracks = 12;              ///< fewer static tracks than this and the round keeps the last homography
   int reference_gap = 1;            ///< frames between the reference and the target; 1 as in the paper
+  bool operator==(const MotionConfig&) const = default;
 };
 
 /// Method `stillpoint`: what moves where there is depth.
@@ -47,6 +48,7 @@ struct DepthMotionConfig {
   double moving_log_odds = 0.35;  ///< above it a patch moves
   double min_area_share = 0.0015;  ///< smaller regions are noise, share of the image
   int margin_px = 2;               ///< added about the mask at the end
+  bool operator==(const DepthMotionConfig&) const = default;
 };
 
 /// ORB features spread over the image.
@@ -56,6 +58,7 @@ struct FeatureConfig {
   double scale_factor = 1.2;   ///< from level to level
   int fast_threshold = 20;     ///< FAST threshold, grey levels
   int fast_threshold_low = 7;  ///< where a cell has no corner at fast_threshold
+  bool operator==(const FeatureConfig&) const = default;
 };
 
 /// Tracking against the local map.
@@ -76,6 +79,7 @@ struct TrackingConfig {
   int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
   double depth_weight =
       1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
+  bool operator==(const TrackingConfig&) const = default;
 };
 
 /// The local map and its keyframes.
@@ -93,6 +97,7 @@ struct MapConfig {
   double min_found_ratio = 0.25;  ///< a young point found in less than this share of its sightings is culled
   int max_local_keyframes = 20;   ///< covisible keyframes in the local map
   int max_keyframes = 100;        ///< beyond them the oldest retires: what keeps memory flat
+  bool operator==(const MapConfig&) const = default;
 };
 
 /// Local bundle adjustment.
@@ -101,12 +106,15 @@ struct BundleConfig {
   int max_fixed_keyframes = 20;  ///< keyframes that share their points, held fixed
   int iterations = 10;           ///< most Levenberg-Marquardt steps
   int apply_after_frames = 1;    ///< result enters the map this many frames after the keyframe; 0 = at once
+  bool operator==(const BundleConfig&) const = default;
 };
 
 struct RunConfig {
   std::string method = "paper";  ///< stillpoint, paper, none; or oracle, which is told what moves
   int threads = 2;               ///< worker threads; any number gives the same bytes
   int seed = 1;                  ///< of generated sequences
+  int check_removal = 0;  ///< 1: each pose is also solved without removal, and with the true mask where known
+  bool operator==(const RunConfig&) const = default;
 };
 
 /// Every constant of a run. Plain data; for_each_parameter below lists it.
@@ -118,6 +126,7 @@ struct Config {
   TrackingConfig tracking;
   MapConfig map;
   BundleConfig bundle;
+  bool operator==(const Config&) const = default;
 };
 
 /// One parameter of a config: where it lives, its range, unit and meaning. What TOML files, `--set`, and the
@@ -138,6 +147,12 @@ struct Parameter {
 /// @throws InputError with file and line: unreadable, not TOML, an unknown key, a wrong type or a value out
 /// of range.
 [[nodiscard]] Config read_config(const std::string& path);
+
+/// The same of a text. @param path named in errors as where it stands
+[[nodiscard]] Config config_from_toml(const std::string& text, const std::string& path);
+
+/// Names of the presets there are, in alphabetical order.
+[[nodiscard]] std::vector<std::string> preset_names();
 
 /// A preset by name (`assets/presets/NAME.toml`), or a TOML file by path.
 /// @throws InputError naming the presets there are.

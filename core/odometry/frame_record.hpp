@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,13 @@ struct StageTimes {
   double total = 0.0;     ///< the whole frame
 };
 
+/// The frame's pose as it would have been with other features taken out, solved from the same map and the
+/// same prediction (run.check_removal). Nothing else depends on it.
+struct RemovalCheck {
+  std::optional<Pose> nothing_removed;  ///< world_from_camera; nothing where it was not or cannot be solved
+  std::optional<Pose> truth_removed;  ///< … with the features that truly move taken out, where that is known
+};
+
 /// Everything a frame leaves behind but images: those can be computed again from the frames.
 struct FrameRecord {
   int index = 0;
@@ -84,6 +92,7 @@ struct FrameRecord {
          bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
   int bundle_iterations = 0;
 
+  RemovalCheck removal_check;
   StageTimes ms;
   std::vector<FeatureRecord> features;
 };

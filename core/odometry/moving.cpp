@@ -82,7 +82,7 @@ void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, cons
     if (x < 0 || y < 0 || x >= mask.cols || y >= mask.rows || mask.at<uchar>(y, x) == 0) continue;
     const float z = frame.depth.at<float>(y, x);
     if (z > 0 && p.z() < z + kLikeDepth) {
-      map_.remove_point(id);
+      map_.remove_moving_point(id);
       id = kNone;
     }
   }

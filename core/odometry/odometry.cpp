@@ -29,6 +29,7 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   record.note = frame.problem;
   now_ = frame.timestamp;
   const Stopwatch whole;
+  double check_ms = 0.0;  // no part of what the frame takes
 
   apply_due_bundle(record, false);
   if (!frame.readable()) {
@@ -44,13 +45,18 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
     const auto [found, feature_ms] = features.get();
     record.ms.features = feature_ms;
 
+    if (config_.run.check_removal != 0 && last_) {
+      const Stopwatch beside;
+      record.removal_check = check_removal(frame, found, known_mask);
+      check_ms = beside.milliseconds();
+    }
     Current current = last_ ? track_frame(frame, found, result) : initialise(frame, found, result);
     record.features = std::move(current.records);
     if (config_.run.method == "stillpoint") remember_view(frame, result);
   }
   record.map_points = static_cast<int>(map_.point_count());
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
-  record.ms.total = whole.milliseconds();
+  record.ms.total = whole.milliseconds() - check_ms;
   return result;
 }
 
@@ -162,11 +168,9 @@ Odometry::Current Odometry::initialise(const Frame& frame, const OrbFeatures& fo
 Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
   FrameRecord& record = result.record;
   const bool finds_movers_by_pose = config_.run.method == "stillpoint";
-  const bool taken_at_once = (camera_.readout_s == 0.0 || config_.tracking.correct_rolling_shutter == 0) &&
-                             (depth_lag(frame) == 0.0);
   Pose start = predicted_camera_from_world();
   Vector6d velocity = velocity_;
-  if (finds_movers_by_pose || !taken_at_once) {
+  if (finds_movers_by_pose || !is_taken_at_once(frame)) {
     // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only
     // then.
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
@@ -186,7 +190,16 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
   return current;
 }
 
-bool Odometry::estimate(Current& current, FrameRecord& record) {
+bool Odometry::is_taken_at_once(const Frame& frame) const {
+  return (camera_.readout_s == 0.0 || config_.tracking.correct_rolling_shutter == 0) &&
+         depth_lag(frame) == 0.0;
+}
+
+int Odometry::inliers_needed() const {
+  return lost_frames_ > 0 ? 2 * config_.tracking.min_inliers : config_.tracking.min_inliers;
+}
+
+bool Odometry::estimate(Current& current, FrameRecord& record) const {
   // After being lost the prediction is stale: the local map is searched everywhere at once.
   if (lost_frames_ == 0 && estimate_from_last(current, record)) return true;
   return estimate_by_epnp(current, record);
@@ -201,7 +214,8 @@ void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) 
     return;
   }
   const PoseRefinement refined = track_local_map(current, record);
-  const int needed = was_lost ? 2 * config_.tracking.min_inliers : config_.tracking.min_inliers;
+  count_sightings(current);
+  const int needed = inliers_needed();
   if (refined.inliers < needed) {
     mark_lost(record, FrameStatus::lost,
               fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed));

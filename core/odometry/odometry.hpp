@@ -28,6 +28,13 @@ struct FrameResult {
   cv::Mat mask;                   ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
+/// A frame that was processed before, and where it was found to be.
+struct PastFrame {
+  Frame frame;
+  Pose camera_from_world = Pose::Identity();
+  bool estimated = false;  ///< the pose was measured, not predicted
+};
+
 /// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds
 /// moving taken out first. Frames go in, in order; poses come out. World coordinates are the first tracked
 /// frame's camera.
@@ -38,8 +45,18 @@ class Odometry {
   Odometry(const Camera& camera, const Config& config);
 
   /// Takes the next frame. Nothing about the frame makes it throw: what cannot be tracked is marked lost.
-  /// @param known_mask what truly moves, CV_8UC1, for method `oracle` alone; empty otherwise
+  /// @param known_mask what truly moves, CV_8UC1; empty where it is not known. Method `oracle` alone goes by
+  /// it; to the others it serves for RemovalCheck.
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
+
+  /// The same map and the same place, but the next frames are processed with another config. What the new
+  /// method needs of earlier frames is made from `before`, newest last: motion.reference_gap of them for the
+  /// paper's method, depth_motion.far_reference for `stillpoint`. With an equal config it goes on bit for bit
+  /// as it would have.
+  /// @returns nothing where the map's features would not fit the new ones (another features.levels or
+  /// features.scale_factor)
+  [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
+                                                       const std::vector<PastFrame>& before) const;
 
   /// Lets a pending bundle adjustment enter the map: after the last frame.
   void finish();
@@ -58,6 +75,7 @@ class Odometry {
     bool seek_consensus =
         false;               // movers may be among the features: least squares alone is not to be trusted
     std::uint32_t seed = 0;  // of the samples consensus is sought with
+    std::vector<int> points_in_view, points_found;  // map points that should be seen, and those that were
   };
   /// The frame before, as the next one needs it.
   struct Last {
@@ -91,14 +109,21 @@ class Odometry {
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
   void track(const Frame& frame, Current& current, FrameRecord& record);
-  [[nodiscard]] bool estimate(Current& current, FrameRecord& record);
-  [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record);
-  [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record);
+  [[nodiscard]] bool estimate(Current& current, FrameRecord& record) const;
+  [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record) const;
+  [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record) const;
   [[nodiscard]] std::vector<PoseObservation> observations_of(const Current& current,
                                                              const std::vector<Match>& matches) const;
   [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches,
                                       FrameRecord& record) const;
-  [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record);
+  [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
+  void count_sightings(const Current& current);
+  [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const OrbFeatures& found,
+                                           const cv::Mat& known_mask) const;
+  [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const OrbFeatures& found,
+                                                    const cv::Mat& mask) const;
+  [[nodiscard]] bool is_taken_at_once(const Frame& frame) const;
+  [[nodiscard]] int inliers_needed() const;
   [[nodiscard]] std::vector<int> local_points(const Current& current) const;
   [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current,
                                     const FrameRecord& record) const;

@@ -38,7 +38,7 @@ PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matc
   return refined;
 }
 
-bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
+bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
   const TrackingConfig& tracking = config_.tracking;
   const Pose predicted = current.camera_from_world;
   for (const double radius : {tracking.search_radius_px, tracking.search_radius_wide_px}) {
@@ -90,7 +90,7 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) {
   return false;
 }
 
-bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) {
+bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) const {
   constexpr int kMaxDistance = 60;  // bits: without a window only close descriptors tell points apart
   constexpr double kRatio = 0.8;
   Stopwatch watch;
@@ -149,7 +149,7 @@ std::vector<int> Odometry::local_points(const Current& current) const {
   return points;
 }
 
-PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) {
+PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) const {
   Stopwatch watch;
   std::vector<Match> matches;
   std::vector<int> matched;
@@ -162,14 +162,14 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
 
   std::vector<Candidate> candidates;
   for (const int id : local_points(current)) {
-    MapPoint& point = map_.point(id);
+    const MapPoint& point = map_.point(id);
     if (std::binary_search(matched.begin(), matched.end(), id)) {
-      ++point.visible;
+      current.points_in_view.push_back(id);
       continue;
     }
     const Projection seen = project_point(point, camera_, current.camera_from_world, config_.features);
     if (!seen.visible) continue;
-    ++point.visible;
+    current.points_in_view.push_back(id);
     const double radius = config_.tracking.map_radius_px * scales_[static_cast<std::size_t>(seen.octave)];
     candidates.push_back({id, seen.pixel, static_cast<float>(radius), seen.octave - 1, seen.octave + 1,
                           &point.descriptor, -1.0F});
@@ -187,13 +187,18 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const auto f = static_cast<std::size_t>(matches[i].feature);
     current.points[f] = refined.inlier[i] ? matches[i].point : kNone;
-    if (refined.inlier[i]) ++map_.point(matches[i].point).found;
+    if (refined.inlier[i]) current.points_found.push_back(matches[i].point);
     FeatureRecord& feature = current.records[static_cast<std::size_t>(current.record_of[f])];
     feature.map_point = matches[i].point;
     feature.residual_px = refined.residual_px[i];
     feature.fate = refined.inlier[i] ? FeatureFate::inlier : FeatureFate::outlier;
   }
   return refined;
+}
+
+void Odometry::count_sightings(const Current& current) {
+  for (const int id : current.points_in_view) ++map_.point(id).visible;
+  for (const int id : current.points_found) ++map_.point(id).found;
 }
 
 }  // namespace stillpoint

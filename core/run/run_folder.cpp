@@ -140,7 +140,7 @@ void prepare_run_folder(const std::filesystem::path& folder, bool force) {
 }
 
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,
-               const FrameSource& source) {
+               const FrameSource& source, const SequenceOrigin& origin) {
   Trajectory keyframes;
   for (const SavedKeyframe& keyframe : run.keyframes) keyframes.push_back(keyframe.pose);
   write_tum_trajectory((folder / "trajectory.txt").string(), run.trajectory);
@@ -149,10 +149,10 @@ void write_run(const std::filesystem::path& folder, const RunResult& run, const 
   write_text_file(folder / "frames.csv", frames_csv(run, report));
   write_text_file(folder / "config.toml", to_toml(run.config));
   write_text_file(folder / "map.ply", map_ply(run));
-  write_text_file(
-      folder / "summary.json",
-      to_summary(report, run, source).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-          "\n");
+  nlohmann::ordered_json summary = to_summary(report, run, source);
+  summary["source"] = to_json(origin, folder);
+  write_text_file(folder / "summary.json",
+                  summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace stillpoint

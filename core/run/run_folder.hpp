@@ -4,6 +4,7 @@
 
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/sequence_origin.hpp"
 
 namespace stillpoint {
 
@@ -21,8 +22,10 @@ void prepare_run_folder(const std::filesystem::path& folder, bool force);
 ///   summary.json         the figures of the whole run
 ///   config.toml          every parameter
 ///   map.ply              map points and keyframe centres
+/// records.bin (records_file.hpp) stands beside them, written while the run went on.
+/// @param origin goes into summary.json
 /// @throws InputError when one cannot be written
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,
-               const FrameSource& source);
+               const FrameSource& source, const SequenceOrigin& origin);
 
 }  // namespace stillpoint

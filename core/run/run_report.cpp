@@ -4,27 +4,13 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
+#include "core/run/run_hash.hpp"
 
 namespace stillpoint {
 namespace {
-
-/// FNV-1a over the bytes of numbers.
-class Fingerprint {
- public:
-  void add(std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte, value >>= 8U) hash_ = (hash_ ^ (value & 0xFFU)) * 0x100000001b3U;
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(int value) { add(static_cast<std::uint64_t>(static_cast<std::int64_t>(value))); }
-  [[nodiscard]] std::string hex() const { return fmt::format("{:016x}", hash_); }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325U;
-};
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -122,17 +108,9 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
 }
 
 std::string run_hash(const std::vector<FrameRecord>& records) {
-  Fingerprint print;
-  for (const FrameRecord& r : records) {
-    print.add(r.index);
-    print.add(static_cast<int>(r.status));
-    for (int i = 0; i < 12; ++i) print.add(r.world_from_camera.matrix()(i % 3, i / 3));
-    for (const int figure : {r.features_found, r.features_removed, r.motion_rounds, r.matches, r.inliers,
-                             r.map_points, r.map_keyframes, static_cast<int>(r.keyframe)})
-      print.add(figure);
-    print.add(r.mask_share);
-  }
-  return print.hex();
+  RunHash hash;
+  for (const FrameRecord& record : records) hash.add(record);
+  return hash.hex();
 }
 
 nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run, const FrameSource& source) {

@@ -50,6 +50,13 @@ std::vector<SavedPoint> saved_points(const LocalMap& map) {
   return saved;
 }
 
+std::vector<SavedPoint> moved_points(const LocalMap& map) {
+  std::vector<SavedPoint> points;
+  for (const MovedPoint& point : map.moved_points())
+    points.push_back({.id = point.id, .position = point.position, .observations = 0, .moved = true});
+  return points;
+}
+
 Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records) {
   Trajectory trajectory;
   for (const FrameRecord& record : records) {
@@ -65,7 +72,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.config = config;
   result.frames_in_sequence = source.size();
   const int end = options.count > 0 ? std::min(source.size(), options.first + options.count) : source.size();
-  const bool oracle = config.run.method == "oracle";
+  const bool told = config.run.method == "oracle" || config.run.check_removal != 0;
 
   Odometry odometry(source.camera(), config);
   Prefetcher prefetcher(source, options.first, end, std::max(1, config.run.threads));
@@ -75,14 +82,14 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       result.interrupted = true;
       break;
     }
-    // The truth is read beside tracking; only `oracle`, which is told, waits for it.
-    auto truth = std::async(oracle ? std::launch::deferred : std::launch::async, [&source, index] {
+    // The truth is read beside tracking; only who is told of it waits for it.
+    auto truth = std::async(told ? std::launch::deferred : std::launch::async, [&source, index] {
       return source.has_masks() ? source.truth(index).moving : cv::Mat();
     });
     const Frame frame = prefetcher.next();
-    const cv::Mat known = oracle ? truth.get() : cv::Mat();
+    const cv::Mat known = told ? truth.get() : cv::Mat();
     FrameResult processed = odometry.process(frame, known);
-    result.scores.push_back(score_frame(processed, oracle ? known : truth.get()));
+    result.scores.push_back(score_frame(processed, told ? known : truth.get()));
     if (options.measure_orb_unit && frame.readable()) units.push_back(orb_unit_ms(frame.gray));
     if (options.on_frame) options.on_frame(processed);
     if (!options.keep_features) processed.record.features = {};

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -83,37 +84,44 @@ void prepare(const FrameSource& source, const fs::path& folder, bool force) {
   }
 }
 
-std::string image_name(const FrameSource& source, int index) {
-  return fmt::format("{:.6f}.png", source.timestamp(index));
-}
+std::string image_name(double stamp) { return fmt::format("{:.6f}.png", stamp); }
 
-void write_frame(const FrameSource& source, int index, const fs::path& folder) {
+/// @returns when the depth image was taken, s; nothing where there is none
+std::optional<double> write_frame(const FrameSource& source, int index, const fs::path& folder) {
   const Frame frame = source.read(index);
   if (!frame.readable())
     throw InputError(fmt::format("frame {} of {}: {}", index, source.name(), frame.problem));
-  const std::string name = image_name(source, index);
+  const std::string name = image_name(source.timestamp(index));
   write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
-  if (frame.has_depth()) {
-    cv::Mat stored;
-    frame.depth.convertTo(stored, CV_16U, source.camera().depth_scale);  // rounds to nearest
-    write_png(folder / "depth" / name, stored);
-  }
-  if (!source.has_masks()) return;
-  const FrameTruth truth = source.truth(index);
-  if (!truth.moving.empty()) write_png(folder / "mask" / name, truth.moving);
+  if (source.has_masks())
+    if (const FrameTruth truth = source.truth(index); !truth.moving.empty())
+      write_png(folder / "mask" / name, truth.moving);
+  if (!frame.has_depth()) return std::nullopt;
+  cv::Mat stored;
+  frame.depth.convertTo(stored, CV_16U, source.camera().depth_scale);  // rounds to nearest
+  write_png(folder / "depth" / image_name(frame.depth_timestamp), stored);
+  return frame.depth_timestamp;
 }
 
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
-void write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+/// When each frame's depth was taken, of the frames written: those from the first on.
+using DepthStamps = std::vector<std::optional<double>>;
+
+/// All frames, by as many threads as wanted; the first failure ends them and is thrown.
+DepthStamps write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
   int done = 0;
   std::exception_ptr failure;
+  DepthStamps depth_stamps(static_cast<std::size_t>(source.size()));
   const auto work = [&] {
-    for (int i = next++; i < source.size() && !failed; i = next++) {
+    // Whoever has taken a frame writes it, so that none is missing before the last.
+    while (!failed && !(options.stop != nullptr && *options.stop)) {
+      const int i = next++;
+      if (i >= source.size()) break;
       try {
-        write_frame(source, i, folder);
+        depth_stamps[static_cast<std::size_t>(i)] = write_frame(source, i, folder);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, source.size());
@@ -129,6 +137,8 @@ void write_frames(const FrameSource& source, const fs::path& folder, const Write
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
+  depth_stamps.resize(static_cast<std::size_t>(done));
+  return depth_stamps;
 }
 
 std::string camera_text(const Camera& c) {
@@ -139,38 +149,44 @@ std::string camera_text(const Camera& c) {
       c.readout_s);
 }
 
-void write_lists(const FrameSource& source, const fs::path& folder) {
-  const auto list = [&](const char* name) {
+void write_lists(const FrameSource& source, const fs::path& folder, const DepthStamps& depth_stamps) {
+  const auto list = [&](const char* name, auto&& stamp_of) {
     std::string text = fmt::format("# {} images of {}\n# timestamp filename\n", name, source.name());
     for (int i = 0; i < source.size(); ++i)
-      if (fs::exists(folder / name / image_name(source, i)))
-        text += fmt::format("{:.6f} {}/{}\n", source.timestamp(i), name, image_name(source, i));
+      if (const std::optional<double> stamp = stamp_of(i);
+          stamp && fs::exists(folder / name / image_name(*stamp)))
+        text += fmt::format("{:.6f} {}/{}\n", *stamp, name, image_name(*stamp));
     write_text_file(folder / (std::string(name) + ".txt"), text);
+  };
+  const auto of_colour = [&](int i) { return std::optional(source.timestamp(i)); };
+  const auto of_depth = [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    return at < depth_stamps.size() ? depth_stamps[at] : std::nullopt;
   };
   write_text_file(folder / "camera.toml", camera_text(source.camera()));
   if (!source.ground_truth().empty())
     write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
-  if (source.has_masks()) list("mask");
+  if (source.has_masks()) list("mask", of_colour);
   if (source.has_depth()) {
-    list("depth");
+    list("depth", of_depth);
     std::string pairs;
-    for (int i = 0; i < source.size(); ++i) {
-      const std::string name = image_name(source, i);
-      if (fs::exists(folder / "depth" / name))
-        pairs += fmt::format("{0:.6f} rgb/{1} {0:.6f} depth/{1}\n", source.timestamp(i), name);
-    }
+    for (int i = 0; i < source.size(); ++i)
+      if (const auto stamp = of_depth(i))
+        pairs += fmt::format("{0:.6f} rgb/{1} {2:.6f} depth/{3}\n", source.timestamp(i),
+                             image_name(source.timestamp(i)), *stamp, image_name(*stamp));
     write_text_file(folder / "associations.txt", pairs);
   }
-  list("rgb");
+  list("rgb", of_colour);
 }
 
 }  // namespace
 
-void write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+int write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
   prepare(source, folder, options.force);
-  write_frames(source, folder, options);
-  write_lists(source, folder);
+  const DepthStamps written = write_frames(source, folder, options);
+  if (!written.empty()) write_lists(source, folder, written);
+  return static_cast<int>(written.size());
 }
 
 }  // namespace stillpoint

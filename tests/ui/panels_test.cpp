@@ -4,58 +4,13 @@
 #include <set>
 
 #include "tests/support/golden.hpp"
+#include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/offscreen.hpp"
 
 namespace stillpoint::testing {
 namespace {
-
-using ::testing::IsEmpty;
-
-/// One panel offscreen, filling the image, as `snapshot` draws it.
-class PanelStage {
- public:
-  PanelStage(const std::string& name, const Look& look, int width = 520, int height = 420)
-      : offscreen_({.width = width, .height = height, .look = look}), panels_(make_panels()) {
-    for (const auto& panel : panels_)
-      if (panel->name() == name) panel_ = panel.get();
-  }
-  ~PanelStage() { EXPECT_THAT(offscreen_.take_gl_errors(), IsEmpty()) << panel_->name(); }
-
-  cv::Mat render(const SessionView& session) {
-    return offscreen_.render([&](UiFrame& frame) { draw(frame, session); });
-  }
-  /// What the panel asks for when it is clicked at a place of the image, as shares of its size.
-  PanelActions click(const SessionView& session, double x, double y) {
-    const auto place = [&](UiFrame& frame) { draw(frame, session); };
-    const cv::Mat image = render(session);
-    offscreen_.send(MouseMoved{static_cast<float>(x * image.cols), static_cast<float>(y * image.rows)});
-    offscreen_.render(place);
-    actions_ = {};
-    offscreen_.send(MouseButton{0, true, {}});
-    offscreen_.draw(place);
-    offscreen_.send(MouseButton{0, false, {}});
-    offscreen_.draw(place);
-    return actions_;
-  }
-  void send(const InputEvent& event) { offscreen_.send(event); }
-  void resize(int width, int height) { offscreen_.resize(width, height); }
-
- private:
-  void draw(UiFrame& frame, const SessionView& session) {
-    ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize(frame.size);
-    ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-    panel_->draw(frame, session, actions_);
-    ImGui::End();
-  }
-
-  Offscreen offscreen_;
-  std::vector<std::unique_ptr<Panel>> panels_;
-  Panel* panel_ = nullptr;
-  PanelActions actions_;
-};
 
 std::vector<std::string> panel_names() {
   std::vector<std::string> names;
@@ -175,16 +130,6 @@ TEST(Panels, AClickInTimingsGoesToTheFrameThere) {
   EXPECT_GE(*frame, 11);
 }
 
-TEST(Panels, ResettingAParameterAsksForItsDefault) {
-  PanelStage stage("parameters", {});
-  // The first row is the method, which is not the default one: its reset button stands at the right.
-  SessionView session = generated_example();
-  session.config.run.method = "none";
-  const PanelActions actions = stage.click(session, 486.0 / 520.0, 73.0 / 420.0);
-  using Assignment = std::pair<std::string, std::string>;
-  EXPECT_THAT(actions.set_parameters, ::testing::ElementsAre(Assignment("run.method", Config().run.method)));
-}
-
 TEST(Panels, HoldingTFlipsToTheTarget) {
   PanelStage stage("compensated", {});
   stage.send(MouseMoved{260.0F, 200.0F});
@@ -246,17 +191,6 @@ TEST(Panels, ANewFrameIsShownAtOnce) {
   current->frame.colour = cv::Mat(current->frame.colour.size(), CV_8UC3, cv::Scalar(200, 40, 90));
   other.current = current;
   EXPECT_FALSE(images_agree(stage.render(other), before, {}));
-}
-
-TEST(Panels, GoldenImages) {
-  const SessionView example = handmade_example();
-  for (const auto& [name, theme] : {std::pair{"union_mask", ThemeName::kDark},
-                                    {"features_before", ThemeName::kLight},
-                                    {"errors", ThemeName::kDark},
-                                    {"timeline", ThemeName::kLight}}) {
-    PanelStage stage(name, {theme, 1.0F});
-    EXPECT_TRUE(matches_golden(stage.render(example), std::string("panel_") + name));
-  }
 }
 
 }  // namespace

@@ -23,6 +23,12 @@ struct SessionExample {
 /// a change of the panels is to change.
 [[nodiscard]] SessionView handmade_example();
 
+/// The same with all that debugging adds: bookmarks, breakpoints, a range, two ghosts, removal's errors.
+[[nodiscard]] SessionView debug_example();
+
+/// A run of as many frames as wanted, its figures going up and down; worst at `worst`.
+[[nodiscard]] SessionView long_example(int frames, int worst);
+
 /// 14 frames of generated:walking_static, run once a program.
 [[nodiscard]] const SessionView& generated_example();
 

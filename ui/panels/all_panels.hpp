@@ -26,6 +26,11 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_timeline_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timings_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_parameters_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_breakpoints_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_bookmarks_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_compare_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_removal_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_inspector_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_log_panel(Shared shared);
 
 }  // namespace stillpoint

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
 
@@ -36,9 +37,8 @@ class ErrorsPanel final : public NamedPanel {
     footer.caption = caption(session);
     const ImVec2 room = room_above(frame, footer);
     const ImVec2 size{room.x, both ? 0.5F * (room.y - ImGui::GetStyle().ItemSpacing.y) : room.y};
-    if (both || over_ == kSecond)
-      plot(frame, session, actions, "second", run_.second, baseline_.second, size);
-    if (both || over_ == kFrame) plot(frame, session, actions, "frame", run_.frame, baseline_.frame, size);
+    if (both || over_ == kSecond) plot(frame, session, actions, &Curves::second, size);
+    if (both || over_ == kFrame) plot(frame, session, actions, &Curves::frame, size);
     footer.draw(frame);
   }
 
@@ -49,8 +49,14 @@ class ErrorsPanel final : public NamedPanel {
 
   void collect(const SessionView& session) {
     const double start = series_start(session);
-    if (kept_ == Key{session.run.get(), session.baseline.get(), session.revision, of_}) return;
-    kept_ = {session.run.get(), session.baseline.get(), session.revision, of_};
+    Key key{session.run.get(), session.baseline.get(), session.revision, of_, {}};
+    for (const GhostView& ghost : session.debug.ghosts)
+      key.ghosts.emplace_back(ghost.run.get(), ghost.run->records.size());
+    if (kept_ == key) return;
+    kept_ = std::move(key);
+    ghosts_.clear();
+    for (const GhostView& ghost : session.debug.ghosts)
+      ghosts_.push_back(curves(ghost.run->evaluation, start));
     run_ = curves(session.run->evaluation, start);
     baseline_ = session.baseline ? curves(session.baseline->evaluation, start) : Curves{};
   }
@@ -60,17 +66,19 @@ class ErrorsPanel final : public NamedPanel {
             error_series(evaluation.rpe_frame, start, of_ == kRotation)};
   }
 
-  void plot(const UiFrame& frame, const SessionView& session, PanelActions& actions, const char* id,
-            const Series& run, const Series& baseline, ImVec2 size) {
+  void plot(const UiFrame& frame, const SessionView& session, PanelActions& actions, Series Curves::*which,
+            ImVec2 size) {
     const ThemeName theme = frame.theme.name;
+    const Series &run = run_.*which, &baseline = baseline_.*which;
     Plot plot{.x_label = "time", .x_unit = "s"};
-    const bool per_second = id == std::string("second");
+    const bool per_second = which == &Curves::second;
     plot.y_label = per_second ? "RPE over " + evaluation_of(session).rpe_time.delta : "RPE per frame";
     plot.y_unit = of_ == kRotation ? "°" : "mm";
     if (!baseline.x.empty()) {
       plot.series.push_back({session.baseline->name, baseline.x, baseline.y,
                              role_colour(Role::kBaseline, theme), SeriesStyle::kDashed});
     }
+    add_ghosts(frame, session, which, plot);
     plot.series.push_back(
         {session.run->name, run.x, run.y, role_colour(Role::kEstimate, theme), SeriesStyle::kLine, 2.0F});
     plot.x_limits = record_range(session);
@@ -79,7 +87,8 @@ class ErrorsPanel final : public NamedPanel {
     view_[per_second].x = x_;
     view_[per_second].log_y = log_;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const PlotResponse response = draw_plot(frame, id, plot, view_[per_second], size);
+    const PlotResponse response =
+        draw_plot(frame, per_second ? "second" : "frame", plot, view_[per_second], size);
     x_ = view_[per_second].x;
     if (run.x.empty() && baseline.x.empty()) {
       draw_label(frame, {corner.x + 0.3F * size.x, corner.y + 0.4F * size.y},
@@ -89,6 +98,20 @@ class ErrorsPanel final : public NamedPanel {
                  frame.theme.text_dim);
     }
     if (response.clicked_x) actions.go_to_frame = frame_at(session, *response.clicked_x);
+  }
+
+  /// Ghosts in the same axes, and where each parts from the run.
+  void add_ghosts(const UiFrame& frame, const SessionView& session, Series Curves::*which, Plot& plot) const {
+    for (std::size_t i = 0; i < ghosts_.size(); ++i) {
+      const GhostView& ghost = session.debug.ghosts[i];
+      const RunLook look = ghost_look(i, frame.theme.name);
+      const Series& series = ghosts_[i].*which;
+      plot.series.push_back({shortened(ghost.name, 24), series.x, series.y, look.colour, look.line, 2.0F});
+      if (!ghost.diverged) continue;
+      if (const auto at = record_of(session, *ghost.diverged))
+        plot.marks.push_back({session.run->records[*at].timestamp - series_start(session),
+                              fmt::format("≠ at {}", *ghost.diverged), look.colour});
+    }
   }
 
   [[nodiscard]] static const TrajectoryEvaluation& evaluation_of(const SessionView& session) {
@@ -103,21 +126,23 @@ class ErrorsPanel final : public NamedPanel {
   }
 
   [[nodiscard]] std::string caption(const SessionView& session) const {
-    const auto figures = [this](const RunView& run) {
+    const auto figures = [this](const RunView& run, const std::string& name) {
       const auto& evaluation = run.evaluation;
-      if (evaluation.matched.empty()) return fmt::format("{}: no figures", run.name);
+      if (evaluation.matched.empty()) return fmt::format("{}: no figures", name);
       if (of_ == kRotation) {
-        return fmt::format("{}: RMSE {}, {}", run.name,
+        return fmt::format("{}: RMSE {}, {}", name,
                            figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta),
                            figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta));
       }
-      return fmt::format("{}: RMSE {}, {}, ATE {:.3g} mm", run.name,
+      return fmt::format("{}: RMSE {}, {}, ATE {:.3g} mm", name,
                          figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta),
                          figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
                          1000.0 * evaluation.ate.translation_m.rmse);
     };
-    std::string text = figures(*session.run);
-    if (session.baseline) text += ".  " + figures(*session.baseline);
+    std::string text = figures(*session.run, session.run->name);
+    if (session.baseline) text += ".  " + figures(*session.baseline, session.baseline->name);
+    for (const GhostView& ghost : session.debug.ghosts)
+      text += ".  " + figures(*ghost.run, shortened(ghost.name));
     return text + ". Each error stands at the end of its motion.";
   }
 
@@ -128,6 +153,7 @@ class ErrorsPanel final : public NamedPanel {
     const void *run = nullptr, *baseline = nullptr;
     std::uint64_t revision = 0;
     int of = 0;
+    std::vector<std::pair<const RunView*, std::size_t>> ghosts{};  // with how many records
     bool operator==(const Key&) const = default;
   };
 
@@ -135,6 +161,7 @@ class ErrorsPanel final : public NamedPanel {
   bool log_ = false;
   Key kept_;
   Curves run_, baseline_;
+  std::vector<Curves> ghosts_;
   PlotView view_[2];
   std::optional<AxisRange> x_;  // both plots show the same time
 };

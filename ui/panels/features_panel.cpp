@@ -25,7 +25,8 @@ class FeaturesPanel final : public NamedPanel {
       draw_absent(frame, fmt::format("Frame {} has not been processed yet.", view.index));
       return;
     }
-    if (!view.frame.readable()) {
+    // Features of a record whose image is gone still say where they were.
+    if (!view.frame.readable() && view.record->features.empty()) {
       draw_absent(frame, missing_motion(session));
       return;
     }
@@ -43,8 +44,12 @@ class FeaturesPanel final : public NamedPanel {
     }
     const Footer footer = footer_of(frame, session, *view.record);
     ImageContent content;
-    content.texture = &ground_.get(frame, session.current, 0, [&] { return view.frame.gray; });
-    content.values = &view.frame.gray;
+    content.texture = &ground_.get(frame, session.current, 0, [&] {
+      return view.frame.readable()
+                 ? view.frame.gray
+                 : cv::Mat(session.camera.height, session.camera.width, CV_8UC1, cv::Scalar(70));
+    });
+    content.values = view.frame.readable() ? &view.frame.gray : nullptr;
     if (moment_ == FeatureMoment::kBefore && mask_ && !view.mask.empty()) {
       const Texture& tint = tint_.get(frame, session.current, 0, [&] {
         return tinted_mask(view.mask, role_colour(Role::kUnion, frame.theme.name));
@@ -92,7 +97,8 @@ class FeaturesPanel final : public NamedPanel {
     };
     std::array<int, 4> counts{};
     for (const FeatureRecord& feature : record.features) ++counts[static_cast<std::size_t>(feature.fate)];
-    const std::string where = frame_text(session, session.current->frame);
+    std::string where = frame_text(session, session.current->frame);
+    if (!session.current->frame.readable()) where += ", its image missing";
     if (moment_ == FeatureMoment::kBefore) {
       add(FeatureFate::unmatched, record.features_kept);
       add(FeatureFate::removed, record.features_removed);

@@ -79,10 +79,9 @@ cv::Mat coloured(const cv::Mat& values, const ColourScale& scale, bool zero_is_n
   return picture;
 }
 
-cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth) {
+cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth, const ComparisonColours& colours) {
   if (truth.empty()) return {};
   constexpr int kPeriod = 12, kBroad = 5;  // px, of the hatching
-  const ComparisonColours colours;
   cv::Mat compared(truth.size(), CV_8UC4, cv::Scalar::all(0));
   for (int y = 0; y < truth.rows; ++y) {
     const auto* moves = truth.ptr<std::uint8_t>(y);

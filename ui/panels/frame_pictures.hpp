@@ -45,11 +45,12 @@ class FrameTexture {
 /// CV_8UC3 of CV_32FC1 or CV_8UC1 values by colour; NaN (and, where asked, 0) gets `none`.
 [[nodiscard]] cv::Mat coloured(const cv::Mat& values, const ColourScale& scale, bool zero_is_none = false);
 
-/// CV_8UC4: where mask and truth agree, what the mask missed (hatched /), what it took wrongly (hatched \).
-[[nodiscard]] cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth);
 struct ComparisonColours {
   Rgb agreed = okabe_ito::kGreen, missed = okabe_ito::kVermillion, wrong = okabe_ito::kYellow;
 };
+/// CV_8UC4: where mask and truth agree, what the mask missed (hatched /), what it took wrongly (hatched \).
+[[nodiscard]] cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth,
+                                     const ComparisonColours& colours = {});
 
 /// The outlines of a mask, image coordinates.
 using Outlines = std::vector<std::vector<Eigen::Vector2d>>;

@@ -18,9 +18,14 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
   panels.push_back(make_timeline_panel(shared));
+  panels.push_back(make_removal_panel(shared));
+  panels.push_back(make_compare_panel(shared));
+  panels.push_back(make_breakpoints_panel(shared));
+  panels.push_back(make_bookmarks_panel(shared));
   panels.push_back(make_timings_panel(shared));
   panels.push_back(make_parameters_panel(shared));
   panels.push_back(make_inspector_panel(shared));
+  panels.push_back(make_log_panel(shared));
   return panels;
 }
 

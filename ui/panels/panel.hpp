@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 
@@ -15,6 +16,8 @@ namespace stillpoint {
 struct PanelActions {
   std::optional<int> go_to_frame;                                   ///< 0 to frame_count - 1
   std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
+  std::vector<SessionRequest> requests;                             ///< in order
+  std::optional<LaneFigure> worst_by;                               ///< what "worst" is to go by from now on
 };
 
 /// One view of the session. What it draws is the same in a window and in an image file.

@@ -1,8 +1,13 @@
 #include "ui/panels/panel_kit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
+#include "ui/panels/panel_choices.hpp"
 #include "ui/plot/plot_axis.hpp"
 
 namespace stillpoint {
@@ -10,6 +15,7 @@ namespace {
 
 constexpr float kSliderWidth = 112.0F;  // design px
 constexpr float kBarWidth = 12.0F;
+constexpr const char* kRoundId = "round";
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
   const ImFont* font = frame.fonts.small;
@@ -42,11 +48,26 @@ float Controls::text_width(const char* label) const { return ImGui::CalcTextSize
 
 bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
                       const char* tooltip) {
+  if (!frame_.controls) return false;
   const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
   float width = 0.0F;
   for (const std::string& name : names) width += text_width(name.c_str()) + 2.0F * padding + gap;
   place(width - gap);
+  const auto shown = [&] {
+    const bool any = chosen >= 0 && chosen < static_cast<int>(names.size());
+    return any ? names[static_cast<std::size_t>(chosen)] : std::string();
+  };
   bool changed = false;
+  // Which round is shown is a matter of the frame, not of taste.
+  const bool kept = frame_.choices != nullptr && std::string_view(id) != kRoundId;
+  if (kept) {
+    const auto wanted = frame_.choices->take(id, shown());
+    const auto found = wanted ? std::find(names.begin(), names.end(), *wanted) : names.end();
+    if (found != names.end()) {
+      chosen = static_cast<int>(found - names.begin());
+      changed = true;
+    }
+  }
   ImGui::PushID(id);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
@@ -66,21 +87,42 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   }
   ImGui::PopStyleVar();
   ImGui::PopID();
+  if (kept) frame_.choices->note(id, shown());
   return changed;
 }
 
 bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
+  if (!frame_.controls) return false;
   place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
-  const bool changed = ImGui::Checkbox(label, &on);
+  bool changed = false;
+  if (frame_.choices != nullptr) {
+    if (const auto wanted = frame_.choices->take(label, on ? "on" : "off")) {
+      on = *wanted == "on";
+      changed = true;
+    }
+  }
+  changed = ImGui::Checkbox(label, &on) || changed;
+  if (frame_.choices != nullptr) frame_.choices->note(label, on ? "on" : "off");
   tooltip_of_last(tooltip);
   return changed;
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
+  if (!frame_.controls) return false;
   const float name = text_width(label);
   place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
-  return ImGui::SliderFloat(label, &value, low, high, format);
+  bool changed = false;
+  const auto words = [&] { return fmt::format("{:.4g}", value); };
+  if (frame_.choices != nullptr) {
+    const auto wanted = frame_.choices->take(label, words());
+    const float number = wanted ? std::strtof(wanted->c_str(), nullptr) : value;
+    changed = wanted && std::isfinite(number);
+    if (changed) value = std::clamp(number, low, high);
+  }
+  changed = ImGui::SliderFloat(label, &value, low, high, format) || changed;
+  if (frame_.choices != nullptr) frame_.choices->note(label, words());
+  return changed;
 }
 
 void Controls::round(int rounds, int& chosen) {
@@ -88,11 +130,12 @@ void Controls::round(int rounds, int& chosen) {
   std::vector<std::string> names{"Round 1"};
   for (int i = 2; i <= rounds; ++i) names.push_back(std::to_string(i));
   int shown = chosen < 0 ? rounds - 1 : std::min(chosen, rounds - 1);
-  if (choice("round", names, shown, "Each round leaves out what the one before took for moving"))
+  if (choice(kRoundId, names, shown, "Each round leaves out what the one before took for moving"))
     chosen = shown == rounds - 1 ? -1 : shown;
 }
 
 bool Controls::button(const char* label, const char* tooltip, bool* held) {
+  if (!frame_.controls) return false;
   place(text_width(label) + 2.0F * ImGui::GetStyle().FramePadding.x);
   const bool pressed = ImGui::Button(label);
   if (held != nullptr) *held = ImGui::IsItemActive();
@@ -138,6 +181,10 @@ void draw_sign(const UiFrame& frame, ImDrawList& list, ImVec2 centre, float radi
     case Sign::kDiamond:
       list.AddQuadFilled({low.x, centre.y}, {centre.x, low.y}, {high.x, centre.y}, {centre.x, high.y},
                          colour);
+      return;
+    case Sign::kFlag:
+      list.AddLine({low.x, low.y}, {low.x, high.y}, colour, thin);
+      list.AddTriangleFilled({low.x, low.y}, {high.x, low.y + 0.6F * r}, {low.x, low.y + 1.2F * r}, colour);
       return;
     case Sign::kLine:
       list.AddLine({centre.x - 2.0F * r, centre.y}, {centre.x + 2.0F * r, centre.y}, colour, 1.4F * thin);
@@ -305,6 +352,20 @@ ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb 
                                             to_u32(frame.theme.background, 0.82F), 3.0F * frame.scale);
   small_text(frame, {at.x + pad, at.y + 0.25F * pad}, text, colour);
   return size;
+}
+
+void draw_preview_badge(const UiFrame& frame, const SessionView& session, ImVec2 corner) {
+  if (!shows_preview(session)) return;
+  const std::string text = "Preview";
+  const ImVec2 extent = small_extent(frame, text);
+  const float pad = 5.0F * frame.scale, inset = 6.0F * frame.scale;
+  const ImVec2 high{std::round(corner.x - inset), std::round(corner.y + inset + extent.y + pad)};
+  const ImVec2 low{high.x - extent.x - 2.0F * pad, high.y - extent.y - pad};
+  // Dark ink on the warning's colour reads on any picture and in either theme.
+  const Rgb ground = role_colour(Role::kWarning, frame.theme.name);
+  const Rgb ink = frame.theme.name == ThemeName::kDark ? okabe_ito::kBlack : Rgb{0xFF, 0xFF, 0xFF};
+  ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(ground), 3.0F * frame.scale);
+  small_text(frame, {low.x + pad, low.y + 0.5F * pad}, text, ink);
 }
 
 }  // namespace stillpoint

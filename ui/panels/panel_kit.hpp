@@ -72,6 +72,7 @@ enum class Sign {
   kHollowSquare,
   kTriangle,
   kDiamond,
+  kFlag,
   kLine,
   kDashed
 };
@@ -144,5 +145,9 @@ void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float hei
 
 /// Text on a ground of its own that reads on any picture, its upper left corner at `at`. @returns its size.
 ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour);
+
+/// "Preview" in the upper right corner of a picture, while shown_frame() is not what the run made; nothing
+/// otherwise. @param corner the picture's upper right corner
+void draw_preview_badge(const UiFrame& frame, const SessionView& session, ImVec2 corner);
 
 }  // namespace stillpoint

@@ -2,117 +2,224 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
+#include "core/error.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/parameter_rows.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
 namespace {
 
-std::string section_of(const Parameter& parameter) {
-  return parameter.key.substr(0, parameter.key.find('.'));
-}
+constexpr float kFieldWidth = 22.0F;  // times the height of letters
 
-/// "max_corners" as people read it: "Max corners".
-std::string label_of(const Parameter& parameter) {
-  std::string label = parameter.key.substr(parameter.key.find('.') + 1);
-  std::replace(label.begin(), label.end(), '_', ' ');
-  if (label.ends_with(" px")) label.resize(label.size() - 3);
-  if (!label.empty()) label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
-  return label;
-}
-
-/// "depth_motion" as people read it.
-std::string heading_of(const std::string& section) {
-  std::string heading = section;
-  std::replace(heading.begin(), heading.end(), '_', ' ');
-  heading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(heading[0])));
-  return heading;
-}
-
-std::string value_text(const Parameter& parameter) {
-  if (const auto* integer = std::get_if<int*>(&parameter.value)) return fmt::format("{}", **integer);
-  if (const auto* text = std::get_if<std::string*>(&parameter.value)) return **text;
-  return fmt::format("{}", *std::get<double*>(parameter.value));
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
-}
-
-/// Every constant of the run, to read and to change.
+/// Every constant of the run: to read, to try on the frame shown, and to run with.
 class ParametersPanel final : public NamedPanel {
  public:
   explicit ParametersPanel(Shared shared) : NamedPanel("parameters", "Parameters", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    // While a field is being edited its own value stands; everything else follows the session.
-    if (!editing_) edited_ = session.config;
-    editing_ = false;
-    Config defaults, current = session.config;
-    const std::vector<Parameter> shown = parameters(edited_), usual = parameters(defaults),
-                                 now = parameters(current);
-    draw_head(frame, now, usual);
+    follow(session);
+    Config defaults, run = session.config, wanted = wanted_;
+    const std::vector<Parameter> usual = parameters(defaults), now = parameters(run);
+    draw_head(frame, session, actions);
     ImGui::BeginChild("list");
+    const std::vector<Parameter> shown = parameters(wanted);
     std::string section;
     bool open = false;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-      const bool changed = value_text(now[i]) != value_text(usual[i]);
-      if (!matches(shown[i]) || (only_changed_ && !changed)) continue;
+      const bool changed = value_text(shown[i]) != value_text(usual[i]);
+      if (!matches(shown[i], filter_.data()) || (only_changed_ && !changed)) continue;
       if (section_of(shown[i]) != section) {
         if (open) ImGui::EndTable();
         section = section_of(shown[i]);
-        open = begin_section(frame, section);
+        open = begin_section(frame, section, is_live(shown[i]) && section != "run");
       }
-      if (open) draw_row(frame, shown[i], usual[i], now[i], changed, actions);
+      if (open) draw_row(frame, shown[i], usual[i], now[i]);
     }
     if (open) ImGui::EndTable();
     ImGui::EndChild();
+    // The rows have changed the copy: the frame shown is worked out anew with it.
+    if (!changes(wanted, wanted_).empty()) want(wanted, session, actions);
   }
 
  private:
-  void draw_head(const UiFrame& frame, const std::vector<Parameter>& now,
-                 const std::vector<Parameter>& usual) {
-    ImGui::SetNextItemWidth(160.0F * frame.scale);
-    ImGui::InputTextWithHint("##filter", "Filter", filter_.data(), filter_.size());
+  /// What the sliders say stands until it is run with or discarded, whatever the session does meanwhile.
+  void follow(const SessionView& session) {
+    if (title_ != session.title) drafted_ = false;
+    title_ = session.title;
+    if (drafted_ && changes(wanted_, session.config).empty()) drafted_ = false;
+    if (!drafted_) wanted_ = session.debug.preview_config.value_or(session.config);
+  }
+
+  void want(const Config& config, const SessionView& session, PanelActions& actions) {
+    wanted_ = config;
+    drafted_ = true;
+    const bool differs = !changes(wanted_, session.config).empty();
+    actions.requests.push_back(request::Preview{differs ? std::optional(wanted_) : std::nullopt});
+  }
+
+  void draw_head(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    ImGui::SetNextItemWidth(std::min(150.0F * frame.scale, 0.5F * ImGui::GetContentRegionAvail().x));
+    ImGui::InputTextWithHint("##filter", "Search", filter_.data(), filter_.size());
     ImGui::SameLine();
     ImGui::Checkbox("Changed only", &only_changed_);
-    int changed = 0;
-    for (std::size_t i = 0; i < now.size(); ++i)
-      changed += value_text(now[i]) != value_text(usual[i]) ? 1 : 0;
-    ImGui::SameLine();
-    ImGui::TextDisabled("%d of %d differ from the defaults", changed, static_cast<int>(now.size()));
+    Controls controls(frame);
+    if (controls.button("Compare with…", "Another method or preset, as a second run beside this one"))
+      ImGui::OpenPopup("compare with");
+    if (controls.button("Save as preset…", "These values as a TOML file for --config"))
+      ImGui::OpenPopup("save");
+    const std::vector<ParameterChange> from_usual = changes(wanted_, Config());
+    ImGui::BeginDisabled(from_usual.empty());
+    if (controls.button("Reset all", "Every value back to its default")) want(Config(), session, actions);
+    ImGui::EndDisabled();
+    draw_compare(session, actions);
+    draw_save(actions);
+    draw_run_bar(frame, session, actions);
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::TextDisabled("%d differ%s from the default (●)", static_cast<int>(from_usual.size()),
+                        from_usual.size() == 1 ? "s" : "");
+    ImGui::PopFont();
   }
 
-  [[nodiscard]] bool matches(const Parameter& parameter) const {
-    const std::string wanted = filter_.data();
-    return wanted.empty() || contains(parameter.key, wanted) || contains(label_of(parameter), wanted) ||
-           contains(parameter.help, wanted);
+  /// What can be done with values that the run does not have.
+  void draw_run_bar(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    const std::vector<ParameterChange> pending = changes(wanted_, session.config);
+    if (pending.empty()) return;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float pad = 4.0F * frame.scale;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.ChannelsSplit(2);
+    list.ChannelsSetCurrent(1);
+    ImGui::SetCursorScreenPos({low.x + pad, low.y + pad});
+    ImGui::BeginGroup();
+    const std::string working =
+        shows_preview(session) ? fmt::format(", shown in {:.0f} ms", session.debug.preview_ms) : "";
+    ImGui::Text("%d change%s not run with%s", static_cast<int>(pending.size()),
+                pending.size() == 1 ? "" : "s", working.c_str());
+    if (ImGui::IsItemHovered()) tell_changes(pending);
+    Controls controls(frame);
+    const int here = session.current->index;
+    const std::string name = change_name(wanted_, session.config);
+    const bool processed = here < session.processed;
+    ImGui::BeginDisabled(!processed);
+    if (controls.button("Run from here", "As a second run beside this one, from the frame shown on"))
+      add_ghost(wanted_, fmt::format("{}, from {}", name, here), here, actions);
+    ImGui::EndDisabled();
+    if (controls.button("Run beside", "As a second run beside this one, from the first frame on"))
+      add_ghost(wanted_, name, 0, actions);
+    if (controls.button("Run all", "This run begins anew with these values"))
+      actions.requests.push_back(request::RunAll{wanted_});
+    if (controls.button("Discard", "Back to what the run has")) {
+      drafted_ = false;
+      wanted_ = session.config;
+      actions.requests.push_back(request::Preview{});
+    }
+    ImGui::EndGroup();
+    const ImVec2 high{low.x + ImGui::GetContentRegionAvail().x, ImGui::GetItemRectMax().y + pad};
+    list.ChannelsSetCurrent(0);
+    list.AddRectFilled(low, high, to_u32(role_colour(Role::kWarning, frame.theme.name), 0.14F), pad);
+    list.AddRectFilled(low, {low.x + 0.6F * pad, high.y},
+                       to_u32(role_colour(Role::kWarning, frame.theme.name)), pad);
+    list.ChannelsMerge();
+    ImGui::SetCursorScreenPos({low.x, high.y + ImGui::GetStyle().ItemSpacing.y});
   }
 
-  [[nodiscard]] static bool begin_section(const UiFrame& frame, const std::string& section) {
+  static void tell_changes(const std::vector<ParameterChange>& pending) {
+    std::string text;
+    for (const ParameterChange& one : pending)
+      text += fmt::format("{}{}: {} → {}", text.empty() ? "" : "\n", one.key, one.before, one.value);
+    ImGui::SetTooltip("%s", text.c_str());
+  }
+
+  static void add_ghost(const Config& config, const std::string& name, int from, PanelActions& actions) {
+    actions.requests.push_back(request::AddGhost{config, name, from});
+  }
+
+  void draw_compare(const SessionView& session, PanelActions& actions) {
+    if (!ImGui::BeginPopup("compare with")) return;
+    Config config = session.config;
+    ImGui::TextDisabled("Another method, all else alike");
+    for (const Parameter& parameter : parameters(config)) {
+      if (parameter.key != "run.method") continue;
+      const std::string own = session.config.run.method;
+      for (const std::string& method : parameter.choices) {
+        if (method == own || !ImGui::Selectable(("Method " + method).c_str())) continue;
+        config.run.method = method;
+        add_ghost(config, "method " + method, 0, actions);
+      }
+    }
+    ImGui::Separator();
+    ImGui::TextDisabled("A preset, or a TOML file");
+    for (const std::string& preset : preset_names())
+      if (ImGui::Selectable(("Preset " + preset).c_str())) add_preset(preset, actions);
+    ImGui::SetNextItemWidth(kFieldWidth * ImGui::GetFontSize());
+    if (ImGui::InputTextWithHint("##file", "FILE.toml", file_.data(), file_.size(),
+                                 ImGuiInputTextFlags_EnterReturnsTrue) &&
+        add_preset(file_.data(), actions))
+      ImGui::CloseCurrentPopup();
+    if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
+    ImGui::EndPopup();
+  }
+
+  bool add_preset(const std::string& name, PanelActions& actions) {
+    try {
+      add_ghost(load_config(name), "preset " + name, 0, actions);
+      problem_.clear();
+      return true;
+    } catch (const InputError& error) {
+      problem_ = error.what();
+      return false;
+    }
+  }
+
+  void draw_save(PanelActions& actions) {
+    if (!ImGui::BeginPopup("save")) return;
+    ImGui::TextUnformatted("Save these values as");
+    ImGui::SetNextItemWidth(kFieldWidth * ImGui::GetFontSize());
+    const bool entered = ImGui::InputTextWithHint("##preset", "mine.toml", preset_.data(), preset_.size(),
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::BeginDisabled(preset_[0] == '\0');
+    if ((ImGui::Button("Save") || entered) && preset_[0] != '\0') {
+      std::string file = preset_.data();
+      if (!file.ends_with(".toml")) file += ".toml";
+      actions.requests.push_back(request::SavePreset{wanted_, std::move(file)});
+      ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndDisabled();
+    ImGui::EndPopup();
+  }
+
+  [[nodiscard]] static bool begin_section(const UiFrame& frame, const std::string& section, bool live) {
     ImGui::PushFont(frame.fonts.strong);
     ImGui::TextUnformatted(heading_of(section).c_str());
     ImGui::PopFont();
+    if (live) {
+      ImGui::SameLine();
+      ImGui::TextColored(to_vec4(frame.theme.accent), "%s", icons::kBolt);
+      if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("The frame shown follows while these are changed; the others act in a run");
+    }
     const bool open = ImGui::BeginTable(section.c_str(), 4,
                                         ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp);
     if (!open) return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1.25F);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.95F);
-    ImGui::TableSetupColumn("unit", ImGuiTableColumnFlags_WidthStretch, 1.2F);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1.2F);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.15F);
+    ImGui::TableSetupColumn("unit", ImGuiTableColumnFlags_WidthStretch, 1.05F);
     ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, 26.0F * frame.scale);
     return true;
   }
 
-  void draw_row(const UiFrame& frame, const Parameter& shown, const Parameter& usual, const Parameter& now,
-                bool changed, PanelActions& actions) {
+  static void draw_row(const UiFrame& frame, const Parameter& shown, const Parameter& usual,
+                       const Parameter& now) {
+    const bool changed = value_text(shown) != value_text(usual);
+    const bool pending = value_text(shown) != value_text(now);
     ImGui::PushID(shown.key.c_str());
     ImGui::TableNextRow();
+    if (pending)
+      ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0,
+                             to_u32(role_colour(Role::kWarning, frame.theme.name), 0.14F));
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     if (changed) {
@@ -125,8 +232,7 @@ class ParametersPanel final : public NamedPanel {
     help(shown, usual);
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1.0F);
-    if (edit(shown) && value_text(shown) != value_text(now))
-      actions.set_parameters.emplace_back(shown.key, value_text(shown));
+    edit(shown);
     help(shown, usual);
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
@@ -135,57 +241,53 @@ class ParametersPanel final : public NamedPanel {
     ImGui::PopFont();
     ImGui::TableNextColumn();
     if (changed) {
-      if (ImGui::Button(icons::kUndo)) actions.set_parameters.emplace_back(shown.key, value_text(usual));
+      if (ImGui::Button(icons::kUndo)) reset(shown, usual);
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to %s", value_text(usual).c_str());
     }
     ImGui::PopID();
   }
 
+  static void reset(const Parameter& shown, const Parameter& usual) {
+    if (auto* const* integer = std::get_if<int*>(&shown.value)) **integer = *std::get<int*>(usual.value);
+    if (auto* const* real = std::get_if<double*>(&shown.value)) **real = *std::get<double*>(usual.value);
+    if (auto* const* text = std::get_if<std::string*>(&shown.value))
+      **text = *std::get<std::string*>(usual.value);
+  }
+
   static void help(const Parameter& parameter, const Parameter& usual) {
-    if (!ImGui::IsItemHovered()) return;
-    ImGui::SetTooltip("%s\n%s\ndefault %s%s%s", parameter.key.c_str(), parameter.help.c_str(),
-                      value_text(usual).c_str(), parameter.unit.empty() ? "" : " ", parameter.unit.c_str());
+    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
+    ImGui::SetTooltip("%s\n%s\ndefault %s%s%s; %s\nCtrl and click to type a value", parameter.key.c_str(),
+                      parameter.help.c_str(), value_text(usual).c_str(), parameter.unit.empty() ? "" : " ",
+                      parameter.unit.c_str(), range_text(parameter).c_str());
   }
 
-  [[nodiscard]] static std::string range_text(const Parameter& parameter) {
-    if (!parameter.choices.empty()) return fmt::format("one of {}", parameter.choices.size());
-    return fmt::format("{}{}{:g} to {:g}", parameter.unit, parameter.unit.empty() ? "" : ", ", parameter.min,
-                       parameter.max);
-  }
-
-  /// The field of a value. @returns whether a value was settled on.
-  bool edit(const Parameter& parameter) {
-    if (auto* text = std::get_if<std::string*>(&parameter.value)) {
-      bool chosen = false;
-      if (!ImGui::BeginCombo("##value", (*text)->c_str())) return false;
-      for (const std::string& choice : parameter.choices) {
-        if (ImGui::Selectable(choice.c_str(), choice == **text)) {
-          **text = choice;
-          chosen = true;
-        }
-      }
+  static void edit(const Parameter& parameter) {
+    if (auto* const* text = std::get_if<std::string*>(&parameter.value)) {
+      if (!ImGui::BeginCombo("##value", (*text)->c_str())) return;
+      for (const std::string& choice : parameter.choices)
+        if (ImGui::Selectable(choice.c_str(), choice == **text)) **text = choice;
       ImGui::EndCombo();
-      return chosen;
+      return;
     }
-    if (auto* integer = std::get_if<int*>(&parameter.value)) {
-      const float speed =
-          std::max(0.05F, 0.002F * static_cast<float>(std::min(parameter.max - parameter.min, 1000.0)));
-      ImGui::DragInt("##value", *integer, speed, static_cast<int>(parameter.min),
-                     static_cast<int>(parameter.max), "%d", ImGuiSliderFlags_AlwaysClamp);
-    } else {
-      double* real = std::get<double*>(parameter.value);
-      const float speed =
-          static_cast<float>(std::max(1e-5, std::min(0.005 * std::max(std::abs(*real), 0.1), 1.0)));
-      ImGui::DragScalar("##value", ImGuiDataType_Double, real, speed, &parameter.min, &parameter.max, "%.6g",
-                        ImGuiSliderFlags_AlwaysClamp);
-    }
-    if (ImGui::IsItemActive()) editing_ = true;
-    return ImGui::IsItemDeactivatedAfterEdit();
+    // A wide range is gone through by factors, so that small values can be hit too.
+    const bool wide = parameter.max > 200.0 * std::max(parameter.min, 0.5);
+    const ImGuiSliderFlags flags =
+        ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    if (auto* const* integer = std::get_if<int*>(&parameter.value))
+      ImGui::SliderInt("##value", *integer, static_cast<int>(parameter.min), static_cast<int>(parameter.max),
+                       "%d", flags);
+    else
+      ImGui::SliderScalar("##value", ImGuiDataType_Double, std::get<double*>(parameter.value), &parameter.min,
+                          &parameter.max, "%.4g", flags);
   }
 
-  Config edited_;
-  bool editing_ = false, only_changed_ = false;
+  Config wanted_;         // what the sliders say
+  bool drafted_ = false;  // … which a person has changed
+  std::string title_;     // of the sequence they were changed for
+  bool only_changed_ = false;
   std::array<char, 64> filter_{};
+  std::array<char, 512> file_{}, preset_{};
+  std::string problem_;
 };
 
 }  // namespace

@@ -60,7 +60,11 @@ std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
 }
 
 std::optional<std::size_t> record_of(const SessionView& session, int frame_index) {
-  const auto& records = session.run->records;
+  return record_of(*session.run, frame_index);
+}
+
+std::optional<std::size_t> record_of(const RunView& run, int frame_index) {
+  const auto& records = run.records;
   const auto found =
       std::lower_bound(records.begin(), records.end(), frame_index,
                        [](const FrameRecord& record, int index) { return record.index < index; });

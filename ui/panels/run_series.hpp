@@ -30,6 +30,8 @@ struct Series {
 /// The place of a frame's record among the run's; nothing where it has none.
 [[nodiscard]] std::optional<std::size_t> record_of(const SessionView& session, int frame_index);
 
+[[nodiscard]] std::optional<std::size_t> record_of(const RunView& run, int frame_index);
+
 /// The index of the frame nearest to a time; nothing where there are no records.
 [[nodiscard]] std::optional<int> frame_at(const SessionView& session, double seconds);
 

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 
 namespace stillpoint {
@@ -57,6 +58,22 @@ void add_run(const SessionView& session, const RunView& run, const Pose& world_f
   }
   scene.data.paths.push_back(std::move(path));
   scene.frames_of_path.push_back(std::move(frames));
+}
+
+/// Ghosts lie in the run's own world, by its alignment: up to where one parts both ways are the same.
+void add_ghosts(const SessionView& session, const Pose& world_from_estimate, SessionScene& scene) {
+  for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
+    const GhostView& ghost = session.debug.ghosts[i];
+    // In either theme the looks differ in colour alone, and dashes are all that is wanted here.
+    add_run(session, *ghost.run, world_from_estimate,
+            {.name = "ghost: " + shortened(ghost.name), .width_px = 2.2F, .pickable = true}, scene);
+    ScenePath& path = scene.data.paths.back();
+    SceneData alone;
+    alone.paths.push_back(path);
+    const SceneBounds box = bounds(alone);
+    path.dash_m = ghost_look(i, ThemeName::kDark).dash * (box.high - box.low).norm();
+    scene.ghost_paths.push_back(scene.data.paths.size() - 1);
+  }
 }
 
 void add_errors(const TrajectoryEvaluation& evaluation, const Pose& world_from_estimate, SceneData& data) {
@@ -129,6 +146,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
              .pickable = true},
             scene);
   }
+  add_ghosts(session, world, scene);
   add_run(session, run, world,
           {.name = "estimate: " + run.name, .role = Role::kEstimate, .width_px = 3.0F, .pickable = true},
           scene);
@@ -138,7 +156,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
       data.keyframes.push_back(world * keyframe.pose.world_from_camera);
   if (layers.points)
     for (const SavedPoint& point : session.map_points)
-      data.points.push_back({(world * point.position).cast<float>(), false});
+      data.points.push_back({(world * point.position).cast<float>(), point.moved});
   const FrameRecord* record = session.current->record;
   if (record != nullptr && record->estimated) {
     data.current = world * record->world_from_camera;

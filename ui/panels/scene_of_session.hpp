@@ -25,6 +25,8 @@ struct PathFrame {
 struct SessionScene {
   SceneData data;
   std::vector<std::vector<PathFrame>> frames_of_path;
+  std::vector<std::size_t>
+      ghost_paths;  ///< of each ghost, index into the paths; their colours are the panel's
 };
 
 /// What to bring into sight at first: the paths, and a part of the way out to where most map points lie.

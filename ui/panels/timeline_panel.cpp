@@ -6,23 +6,21 @@
 
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_series.hpp"
-#include "ui/plot/plot_axis.hpp"
+#include "ui/panels/timeline_rows.hpp"
+#include "ui/session/places.hpp"
+#include "ui/theme/icons.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr float kNameWidth = 86.0F, kValueWidth = 74.0F;  // design px
 constexpr double kWheelFactor = 1.2;
+constexpr double kLeastFrames = 4.0;        // in sight when zoomed in furthest
+constexpr float kRoomForControls = 150.0F;  // design px, height of the panel
+constexpr float kLeastLane = 20.0F;         // design px
+constexpr float kGrip = 5.0F;               // design px about an end of the range
+constexpr std::size_t kWorstShown = 5;
 
-/// What a lane tells of each frame.
-struct Lane {
-  std::string name, unit;
-  Rgb colour;
-  std::vector<double> values;  ///< one a record; NaN = none
-  double highest = 1.0;
-};
-
-/// The whole run at a glance, frame by frame: one lane a figure, the frame shown as a cursor through all.
+/// The whole run at a glance, frame by frame, and the ways to what went wrong in it.
 class TimelinePanel final : public NamedPanel {
  public:
   explicit TimelinePanel(Shared shared) : NamedPanel("timeline", "Timeline", std::move(shared)) {}
@@ -32,86 +30,152 @@ class TimelinePanel final : public NamedPanel {
       draw_absent(frame, "No frame has been processed yet.");
       return;
     }
-    collect(frame, session);
-    const Footer footer = footer_of(frame, session);
+    model_.update(session, lanes_);
+    update_worst(session);
+    if (ImGui::GetContentRegionAvail().y > kRoomForControls * frame.scale)
+      draw_controls(frame, session, actions);
+    const Footer footer = timeline_footer(frame, session, figure(session));
     const ImVec2 room = room_above(frame, footer);
-    low_ = ImGui::GetCursorScreenPos();
-    high_ = {low_.x + room.x, low_.y + room.y};
-    left_ = low_.x + kNameWidth * frame.scale;
-    right_ = std::max(high_.x - kValueWidth * frame.scale, left_ + 20.0F);
-    ImGui::SetCursorScreenPos({left_, low_.y});
-    ImGui::InvisibleButton("lanes", {right_ - left_, room.y},
+    const ImVec2 low = ImGui::GetCursorScreenPos(), high{low.x + room.x, low.y + room.y};
+    const TimelinePaint before(frame, low, high, range_.value_or(everything(session)));
+    ImGui::SetCursorScreenPos({before.left, low.y});
+    ImGui::InvisibleButton("lanes", {before.right - before.left, room.y},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
-    handle_mouse(session, actions);
-    paint(frame, session);
-    ImGui::SetCursorScreenPos(low_);
+    handle_mouse(frame, session, before, low.y + ruler_height(frame), actions);
+    // What the mouse changed shows in this frame, not the next.
+    const TimelinePaint paint(frame, low, high, range_.value_or(everything(session)));
+    draw_rows(frame, session, paint, low, high, actions);
+    if (hovered_) ImGui::SetTooltip("%s", frame_report(session, model_, *hovered_).c_str());
+    ImGui::SetCursorScreenPos(low);
     ImGui::Dummy(room);
     footer.draw(frame);
   }
 
  private:
-  void collect(const UiFrame& frame, const SessionView& session) {
-    const auto& records = session.run->records;
-    if (run_ == session.run.get() && revision_ == session.revision && theme_ == frame.theme.name &&
-        records.size() == seen_)
-      return;
-    run_ = session.run.get();
-    revision_ = session.revision;
-    theme_ = frame.theme.name;
-    seen_ = records.size();
-    lanes_ = {};
-    lanes_.push_back({"Mask", "%", role_colour(Role::kUnion, theme_), {}, 0.0});
-    lanes_.push_back({"Inliers", "", role_colour(Role::kInlier, theme_), {}, 0.0});
-    if (!session.run->evaluation.matched.empty())
-      lanes_.push_back({"Error", "mm", role_colour(Role::kEstimate, theme_), {}, 0.0});
-    const auto& errors = session.run->evaluation.ate.errors;
-    std::size_t next = 0;
-    for (const FrameRecord& record : records) {
-      lanes_[0].values.push_back(100.0 * record.mask_share);
-      lanes_[1].values.push_back(is_lost(record) ? std::nan("") : record.inliers);
-      if (lanes_.size() < 3) continue;
-      while (next < errors.size() && errors[next].timestamp < record.timestamp - 1e-6) ++next;
-      const bool known = next < errors.size() && std::abs(errors[next].timestamp - record.timestamp) < 1e-6;
-      lanes_[2].values.push_back(known ? 1000.0 * errors[next].translation_m : std::nan(""));
-    }
-    for (Lane& lane : lanes_) {
-      for (const double value : lane.values)
-        if (std::isfinite(value)) lane.highest = std::max(lane.highest, value);
-      lane.highest = lane.highest > 0.0 ? 1.05 * lane.highest : 1.05;
-    }
+  [[nodiscard]] static float ruler_height(const UiFrame& frame) {
+    return frame.fonts.small->FontSize + 4.0F * frame.scale;
   }
-
-  [[nodiscard]] AxisRange everything(const SessionView& session) const {
+  [[nodiscard]] static AxisRange everything(const SessionView& session) {
     return {-0.5, static_cast<double>(session.frame_count) - 0.5};
   }
-
-  [[nodiscard]] AxisMap map_of(const SessionView& session) const {
-    return {range_.value_or(everything(session)), AxisScale::kLinear, static_cast<double>(left_),
-            static_cast<double>(right_)};
+  [[nodiscard]] LaneFigure figure(const SessionView& session) const {
+    return worst_by_.value_or(usual_figure(*session.run));
   }
 
-  void handle_mouse(const SessionView& session, PanelActions& actions) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const AxisMap map = map_of(session);
-    hovered_.reset();
-    const auto mouse = static_cast<double>(io.MousePos.x);
-    if (ImGui::IsItemHovered()) {
-      hovered_ = frame_under(session, map.to_value(mouse));
-      if (io.MouseWheel != 0.0F) {
-        const AxisRange all = everything(session);
-        AxisRange range = zoomed(map, mouse, std::pow(kWheelFactor, -io.MouseWheel));
-        range = {std::max(range.low, all.low), std::min(range.high, all.high)};
-        if (range.span() >= 4.0) range_ = range;
+  void update_worst(const SessionView& session) {
+    const auto key =
+        std::tuple(session.run.get(), session.revision, session.run->records.size(), figure(session));
+    if (worst_key_ == key) return;
+    worst_key_ = key;
+    worst_ = worst_frames(*session.run, figure(session));
+  }
+
+  void draw_controls(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    Controls controls(frame);
+    const int here = session.current->index;
+    const auto jump = [&](const char* label, const char* tooltip, std::optional<int> to) {
+      ImGui::BeginDisabled(!to);
+      if (controls.button(label, tooltip) && to) actions.go_to_frame = to;
+      ImGui::EndDisabled();
+    };
+    jump("Next worst", "The next worse-off frame by the figure chosen (N); click a lane's name to choose it",
+         next_worst(worst_, here));
+    jump(icons::kChevronUp, "The one before it (Shift+N)", previous_worst(worst_, here));
+    if (!session.debug.breakpoints.empty()) {
+      const std::vector<int> hits = hit_frames(session.debug);
+      jump("Previous hit", "Breakpoint hit before this frame (Shift+F8)", previous_in(hits, here));
+      jump("Next hit", "Breakpoint hit after this frame (F8)", next_in(hits, here));
+    }
+    const std::vector<int> hurt = hurt_frames(session.debug);
+    if (!hurt.empty()) jump("Next hurt", "Next frame that removal made worse (J)", next_in(hurt, here));
+    const bool marked = bookmark_at(session.debug, here) != nullptr;
+    if (controls.button(icons::kBookmark,
+                        marked ? "Take the bookmark off this frame" : "Bookmark this frame (B)"))
+      actions.requests.push_back(request::Bookmarks{marked ? without_bookmark(session.debug.bookmarks, here)
+                                                           : with_bookmark(session.debug.bookmarks, here)});
+    if (controls.button("Lanes", "Which figures are shown")) ImGui::OpenPopup("which lanes");
+    draw_lane_choice();
+    if (session.debug.span) draw_span_controls(controls, session, actions);
+  }
+
+  void draw_lane_choice() {
+    if (!ImGui::BeginPopup("which lanes")) return;
+    for (const LaneInfo& info : lane_infos()) {
+      const auto at = std::find(lanes_.begin(), lanes_.end(), info.figure);
+      bool on = at != lanes_.end();
+      if (ImGui::Checkbox(std::string(info.name).c_str(), &on)) {
+        if (on)
+          lanes_.push_back(info.figure);
+        else
+          lanes_.erase(at);
+        // Lanes stand in the order of the list.
+        std::sort(lanes_.begin(), lanes_.end());
       }
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(info.help).c_str());
+    }
+    ImGui::EndPopup();
+  }
+
+  void draw_span_controls(Controls& controls, const SessionView& session, PanelActions& actions) {
+    const FrameSpan span = *session.debug.span;
+    bool loop = session.debug.loop;
+    if (controls.toggle("Loop range", loop, "Play goes round in the range (Ctrl+L)"))
+      actions.requests.push_back(request::Span{span, loop});
+    if (controls.button("Export…", "These frames as a small TUM folder")) ImGui::OpenPopup("export");
+    if (controls.button(icons::kClose, "Clear the range")) actions.requests.push_back(request::Span{});
+    if (!ImGui::BeginPopup("export")) return;
+    ImGui::Text("Frames %d to %d as a TUM folder", span.first, span.last);
+    ImGui::SetNextItemWidth(22.0F * ImGui::GetFontSize());
+    const bool entered = ImGui::InputTextWithHint("##folder", "folder, made if missing", folder_.data(),
+                                                  folder_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::BeginDisabled(folder_[0] == '\0');
+    if (ImGui::Button("Export") || (entered && folder_[0] != '\0')) {
+      actions.requests.push_back(request::ExportFrames{folder_.data()});
+      ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndDisabled();
+    ImGui::EndPopup();
+  }
+
+  void handle_mouse(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
+                    float ruler_bottom, PanelActions& actions) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const AxisMap& map = paint.map();
+    const auto mouse = static_cast<double>(io.MousePos.x);
+    const int pointed = frame_under(session, map.to_value(mouse));
+    hovered_.reset();
+    if (ImGui::IsItemHovered()) {
+      hovered_ = pointed;
+      if (io.MouseWheel != 0.0F) zoom(session, zoomed(map, mouse, std::pow(kWheelFactor, -io.MouseWheel)));
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) range_.reset();
+    }
+    if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
+        (io.KeyShift || io.MousePos.y < ruler_bottom)) {
+      const double pixels = static_cast<double>(paint.right - paint.left);
+      drag_.begin(pointed, session.debug.span,
+                  static_cast<double>(kGrip * frame.scale) * map.range.span() / pixels);
+    }
+    if (drag_.active()) {
+      drag_.move(pointed);
+      if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+      if (const auto selected = drag_.end(session.frame_count))
+        actions.requests.push_back(request::Span{selected, session.debug.loop});
+      else
+        actions.go_to_frame = pointed;
+      return;
     }
     if (!ImGui::IsItemActive()) return;
     for (const int button : {ImGuiMouseButton_Right, ImGuiMouseButton_Middle})
       if (ImGui::IsMouseDragging(button) && range_)
         range_ = panned(map, static_cast<double>(io.MouseDelta.x));
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Left))
-      actions.go_to_frame = frame_under(session, map.to_value(mouse));
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) actions.go_to_frame = pointed;
+  }
+
+  void zoom(const SessionView& session, AxisRange range) {
+    const AxisRange all = everything(session);
+    range = {std::max(range.low, all.low), std::min(range.high, all.high)};
+    if (range.span() >= kLeastFrames) range_ = range;
   }
 
   [[nodiscard]] static int frame_under(const SessionView& session, double value) {
@@ -119,201 +183,92 @@ class TimelinePanel final : public NamedPanel {
         std::lround(std::clamp(value, 0.0, static_cast<double>(session.frame_count - 1))));
   }
 
-  void paint(const UiFrame& frame, const SessionView& session) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float line = frame.fonts.small->FontSize, gap = 4.0F * frame.scale;
-    const float axis = line + gap, thin = line + 2.0F * frame.scale;
-    const float bottom = high_.y - axis;
-    float y = low_.y;
-    paint_status(frame, session, y, y + thin);
-    y += thin + gap;
-    paint_keyframes(frame, session, y, y + thin);
-    y += thin + gap;
+  void draw_rows(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint, ImVec2 low,
+                 ImVec2 high, PanelActions& actions) {
+    const float gap = 3.0F * frame.scale, thin = frame.fonts.small->FontSize + 2.0F * frame.scale;
+    const float ruler_bottom = low.y + ruler_height(frame);
+    paint.ruler(low.y, ruler_bottom);
+    paint.name(low.y, "Frame", frame.theme.text_dim);
+    paint.value(low.y, fmt::format("{}", session.current->index), frame.theme.text);
+    float y = ruler_bottom + gap;
+    const auto row = [&](const auto& draw) {
+      if (y + thin > high.y) return;
+      draw(y, y + thin);
+      y += thin + gap;
+    };
+    const TimelineRows rows(frame, session, model_, paint);
+    row([&](float top, float bottom) { rows.status(top, bottom); });
+    row([&](float top, float bottom) { rows.marks(top, bottom); });
+    for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i)
+      row([&](float top, float bottom) { rows.ghost(i, top, bottom); });
     // In a low panel the last lanes give way.
-    const int fitting = std::max(0, static_cast<int>((bottom - y) / (thin + gap)));
-    const std::size_t shown = std::min(lanes_.size(), static_cast<std::size_t>(fitting));
-    const float height = shown == 0 ? 0.0F : (bottom - y) / static_cast<float>(shown) - gap;
+    const int fitting = std::max(0, static_cast<int>((high.y - y + gap) / (kLeastLane * frame.scale + gap)));
+    const std::size_t shown = std::min(model_.lanes.size(), static_cast<std::size_t>(fitting));
+    const float height = shown == 0 ? 0.0F : (high.y - y + gap) / static_cast<float>(shown) - gap;
     for (std::size_t i = 0; i < shown; ++i) {
-      paint_lane(frame, session, lanes_[i], y, y + height);
+      draw_lane(frame, session, paint, model_.lanes[i], y, y + height, actions);
       y += height + gap;
     }
-    const AxisMap map = map_of(session);
-    list.PushClipRect({left_, low_.y}, {right_, high_.y}, true);
-    if (hovered_) cursor(list, map, *hovered_, to_u32(frame.theme.text_dim, 0.7F), frame.scale, y);
-    cursor(list, map, session.current->index, to_u32(role_colour(Role::kCursor, theme_)), 1.5F * frame.scale,
-           y);
-    list.PopClipRect();
-    const int most = std::max(2, static_cast<int>((right_ - left_) / (70.0F * frame.scale)));
-    for (const AxisTick& tick : linear_ticks(map.range, most)) {
-      if (!tick.major || tick.value != std::round(tick.value)) continue;
-      const auto x = static_cast<float>(map.to_pixel(tick.value));
-      write(frame, {x - 0.5F * width(frame, tick.label), bottom + gap}, tick.label, frame.theme.text_dim);
+    if (const auto span = drag_.active() ? drag_.span(session.frame_count) : session.debug.span)
+      paint.span(*span, low.y, ruler_bottom, y);
+    if (hovered_) paint.upright(*hovered_, frame.theme.text_dim, 0.7F, 1.0F, low.y, y);
+    paint.upright(session.current->index, role_colour(Role::kCursor, frame.theme.name), 1.0F, 1.5F, low.y, y);
+  }
+
+  void draw_lane(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
+                 const TimelineLane& lane, float top, float bottom, PanelActions& actions) {
+    const LaneInfo& info = info_of(lane.figure);
+    const bool chosen = lane.figure == figure(session);
+    const float line = frame.fonts.small->FontSize;
+    const Rgb colour = lane_colour(lane.figure, frame.theme.name);
+    paint.ground(top, bottom, model_.frames.back());
+    ImGui::PushID(static_cast<int>(lane.figure));
+    const ImVec2 low{ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMin().x, top};
+    ImGui::SetCursorScreenPos(low);
+    if (ImGui::InvisibleButton("name", {std::max(paint.left - low.x - 4.0F, 1.0F), bottom - top})) {
+      worst_by_ = lane.figure;
+      actions.worst_by = lane.figure;
     }
-    write(frame, {low_.x, bottom + gap}, "Frame", frame.theme.text_dim);
-    if (hovered_) tell(session, *hovered_);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s\n%s", std::string(info.help).c_str(),
+                        chosen ? "What \"worst\" goes by." : "Click: \"worst\" goes by it.");
+    ImGui::PopID();
+    if (chosen)
+      ImGui::GetWindowDrawList()->AddRectFilled({low.x - 5.0F * frame.scale, top},
+                                                {low.x - 2.0F * frame.scale, bottom},
+                                                to_u32(frame.theme.accent));
+    paint.name(top, std::string(info.name), frame.theme.text);
+    if (bottom - top > 2.0F * line)
+      paint.name(top + line + 1.0F, fmt::format("0–{}", format_value(lane.highest / 1.05, info.unit)),
+                 frame.theme.text_dim);
+    paint.lane(model_.frames, lane.values, lane.highest, colour, top, bottom);
+    for (std::size_t g = 0; g < lane.ghosts.size() && g < model_.ghost_frames.size(); ++g)
+      paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest, g, top, bottom);
+    if (chosen) draw_worst(frame, session, paint, lane, top, bottom);
+    if (const auto here = record_of(session, session.current->index))
+      paint.value(top, lane_text(lane.values[*here], info), frame.theme.text);
   }
 
-  static void cursor(ImDrawList& list, const AxisMap& map, int index, ImU32 colour, float thickness,
-                     float bottom) {
-    const auto x = static_cast<float>(map.to_pixel(index));
-    const float top = ImGui::GetItemRectMin().y;
-    list.AddLine({x, top}, {x, bottom}, colour, thickness);
-  }
-
-  /// Left and right edge of a record's column, px.
-  [[nodiscard]] std::pair<float, float> column(const AxisMap& map, int index) const {
-    const auto from = static_cast<float>(map.to_pixel(index - 0.5)),
-               to = static_cast<float>(map.to_pixel(index + 0.5));
-    return {from, std::max(to, from + 1.0F)};
-  }
-
-  void ground(const UiFrame& frame, const SessionView& session, float top, float bottom) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled({left_, top}, {right_, bottom}, to_u32(frame.theme.plot));
-    // What has not been processed stays the panel's ground.
-    const AxisMap map = map_of(session);
-    const float done = column(map, session.run->records.back().index).second;
-    if (done < right_)
-      list.AddRectFilled({std::max(done, left_), top}, {right_, bottom}, to_u32(frame.theme.panel));
-    list.AddRect({left_, top}, {right_, bottom}, to_u32(frame.theme.border));
-  }
-
-  [[nodiscard]] static LegendEntry look_of(FrameStatus status, ThemeName theme) {
-    switch (status) {
-      case FrameStatus::tracked:
-        return {"tracked", role_colour(Role::kInlier, theme), Sign::kSquare};
-      case FrameStatus::initialised:
-        return {"initialised", okabe_ito::kBlue, Sign::kSquare};
-      case FrameStatus::relocalised:
-        return {"relocalised", okabe_ito::kSkyBlue, Sign::kSquare};
-      case FrameStatus::lost:
-        return {"lost", role_colour(Role::kOutlier, theme), Sign::kSquare};
-      case FrameStatus::unreadable:
-        break;
+  void draw_worst(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
+                  const TimelineLane& lane, float top, float bottom) const {
+    for (std::size_t i = 0; i < std::min(worst_.size(), kWorstShown); ++i) {
+      const auto at = record_of(session, worst_[i]);
+      if (at && std::isfinite(lane.values[*at]))
+        paint.ring(worst_[i], lane.values[*at], lane.highest, role_colour(Role::kWarning, frame.theme.name),
+                   top, bottom);
     }
-    return {"unreadable", okabe_ito::kPurple, Sign::kSquare};
   }
 
-  void paint_status(const UiFrame& frame, const SessionView& session, float top, float bottom) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    ground(frame, session, top, bottom);
-    write(frame, {low_.x, top}, "Status", frame.theme.text);
-    const AxisMap map = map_of(session);
-    list.PushClipRect({left_, top}, {right_, bottom}, true);
-    for (const FrameRecord& record : session.run->records) {
-      const auto [from, to] = column(map, record.index);
-      if (to < left_ || from > right_) continue;
-      // Lost frames also stand lower, so that colour is not all that tells them.
-      const float high = is_lost(record) ? 0.5F * (top + bottom) : top + 1.0F;
-      list.AddRectFilled({from, high}, {to, bottom - 1.0F}, to_u32(look_of(record.status, theme_).colour));
-    }
-    list.PopClipRect();
-    const FrameRecord* record = session.current->record;
-    if (record != nullptr)
-      write(frame, {right_ + 6.0F * frame.scale, top}, std::string(to_string(record->status)),
-            frame.theme.text);
-  }
-
-  void paint_keyframes(const UiFrame& frame, const SessionView& session, float top, float bottom) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    ground(frame, session, top, bottom);
-    write(frame, {low_.x, top}, "Keyframes", frame.theme.text);
-    const AxisMap map = map_of(session);
-    int count = 0;
-    list.PushClipRect({left_, top}, {right_, bottom}, true);
-    for (const FrameRecord& record : session.run->records) {
-      if (!record.keyframe) continue;
-      ++count;
-      const auto x = static_cast<float>(map.to_pixel(record.index));
-      const float side = 3.5F * frame.scale, middle = 0.5F * (top + bottom);
-      list.AddQuadFilled({x - side, middle}, {x, middle - side}, {x + side, middle}, {x, middle + side},
-                         to_u32(role_colour(Role::kEstimate, theme_)));
-    }
-    list.PopClipRect();
-    write(frame, {right_ + 6.0F * frame.scale, top}, fmt::format("{}", count), frame.theme.text);
-  }
-
-  void paint_lane(const UiFrame& frame, const SessionView& session, const Lane& lane, float top,
-                  float bottom) const {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    ground(frame, session, top, bottom);
-    write(frame, {low_.x, top}, lane.name, frame.theme.text);
-    if (bottom - top > 2.0F * frame.fonts.small->FontSize)
-      write(frame, {low_.x, top + frame.fonts.small->FontSize + 1.0F},
-            fmt::format("0–{:.3g}{}{}", lane.highest / 1.05, lane.unit.empty() ? "" : " ", lane.unit),
-            frame.theme.text_dim);
-    const AxisMap map = map_of(session);
-    const auto& records = session.run->records;
-    list.PushClipRect({left_, top}, {right_, bottom}, true);
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      const double value = lane.values[i];
-      if (!std::isfinite(value)) continue;
-      const auto [from, to] = column(map, records[i].index);
-      if (to < left_ || from > right_) continue;
-      const float high = bottom - static_cast<float>(value / lane.highest) * (bottom - top);
-      list.AddRectFilled({from, high}, {to, bottom}, to_u32(lane.colour, 0.35F));
-      list.AddRectFilled({from, high}, {to, high + 1.5F * frame.scale}, to_u32(lane.colour));
-    }
-    list.PopClipRect();
-    const auto here = record_of(session, session.current->index);
-    if (!here) return;
-    const double value = lane.values[*here];
-    write(frame, {right_ + 6.0F * frame.scale, top},
-          std::isfinite(value) ? format_value(std::round(value * 10.0) / 10.0, lane.unit) : "–",
-          frame.theme.text);
-  }
-
-  void tell(const SessionView& session, int index) const {
-    const auto at = record_of(session, index);
-    if (!at) {
-      ImGui::SetTooltip("frame %d\nnot processed yet", index);
-      return;
-    }
-    const FrameRecord& record = session.run->records[*at];
-    std::string text = fmt::format("frame {}, {:.3f} s\n{}", index, record.timestamp - series_start(session),
-                                   to_string(record.status));
-    if (record.keyframe) text += ", keyframe";
-    for (const Lane& lane : lanes_)
-      if (std::isfinite(lane.values[*at]))
-        text += fmt::format("\n{} {:.1f} {}", lane.name, lane.values[*at], lane.unit);
-    if (!record.note.empty()) text += "\n" + record.note;
-    ImGui::SetTooltip("%s", text.c_str());
-  }
-
-  [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session) const {
-    Footer footer;
-    std::array<int, 5> counts{};
-    for (const FrameRecord& record : session.run->records) ++counts[static_cast<std::size_t>(record.status)];
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      if (counts[i] == 0) continue;
-      LegendEntry entry = look_of(static_cast<FrameStatus>(i), frame.theme.name);
-      entry.name = fmt::format("{} {}", counts[i], entry.name);
-      footer.legend.push_back(std::move(entry));
-    }
-    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, frame.theme.name), Sign::kDiamond});
-    footer.caption =
-        fmt::format("Frame {} of {}; {} processed. Error: distance to the truth after alignment.",
-                    session.current->index, session.frame_count, session.processed);
-    return footer;
-  }
-
-  static float width(const UiFrame& frame, const std::string& text) {
-    return frame.fonts.small->CalcTextSizeA(frame.fonts.small->FontSize, 1e6F, 0.0F, text.c_str()).x;
-  }
-  static void write(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour) {
-    ImGui::GetWindowDrawList()->AddText(frame.fonts.small, frame.fonts.small->FontSize,
-                                        {std::round(at.x), std::round(at.y)}, to_u32(colour), text.c_str());
-  }
-
-  std::vector<Lane> lanes_;
+  TimelineModel model_;
+  std::vector<LaneFigure> lanes_{LaneFigure::kRpeFrame, LaneFigure::kMask, LaneFigure::kInliers,
+                                 LaneFigure::kKept, LaneFigure::kTotalMs};
+  std::optional<LaneFigure> worst_by_;
+  std::tuple<const RunView*, std::uint64_t, std::size_t, LaneFigure> worst_key_{};
+  std::vector<int> worst_;
   std::optional<AxisRange> range_;  // frames; none shows all
   std::optional<int> hovered_;
-  ImVec2 low_, high_;
-  float left_ = 0.0F, right_ = 0.0F;
-  const void* run_ = nullptr;
-  std::uint64_t revision_ = 0;
-  std::size_t seen_ = 0;
-  ThemeName theme_ = ThemeName::kDark;
+  SpanDrag drag_;
+  std::array<char, 512> folder_{};
 };
 
 }  // namespace

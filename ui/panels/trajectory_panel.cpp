@@ -5,6 +5,7 @@
 
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
 #include "ui/scene/scene_widget.hpp"
 
@@ -24,9 +25,10 @@ class TrajectoryPanel final : public NamedPanel {
       return;
     }
     if (!widget_) widget_.emplace(frame.gl);
-    update_scene(session);
+    update_scene(frame, session);
     draw_controls(frame, session);
     Footer footer;
+    footer.legend = ghost_legend(frame, session);
     footer.caption = alignment_text(session);
     const ImVec2 room = room_above(frame, footer);
     look(room);
@@ -36,18 +38,27 @@ class TrajectoryPanel final : public NamedPanel {
     if (!before.target.isApprox(view_.target) || before.distance != view_.distance ||
         !before.world_from_view.isApprox(view_.world_from_view))
       keeps_fitting_ = false;
+    draw_ghost_signs(frame, session, response);
     footer.draw(frame);
     if (response.pose) tell_pose(session, *response.pose, response.clicked, actions);
   }
 
  private:
-  void update_scene(const SessionView& session) {
+  void update_scene(const UiFrame& frame, const SessionView& session) {
+    std::vector<std::pair<const RunView*, std::size_t>> ghosts;
+    for (const GhostView& ghost : session.debug.ghosts)
+      ghosts.emplace_back(ghost.run.get(), ghost.run->records.size());
     const bool same_frame =
         !view_shown_.owner_before(session.current) && !session.current.owner_before(view_shown_);
-    if (same_frame && revision_ == session.revision && run_ == session.run.get() && layers_ == layers_drawn_)
+    if (same_frame && revision_ == session.revision && run_ == session.run.get() &&
+        layers_ == layers_drawn_ && ghosts == ghosts_ && theme_ == frame.theme.name)
       return;
+    ghosts_ = std::move(ghosts);
+    theme_ = frame.theme.name;
     const std::uint64_t revision = scene_.data.revision + 1;
     scene_ = scene_of_session(session, layers_);
+    for (std::size_t i = 0; i < scene_.ghost_paths.size(); ++i)
+      scene_.data.paths[scene_.ghost_paths[i]].colour = ghost_look(i, theme_).colour;
     scene_.data.revision = scene_.data.image_revision = revision;
     sight_ = sight_of(scene_.data);
     view_shown_ = session.current;
@@ -80,6 +91,48 @@ class TrajectoryPanel final : public NamedPanel {
     controls.toggle("Keyframes", layers_.keyframes);
     if (!session.run->evaluation.matched.empty())
       controls.toggle("Errors", layers_.errors, "Lines from each pose to where it truly was");
+  }
+
+  [[nodiscard]] static std::vector<LegendEntry> ghost_legend(const UiFrame& frame,
+                                                             const SessionView& session) {
+    std::vector<LegendEntry> legend;
+    for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
+      const GhostView& ghost = session.debug.ghosts[i];
+      const RunLook look = ghost_look(i, frame.theme.name);
+      const std::string parts =
+          ghost.diverged ? fmt::format(", parts at frame {}", *ghost.diverged) : ", same way so far";
+      legend.push_back({shortened(ghost.name) + parts, look.colour, look.sign});
+    }
+    return legend;
+  }
+
+  /// Each ghost's sign where it parts from the run, and where it is at the frame shown.
+  void draw_ghost_signs(const UiFrame& frame, const SessionView& session,
+                        const SceneResponse& response) const {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    for (std::size_t i = 0; i < scene_.ghost_paths.size() && i < session.debug.ghosts.size(); ++i) {
+      const GhostView& ghost = session.debug.ghosts[i];
+      const std::size_t path = scene_.ghost_paths[i];
+      const RunLook look = ghost_look(i, frame.theme.name);
+      const auto sign_at = [&](int wanted, float radius) {
+        const auto& frames = scene_.frames_of_path[path];
+        const auto found =
+            std::lower_bound(frames.begin(), frames.end(), wanted,
+                             [](const PathFrame& one, int index) { return one.index < index; });
+        if (found == frames.end() || found->index != wanted) return;
+        const auto& position =
+            scene_.data.paths[path].positions[static_cast<std::size_t>(found - frames.begin())];
+        const auto seen = project(view_, response.viewport, position.cast<double>());
+        if (!seen || seen->x() < 0.0 || seen->y() < 0.0 || seen->x() > response.viewport.width ||
+            seen->y() > response.viewport.height)
+          return;
+        const ImVec2 at = response.to_screen(seen->head<2>());
+        draw_sign(frame, list, at, (radius + 1.5F) * frame.scale, look.sign, to_u32(frame.theme.plot));
+        draw_sign(frame, list, at, radius * frame.scale, look.sign, to_u32(look.colour));
+      };
+      if (ghost.diverged) sign_at(*ghost.diverged, 4.0F);
+      sign_at(session.current->index, 6.0F);
+    }
   }
 
   /// Sets the view until a person does.
@@ -128,6 +181,7 @@ class TrajectoryPanel final : public NamedPanel {
       text += fmt::format(", {} {:.1f} mm", session.baseline->name,
                           1000.0 * session.baseline->evaluation.ate.translation_m.rmse);
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
+    if (!session.debug.ghosts.empty()) text += "; ghosts are laid by the same motion";
     return text + ".";
   }
 
@@ -141,6 +195,8 @@ class TrajectoryPanel final : public NamedPanel {
   std::weak_ptr<const FrameView> view_shown_;
   std::uint64_t revision_ = 0;
   const void* run_ = nullptr;
+  std::vector<std::pair<const RunView*, std::size_t>> ghosts_;  // with how many records
+  ThemeName theme_ = ThemeName::kDark;
 };
 
 }  // namespace

@@ -13,11 +13,13 @@
 namespace stillpoint {
 
 enum class SeriesStyle {
-  kLine,    ///< values joined
-  kDashed,  ///< values joined by dashes: told apart without colour
-  kSteps,   ///< each value holds until the next
-  kBars,    ///< bars from the lower edge: histograms
-  kDots,    ///< values alone
+  kLine,     ///< values joined
+  kDashed,   ///< values joined by dashes: told apart without colour
+  kDotted,   ///< … by dots
+  kDashDot,  ///< … by long dashes and dots
+  kSteps,    ///< each value holds until the next
+  kBars,     ///< bars from the lower edge: histograms
+  kDots,     ///< values alone
 };
 
 /// One curve. Its values belong to the caller.

@@ -9,6 +9,22 @@ namespace {
 constexpr float kDash = 6.0F, kGap = 4.0F;  // design px
 constexpr float kSwatchLength = 16.0F;
 
+/// A stroke of a broken line's pattern, design px from where the pattern begins.
+struct Stroke {
+  float begin = 0.0F, length = kDash;
+};
+
+std::vector<Stroke> strokes_of(SeriesStyle style) {
+  constexpr float kDot = 2.0F;
+  if (style == SeriesStyle::kDotted) return {{0.0F, kDot}};
+  if (style == SeriesStyle::kDashDot) return {{0.0F, 2.0F * kDash}, {2.0F * kDash + kGap, kDot}};
+  return {{0.0F, kDash}};
+}
+
+bool is_broken(SeriesStyle style) {
+  return style == SeriesStyle::kDashed || style == SeriesStyle::kDotted || style == SeriesStyle::kDashDot;
+}
+
 std::string with_unit(const std::string& label, const std::string& unit) {
   return unit.empty() ? label : label.empty() ? unit : label + " (" + unit + ")";
 }
@@ -70,16 +86,21 @@ void PlotPaint::band(const PlotBand& band) const {
   list_.AddRectFilled({from, low.y}, {to, high.y}, to_u32(band.colour, band.opacity));
 }
 
-void PlotPaint::dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase) const {
-  const float dash = kDash * frame_.scale, period = dash + kGap * frame_.scale;
+void PlotPaint::dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase,
+                       SeriesStyle style) const {
   const float length = std::hypot(to.x - from.x, to.y - from.y);
   if (!(length > 0.0F)) return;
   const auto at = [&](float along) {
     return ImVec2{from.x + (to.x - from.x) * along / length, from.y + (to.y - from.y) * along / length};
   };
+  const std::vector<Stroke> strokes = strokes_of(style);
+  const float period = (strokes.back().begin + strokes.back().length + kGap) * frame_.scale;
   for (float along = -phase; along < length; along += period) {
-    const float begin = std::max(along, 0.0F), end = std::min(along + dash, length);
-    if (end > begin) list_.AddLine(at(begin), at(end), colour, width);
+    for (const Stroke& stroke : strokes) {
+      const float begin = along + stroke.begin * frame_.scale, end = begin + stroke.length * frame_.scale;
+      if (end > 0.0F && begin < length)
+        list_.AddLine(at(std::max(begin, 0.0F)), at(std::min(end, length)), colour, width);
+    }
   }
   phase = std::fmod(phase + length, period);
 }
@@ -102,8 +123,9 @@ void PlotPaint::line(const PlotSeries& series, const std::vector<PlotSample>& sa
     }
     if (run.size() == 1) {
       list_.AddCircleFilled(run[0], std::max(1.5F, width), colour);
-    } else if (series.style == SeriesStyle::kDashed) {
-      for (std::size_t k = 1; k < run.size(); ++k) dashed(run[k - 1], run[k], colour, width, phase);
+    } else if (is_broken(series.style)) {
+      for (std::size_t k = 1; k < run.size(); ++k)
+        dashed(run[k - 1], run[k], colour, width, phase, series.style);
     } else {
       list_.AddPolyline(run.data(), static_cast<int>(run.size()), colour, ImDrawFlags_None, width);
     }
@@ -176,8 +198,8 @@ void PlotPaint::swatch(ImVec2 at, const PlotSeries& series) const {
     list_.AddRectFilled({at.x, at.y - half}, {at.x + length, at.y + half}, colour);
   else if (series.style == SeriesStyle::kDots)
     list_.AddCircleFilled({at.x + 0.5F * length, at.y}, 0.7F * half, colour);
-  else if (series.style == SeriesStyle::kDashed)
-    dashed(at, {at.x + length, at.y}, colour, 2.0F * frame_.scale, phase);
+  else if (is_broken(series.style))
+    dashed(at, {at.x + length, at.y}, colour, 2.0F * frame_.scale, phase, series.style);
   else
     list_.AddLine(at, {at.x + length, at.y}, colour, 2.0F * frame_.scale);
 }

@@ -36,7 +36,8 @@ class PlotPaint {
   [[nodiscard]] ImVec2 place(double value_x, double value_y) const;
   void text(ImVec2 at, const std::string& words, ImU32 colour) const;
   void line(const PlotSeries& series, const std::vector<PlotSample>& samples) const;
-  void dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase) const;
+  void dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase,
+              SeriesStyle style = SeriesStyle::kDashed) const;
   void swatch(ImVec2 at, const PlotSeries& series) const;
 
   const UiFrame& frame_;

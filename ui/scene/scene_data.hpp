@@ -17,8 +17,13 @@ struct ScenePath {
   Role role = Role::kEstimate;
   std::vector<Eigen::Vector3f> positions{};  ///< m, world
   float width_px = 2.5F;
-  bool pickable = false;  ///< its positions answer to the mouse
+  bool pickable = false;        ///< its positions answer to the mouse
+  std::optional<Rgb> colour{};  ///< instead of its role's
+  double dash_m = 0.0;          ///< length of dashes and of the gaps between; 0 = unbroken
 };
+
+/// The colour a path is drawn in.
+[[nodiscard]] Rgb path_colour(const ScenePath& path, ThemeName theme);
 
 /// The error between two associated poses, drawn as a line between them.
 struct SceneError {

@@ -12,7 +12,26 @@ constexpr int kGridLinesEachSide = 20;
 constexpr int kGridPieces = 16;  // of a line, so that it can fade along its length
 constexpr int kStrongEvery = 5;
 
+/// One piece of a broken line. @param phase m along the pattern, carried from piece to piece
+void append_dashes(Segments& segments, const Eigen::Vector3f& from, const Eigen::Vector3f& to, double dash_m,
+                   double& phase, Rgb colour) {
+  const double length = static_cast<double>((to - from).norm()), period = 2.0 * dash_m;
+  // So many dashes in one piece would not be told apart; and a line need not end.
+  if (!(length > 0.0) || length > 1e4 * period) return;
+  for (double along = -phase; along < length; along += period) {
+    const double begin = std::max(along, 0.0), end = std::min(along + dash_m, length);
+    if (end <= begin) continue;
+    segments.push_back(make_vertex(from + static_cast<float>(begin / length) * (to - from), colour));
+    segments.push_back(make_vertex(from + static_cast<float>(end / length) * (to - from), colour));
+  }
+  phase = std::fmod(phase + length, period);
+}
+
 }  // namespace
+
+Rgb path_colour(const ScenePath& path, ThemeName theme) {
+  return path.colour.value_or(role_colour(path.role, theme));
+}
 
 SceneVertex make_vertex(const Eigen::Vector3f& position, Rgb colour, float alpha) {
   const auto opacity = static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(alpha, 0.0F, 1.0F)));
@@ -20,11 +39,16 @@ SceneVertex make_vertex(const Eigen::Vector3f& position, Rgb colour, float alpha
 }
 
 Segments path_segments(const ScenePath& path, ThemeName theme) {
-  const Rgb colour = role_colour(path.role, theme);
+  const Rgb colour = path_colour(path, theme);
   Segments segments;
   segments.reserve(2 * path.positions.size());
+  double phase = 0.0;
   for (std::size_t i = 1; i < path.positions.size(); ++i) {
     if (!path.positions[i - 1].allFinite() || !path.positions[i].allFinite()) continue;
+    if (path.dash_m > 0.0) {
+      append_dashes(segments, path.positions[i - 1], path.positions[i], path.dash_m, phase, colour);
+      continue;
+    }
     segments.push_back(make_vertex(path.positions[i - 1], colour));
     segments.push_back(make_vertex(path.positions[i], colour));
   }

@@ -28,12 +28,14 @@ class Overlay {
       std::string name;
       Rgb colour;
       float width_px;  ///< of its line; 0 for a dot
+      bool broken = false;
     };
     std::vector<Entry> entries;
     const ThemeName theme = frame_.theme.name;
     for (const ScenePath& path : scene.paths) {
       if (!path.name.empty())
-        entries.push_back({path.name, role_colour(path.role, theme), std::max(2.0F, path.width_px)});
+        entries.push_back(
+            {path.name, path_colour(path, theme), std::max(2.0F, path.width_px), path.dash_m > 0.0});
     }
     const auto removed = [](const ScenePoint& point) { return point.removed; };
     if (std::any_of(scene.points.begin(), scene.points.end(), removed)) {
@@ -51,7 +53,11 @@ class Overlay {
     for (const Entry& entry : entries) {
       const float middle = std::round(top + 0.5F * font);
       const ImU32 colour = to_u32(entry.colour);
-      if (entry.width_px > 0.0F)
+      if (entry.width_px > 0.0F && entry.broken)
+        for (const float from : {0.0F, 7.0F, 14.0F})
+          list_.AddLine({left + from * scale_, middle}, {left + (from + 4.0F) * scale_, middle}, colour,
+                        entry.width_px * scale_);
+      else if (entry.width_px > 0.0F)
         list_.AddLine({left, middle}, {left + 18.0F * scale_, middle}, colour, entry.width_px * scale_);
       else
         list_.AddCircleFilled({left + 9.0F * scale_, middle}, 3.0F * scale_, colour);
@@ -206,8 +212,16 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
 
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.emplace(*gl_, width, height, kSamples);
+    drawn_.reset();
   }
-  renderer_.draw(scene, view, frame.theme, frame.scale, *framebuffer_);
+  Drawn wanted{
+      scene.revision, scene.image_revision, view_from_world(view), view.fov_y,       scene.ground_m, {},
+      scene.up,       scene.show_grid,      scene.show_axes,       frame.theme.name, frame.scale};
+  if (scene.current) wanted.current = scene.current->matrix();
+  if (drawn_ != wanted) {
+    renderer_.draw(scene, view, frame.theme, frame.scale, *framebuffer_);
+    drawn_ = wanted;
+  }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddImage(framebuffer_->texture().imgui_id(), low, high, {0, 1}, {1, 0});
 
@@ -220,7 +234,7 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
   if (response.pose) {
     const ScenePath& path = scene.paths[response.pose->path];
     const auto seen = project(view, response.viewport, path.positions[response.pose->index].cast<double>());
-    if (seen) overlay.ring(response.to_screen(seen->head<2>()), role_colour(path.role, frame.theme.name));
+    if (seen) overlay.ring(response.to_screen(seen->head<2>()), path_colour(path, frame.theme.name));
   }
   list.PopClipRect();
   return response;

@@ -1,14 +1,26 @@
 #include "ui/session/run_track.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace stillpoint {
+namespace {
+
+/// How many frames back a method looks.
+int frames_looked_back(const Config& config) {
+  if (config.run.method == "none" || config.run.method == "oracle") return 0;
+  if (config.run.method == "stillpoint") return config.depth_motion.far_reference;
+  return config.motion.reference_gap;
+}
+
+}  // namespace
 
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)
     : source_(&source), options_(options), odometry_(source.camera(), config) {}
 
 FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& read) const {
-  const bool told = config().run.method == "oracle" && source_->has_masks();
+  const RunConfig& run = odometry.config().run;
+  const bool told = (run.method == "oracle" || run.check_removal != 0) && source_->has_masks();
   FrameResult result = odometry.process(read(index), told ? source_->truth(index).moving : cv::Mat());
   if (!options_.keep_times) result.record.ms = {};
   return result;
@@ -16,42 +28,83 @@ FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& re
 
 FrameResult RunTrack::process_next(const ReadFrame& read) {
   const int index = processed();
-  if (index % options_.checkpoint_every == 0) keep_checkpoint();
+  while (seen_ < index) catch_up_one(read);
+  if (index == begins_at_ || index % options_.checkpoint_every == 0) keep_checkpoint();
   FrameResult result = process(odometry_, index, read);
+  ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
-  features_.push_back(options_.keep_features ? result.record.features : std::vector<FeatureRecord>());
+  hash_.add(result.record);
+  features_.push_back(options_.keep_features
+                          ? std::make_shared<const std::vector<FeatureRecord>>(result.record.features)
+                          : nullptr);
+  std::vector<FeatureRecord> features = std::move(result.record.features);
+  result.record.features = {};
   records_.push_back(result.record);
-  records_.back().features = {};
+  result.record.features = std::move(features);
   return result;
 }
 
 FrameRecord RunTrack::record(int index) const {
   FrameRecord record = records_[static_cast<std::size_t>(index)];
-  record.features = features_[static_cast<std::size_t>(index)];
+  if (const Features& features = features_[static_cast<std::size_t>(index)]) record.features = *features;
   return record;
 }
 
 void RunTrack::keep_checkpoint() {
-  checkpoints_.emplace(processed(), odometry_);
+  checkpoints_.emplace(seen_, odometry_);
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
-  std::erase_if(checkpoints_,
-                [this](const auto& kept) { return kept.first % options_.checkpoint_every != 0; });
+  std::erase_if(checkpoints_, [this](const auto& kept) {
+    return kept.first != begins_at_ && kept.first % options_.checkpoint_every != 0;
+  });
+}
+
+Odometry RunTrack::before(int index, const ReadFrame& read) const {
+  const auto after = checkpoints_.upper_bound(index);
+  // A finished run that odometry has not seen here has none.
+  const bool fresh = after == checkpoints_.begin();
+  Odometry odometry = fresh ? Odometry(source_->camera(), config()) : std::prev(after)->second;
+  for (int before = fresh ? 0 : std::prev(after)->first; before < index; ++before)
+    (void)process(odometry, before, read);
+  return odometry;
 }
 
 FrameResult RunTrack::replay(int index, const ReadFrame& read) const {
-  const auto& [first, kept] = *std::prev(checkpoints_.upper_bound(index));
-  Odometry odometry = kept;
-  for (int before = first; before < index; ++before) (void)process(odometry, before, read);
+  Odometry odometry = before(index, read);
   return process(odometry, index, read);
+}
+
+std::vector<PastFrame> RunTrack::frames_before(int index, const Config& config, const ReadFrame& read) const {
+  std::vector<PastFrame> past;
+  for (int i = std::max(0, index - frames_looked_back(config)); i < index; ++i) {
+    const FrameRecord& record = records_[static_cast<std::size_t>(i)];
+    past.push_back({read(i), record.world_from_camera.inverse(), record.estimated});
+  }
+  return past;
+}
+
+RunTrack RunTrack::branch(int from, const Config& config, const ReadFrame& read) const {
+  RunTrack other(*source_, config, options_);
+  if (from <= begins_at_ || from >= processed()) return other;
+  std::optional<Odometry> odometry =
+      before(from, read).continued_with(config, frames_before(from, config, read));
+  if (!odometry) return other;
+  other.odometry_ = std::move(*odometry);
+  other.begins_at_ = from;
+  other.seen_ = from;
+  other.records_.assign(records_.begin(), records_.begin() + from);
+  other.features_.assign(features_.begin(), features_.begin() + from);
+  for (const FrameRecord& record : other.records_) other.hash_.add(record);
+  return other;
 }
 
 RunView RunTrack::view() const {
   RunView view;
   view.name = config().run.method;
   view.records = records_;
-  view.trajectory = trajectory_so_far(odometry_.map(), records_);
+  view.trajectory =
+      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_.map(), records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

@@ -2,9 +2,13 @@
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/odometry/odometry.hpp"
+#include "core/run/records_file.hpp"
+#include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"
 #include "ui/session/session_view.hpp"
@@ -27,6 +31,11 @@ class RunTrack {
 
   RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options = {});
 
+  /// A finished run: its frames count as processed though no odometry has seen them here yet. One that is to
+  /// see them does so first (catch_up), and then gives the same bytes again.
+  RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
+           const RunTrackOptions& options = {});
+
   /// Processes frame `processed()`, which must be in the sequence.
   /// @returns images of the motion stage; its record has gone into records()
   FrameResult process_next(const ReadFrame& read);
@@ -34,28 +43,59 @@ class RunTrack {
   /// Processes a frame that was processed before once more, from the nearest checkpoint on.
   [[nodiscard]] FrameResult replay(int index, const ReadFrame& read) const;
 
+  /// Processes frame `index` with an odometry that stands before it, and changes nothing here.
+  [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const;
+
+  /// The odometry as it stood before frame `index`, which was processed.
+  [[nodiscard]] Odometry before(int index, const ReadFrame& read) const;
+
+  /// What Odometry::continued_with wants to go on with `config` from frame `index` on.
+  [[nodiscard]] std::vector<PastFrame> frames_before(int index, const Config& config,
+                                                     const ReadFrame& read) const;
+
+  /// Another run that has this one's frames up to `from`, and goes on with another config from there; from
+  /// the first frame on where that cannot be (Odometry::continued_with).
+  [[nodiscard]] RunTrack branch(int from, const Config& config, const ReadFrame& read) const;
+
   [[nodiscard]] int processed() const { return static_cast<int>(records_.size()); }
+  [[nodiscard]] int begins_at() const { return begins_at_; }  ///< first frame that is its own
   /// All records, without their features: those are most of a record's size.
   [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
-  [[nodiscard]] const LocalMap& map() const { return odometry_.map(); }
+  [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
+  /// Of the map, and after them those that left it because they moved.
+  [[nodiscard]] std::vector<SavedPoint> points() const;
+
+  /// Frames that odometry has seen here: all that are processed, but for a recorded run.
+  [[nodiscard]] int seen() const { return seen_; }
+  /// Shows odometry the next of a recorded run's frames that it has not seen.
+  void catch_up_one(const ReadFrame& read);
+  /// What a recorded run removed from a frame; empty where nothing was.
+  [[nodiscard]] cv::Mat recorded_mask(int index) const;
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
+  [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
 
   /// The run for panels: records without their features, trajectory and evaluation so far.
   [[nodiscard]] RunView view() const;
 
  private:
-  [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const;
+  using Features = std::shared_ptr<const std::vector<FeatureRecord>>;  // shared with branches
+
   void keep_checkpoint();
+  [[nodiscard]] bool is_as_recorded() const;
 
   const FrameSource* source_;
   RunTrackOptions options_;
+  std::shared_ptr<const RecordedRun> recorded_;  // null for a run that began here
   Odometry odometry_;
-  std::vector<FrameRecord> records_;                  // without features
-  std::vector<std::vector<FeatureRecord>> features_;  // … which are here, where they are kept
-  std::map<int, Odometry> checkpoints_;               // by the frame they process next
+  int seen_ = 0;  // frames odometry_ has processed
+  int begins_at_ = 0;
+  std::vector<FrameRecord> records_;     // without features
+  std::vector<Features> features_;       // … which are here; null where they are not kept
+  std::map<int, Odometry> checkpoints_;  // by the frame they process next
+  RunHash hash_;
 };
 
 }  // namespace stillpoint

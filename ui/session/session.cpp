@@ -1,27 +1,17 @@
 #include "ui/session/session.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <exception>
 #include <future>
 
-#include "core/motion/detect_motion.hpp"
-
 namespace stillpoint {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr std::size_t kExtrasKept = 12;
-constexpr auto kProgressInterval = std::chrono::milliseconds(150);
-
-}  // namespace
 
 Session::Session(std::shared_ptr<const FrameSource> source, const Config& config,
                  const SessionOptions& options)
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
+  if (options_.recorded) open_recorded();
   show(0);
+  sidecar_due_ = options_.sidecar.has_value();
 }
 
 Session::~Session() {
@@ -36,12 +26,10 @@ std::shared_ptr<const SessionView> Session::view() const {
   return view_;
 }
 
-RunTrack::ReadFrame Session::reader() {
-  return [this](int index) { return frames_.read(index); };
-}
-
 void Session::restart(const Config& config) {
-  run_ = std::make_unique<RunTrack>(*source_, config, RunTrackOptions{.keep_times = options_.keep_times});
+  const RunTrackOptions keep{.keep_times = options_.keep_times};
+  run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, config, keep));
+  run_view_.reset();
   baseline_.reset();
   baseline_view_.reset();
   if (options_.baseline && config.run.method != "none" && source_->has_depth()) {
@@ -51,103 +39,86 @@ void Session::restart(const Config& config) {
         *source_, plain,
         RunTrackOptions{.max_checkpoints = 1, .keep_features = false, .keep_times = options_.keep_times});
   }
-  extras_.clear();
-  run_viewed_ = -1;
+  for (Ghost& ghost : ghosts_) {
+    ghost.diverged.reset();
+    ghost.compared = 0;
+  }
+  breakpoints_due_ = true;
 }
 
 void Session::process_one() {
-  const Frame frame = frames_.read(run_->processed());
-  const RunTrack::ReadFrame read = [&frame](int) { return frame; };
+  const Frame frame = frames_.read(run_->track().processed());
   // The baseline sees the same frame at the same time; neither knows of the other.
   std::future<FrameResult> beside;
-  if (baseline_) beside = std::async(std::launch::async, [&] { return baseline_->process_next(read); });
-  FrameResult result = run_->process_next(read);
+  if (baseline_)
+    beside = std::async(std::launch::async,
+                        [&] { return baseline_->process_next([&frame](int) { return frame; }); });
+  run_->process(frame);
   if (beside.valid()) beside.get();
-  keep({frame.index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)});
-}
-
-void Session::keep(Extras extras) {
-  extras_.push_front(std::move(extras));
-  if (extras_.size() > kExtrasKept) extras_.pop_back();
-}
-
-Session::Extras Session::extras_of(int index) {
-  if (index >= run_->processed()) return {.index = index};
-  const auto kept =
-      std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
-  if (kept != extras_.end()) return *kept;
-  const std::string& method = run_->config().run.method;
-  if (method == "none" || method == "paper") return {.index = index};  // all there is, frame_view computes
-  FrameResult again = run_->replay(index, reader());
-  keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
-  return extras_.front();
-}
-
-FrameView Session::frame_view(int index) {
-  const Config& config = run_->config();
-  FrameView view;
-  view.index = index;
-  view.frame = frames_.read(index);
-  view.reference.index = index - config.motion.reference_gap;
-  if (view.reference.index >= 0) view.reference = frames_.read(view.reference.index);
-  view.truth = source_->truth(index);
-  Extras extras = extras_of(index);
-  view.motion = std::move(extras.motion);
-  const bool pair = view.frame.readable() && view.reference.readable() &&
-                    view.frame.gray.size() == view.reference.gray.size();
-  if (view.motion.rounds.empty() && pair)
-    view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
-  view.depth_motion = std::move(extras.depth_motion);
-  view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
-  return view;
+  breakpoints_due_ = true;
 }
 
 void Session::show(int frame) {
-  /// A frame's view and the record it points to, kept alive together.
-  struct Shown {
-    FrameView view;
-    FrameRecord record;
-  };
-  auto shown = std::make_shared<Shown>();
-  shown->view = frame_view(frame);
-  if (frame < run_->processed()) {
-    shown->record = run_->record(frame);
-    shown->view.record = &shown->record;
+  current_ = run_->frame_view(frame);
+  for (Ghost& ghost : ghosts_) {
+    const RunTrack& track = ghost.run->track();
+    if (frame >= track.processed())
+      ghost.current.reset();
+    else
+      ghost.current = frame < track.begins_at() ? current_ : ghost.run->frame_view(frame);
   }
-  const FrameView* view = &shown->view;
-  current_ = std::shared_ptr<const FrameView>(std::move(shown), view);
+  debug_.preview.reset();
+  preview_due_ = debug_.preview_config.has_value();
   publish();
+}
+
+DebugView Session::debug_view() {
+  DebugView debug = debug_;
+  debug.breakpoints = breakpoints_.views();
+  debug.run_hash = run_->track().hash();
+  debug.removal = removal_errors(run_view_->records, run_view_->evaluation);
+  for (const Ghost& ghost : ghosts_)
+    debug.ghosts.push_back({.name = ghost.name,
+                            .config = ghost.run->track().config(),
+                            .from = ghost.run->track().begins_at(),
+                            .busy = ghost.run->track().processed() < run_->track().processed(),
+                            .run = ghost.run->run_view(),
+                            .current = ghost.current,
+                            .diverged = ghost.diverged});
+  return debug;
 }
 
 void Session::publish() {
   const auto last = this->view();
-  if (run_viewed_ != run_->processed()) {
-    run_view_ = std::make_shared<const RunView>(run_->view());
+  update_breakpoints();
+  const bool grown = run_view_ != run_->run_view();
+  if (grown) {
+    run_view_ = run_->run_view();
     if (baseline_) baseline_view_ = std::make_shared<const RunView>(baseline_->view());
-    run_viewed_ = run_->processed();
     ++revision_;
   }
   auto view = std::make_shared<SessionView>();
   view->title = source_->name();
   view->camera = source_->camera();
-  view->config = run_->config();
+  view->config = run_->track().config();
   view->frame_count = source_->size();
-  view->processed = run_->processed();
+  view->processed = run_->track().processed();
   view->playing = playing_;
-  view->busy = playing_ || current_->index != target_;
+  view->busy = playing_ || current_->index != target_ || has_background();
   view->message = message_;
   view->current = current_;
   view->run = run_view_;
   view->baseline = baseline_view_;
   view->ground_truth = source_->ground_truth();
   view->alignment = run_view_->evaluation.ate.alignment;
+  view->debug = debug_view();
   view->revision = revision_;
-  if (last && last->revision == revision_) {
+  if (last && !grown) {
     view->keyframes = last->keyframes;
     view->map_points = last->map_points;
   } else {
-    view->keyframes = saved_keyframes(run_->map());
-    view->map_points = saved_points(run_->map());
+    view->keyframes = run_->track().keyframes();
+    view->map_points = run_->track().points();
   }
   std::function<void()> on_change;
   {
@@ -160,11 +131,17 @@ void Session::publish() {
 
 void Session::go_to(int frame, const std::function<void(const FrameRecord&)>& on_frame) {
   target_ = std::clamp(frame, 0, source_->size() - 1);
-  while (run_->processed() <= target_) {
+  while (run_->track().processed() <= target_) {
     process_one();
-    if (on_frame) on_frame(run_->records().back());
+    if (on_frame) on_frame(run_->track().records().back());
+  }
+  while (options_.catch_up && options_.no_images.empty() && run_->track().seen() <= target_) {
+    const int index = run_->track().seen();
+    run_->catch_up_one();
+    if (on_frame) on_frame(run_->track().records()[static_cast<std::size_t>(index)]);
   }
   show(target_);
+  settle();
 }
 
 void Session::start(std::function<void()> on_change) {
@@ -175,93 +152,20 @@ void Session::start(std::function<void()> on_change) {
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-void Session::request_frame(int frame) {
-  const std::lock_guard lock(mutex_);
-  requests_.frame = frame;
-  asked_.notify_all();
-}
-
-void Session::request_play(bool play) {
-  const std::lock_guard lock(mutex_);
-  requests_.play = play;
-  asked_.notify_all();
-}
-
 void Session::request_speed(double frames_per_second) {
   frames_per_second_ = std::clamp(frames_per_second, 0.1, 1000.0);
 }
 
-void Session::request_config(const Config& config) {
+bool Session::idle() const {
   const std::lock_guard lock(mutex_);
-  requests_.config = config;
-  asked_.notify_all();
+  return resting_ && requests_.empty();
 }
 
-bool Session::take_requests() {
-  Requests taken;
-  {
-    const std::lock_guard lock(mutex_);
-    taken = std::exchange(requests_, {});
-  }
-  if (taken.config) {
-    restart(*taken.config);
-    target_ = current_->index;
-    show(target_);
-  }
-  if (taken.frame) target_ = std::clamp(*taken.frame, 0, source_->size() - 1);
-  if (taken.play) {
-    playing_ = *taken.play && current_->index + 1 < source_->size();
-    if (!playing_ && !taken.frame) target_ = current_->index;
-  }
-  return taken.config || taken.frame || taken.play;
-}
-
-void Session::work_step() {
-  if (playing_ && current_->index == target_) ++target_;
-  const auto begin = Clock::now();
-  // Frames on the way to one far ahead are not shown one by one; how far it is, is.
-  while (run_->processed() <= target_ && Clock::now() - begin < kProgressInterval) process_one();
-  if (run_->processed() <= target_) {
-    publish();
-    return;
-  }
-  if (playing_ && target_ + 1 >= source_->size()) playing_ = false;
-  show(target_);
-}
-
-void Session::work(const std::stop_token& stop) {
-  target_ = std::max(target_, current_->index);
-  if (current_->record == nullptr) target_ = 0;
-  auto due = Clock::now();
-  while (!stop.stop_requested()) {
-    try {
-      const bool asked = take_requests();
-      const bool at_rest = current_->index == target_ && current_->record != nullptr;
-      if (!playing_ && at_rest) {
-        if (asked) publish();
-        std::unique_lock lock(mutex_);
-        asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
-        continue;
-      }
-      if (playing_ && at_rest && Clock::now() < due) {
-        std::unique_lock lock(mutex_);
-        asked_.wait_until(lock, stop, due,
-                          [this] { return requests_.frame || requests_.play || requests_.config; });
-        continue;
-      }
-      due = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                               std::chrono::duration<double>(1.0 / frames_per_second_.load()));
-      work_step();
-    } catch (const std::exception& error) {
-      message_ = error.what();
-      playing_ = false;
-      target_ = current_->index;
-      publish();
-      // Without a frame to rest at, trying again at once would fail again at once.
-      std::unique_lock lock(mutex_);
-      asked_.wait(lock, stop, [this] { return requests_.frame || requests_.play || requests_.config; });
-    }
-  }
+void Session::rest(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  resting_ = true;
+  asked_.wait(lock, stop, [this] { return !requests_.empty(); });
+  resting_ = false;
 }
 
 }  // namespace stillpoint

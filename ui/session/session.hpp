@@ -12,23 +12,30 @@
 #include <utility>
 #include <vector>
 
+#include "ui/session/breakpoint_set.hpp"
 #include "ui/session/frame_cache.hpp"
-#include "ui/session/run_track.hpp"
 #include "ui/session/session_view.hpp"
+#include "ui/session/shown_run.hpp"
+#include "ui/session/sidecar.hpp"
 
 namespace stillpoint {
 
 struct SessionOptions {
   bool baseline = true;    ///< method `none` runs beside any other method
   bool keep_times = true;  ///< false: stage times stay 0, so that images repeat byte for byte
+  std::shared_ptr<const RecordedRun> recorded{};           ///< a finished run to begin with
+  std::shared_ptr<const RecordedRun> recorded_baseline{};  ///< … and one to stand beside it
+  std::string no_images{};  ///< why the source has no images, one sentence: nothing can be processed then
+  bool catch_up = false;    ///< go_to() lets odometry see a recorded run's frames as far as the one shown
+  std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
 };
 
 /// A sequence being looked at: runs odometry over it as far as asked, keeps what each frame left, and makes
 /// the snapshots that panels draw. What it shows at frame N equals a batch run's record N, whichever way it
-/// was come to.
+/// was come to. Beside it ghost runs with other configs are kept level with it.
 ///
-/// Used from one thread: either go_to() and view() alone, or, after start(), the requests and view(). The
-/// work is then done on a thread of its own.
+/// Used from one thread. Before start() requests are carried out at once; after it, on a thread of its own,
+/// soon.
 class Session {
  public:
   /// Shows the first frame, not yet processed.
@@ -51,61 +58,105 @@ class Session {
   void go_to(int frame, const std::function<void(const FrameRecord&)>& on_frame = {});
 
   /// A record of the session's run with all its features. Not beside a worker.
-  [[nodiscard]] FrameRecord record(int index) const { return run_->record(index); }
+  [[nodiscard]] FrameRecord record(int index) const { return run_->track().record(index); }
+
+  /// What panels ask for. Of frames to go to and of previews, only the newest counts. What goes wrong is told
+  /// by SessionView::message.
+  void request(SessionRequest wanted);
 
   // With a worker.
 
   /// Starts it. `on_change` is called from it whenever view() has changed.
   void start(std::function<void()> on_change = {});
-  void request_frame(int frame);  ///< as go_to(), soon
-  void request_play(bool play);   ///< frame after frame from the one shown on
+  void request_frame(int frame) { request(request::GoTo{frame}); }
+  void request_play(bool play) { request(request::Play{play}); }  ///< from the frame shown on
   void request_speed(double frames_per_second);
+  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
+  [[nodiscard]] bool idle() const;
   /// Another config: the run begins anew and goes on to the frame shown.
-  void request_config(const Config& config);
+  void request_config(const Config& config) { request(request::RunAll{config}); }
 
  private:
-  struct Requests {
-    std::optional<int> frame;
-    std::optional<bool> play;
-    std::optional<Config> config;
-  };
-  /// What a frame's motion stage made and a record does not hold.
-  struct Extras {
-    int index = 0;
-    MotionTrace motion{};
-    DepthMotionTrace depth_motion{};
-    cv::Mat mask{};
+  /// A run beside the session's own.
+  struct Ghost {
+    std::string name;
+    std::unique_ptr<ShownRun> run;
+    std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
+    std::optional<int> diverged{};
+    int compared = 0;  // frames
   };
 
   void restart(const Config& config);
+  void open_recorded();
+  [[nodiscard]] bool stages_are_missing() const;
+  void catch_up();
+  void refuse_without_images() const;
   void process_one();
   void show(int frame);
   void publish();
-  [[nodiscard]] FrameView frame_view(int index);
-  [[nodiscard]] Extras extras_of(int index);
-  void keep(Extras extras);
-  [[nodiscard]] RunTrack::ReadFrame reader();
+  [[nodiscard]] DebugView debug_view();
+
+  // Requests, one by one.
+  void carry_out(const SessionRequest& wanted);
+  void carry_out(const request::GoTo& wanted);
+  void carry_out(const request::Play& wanted);
+  void carry_out(const request::Bookmarks& wanted);
+  void carry_out(const request::Pins& wanted);
+  void carry_out(const request::Breakpoints& wanted);
+  void carry_out(const request::Span& wanted);
+  void carry_out(const request::Preview& wanted);
+  void carry_out(const request::RunAll& wanted);
+  void carry_out(const request::AddGhost& wanted);
+  void carry_out(const request::RemoveGhost& wanted);
+  void carry_out(const request::ExportFrames& wanted);
+  void carry_out(const request::ExportSession& wanted);
+  void carry_out(const request::SavePreset& wanted);
 
   void work(const std::stop_token& stop);
+  void attempt(const std::function<void()>& work);
   [[nodiscard]] bool take_requests();
+  [[nodiscard]] bool at_rest() const;
+  [[nodiscard]] int next_while_playing() const;
+  void stop_playing_where_wanted();
+  void rest(const std::stop_token& stop);
   void work_step();
+  void settle();
+  // What is done when nothing else is asked for, a frame at a time.
+  [[nodiscard]] bool has_background() const;
+  void background_step();
+  void compute_preview();
+  void advance(Ghost& ghost);
+  void compare(Ghost& ghost);
+  void update_breakpoints();
+  void open_sidecar();
+  [[nodiscard]] Marks marks() const;
+  void save_marks();
 
   std::shared_ptr<const FrameSource> source_;
   SessionOptions options_;
-  std::unique_ptr<RunTrack> run_, baseline_;
   FrameCache frames_;
-  std::deque<Extras> extras_;  // of the frames processed or replayed last
+  std::unique_ptr<ShownRun> run_;
+  std::unique_ptr<RunTrack> baseline_;
+  std::vector<Ghost> ghosts_;
   std::shared_ptr<const FrameView> current_;
   std::shared_ptr<const RunView> run_view_, baseline_view_;
-  int run_viewed_ = -1;  // frames run_view_ knows
   std::uint64_t revision_ = 0;
   int target_ = 0;  // the frame wanted
+  int wanted_ = 0;  // frames to have processed, once there is time
   bool playing_ = false;
+  bool frame_asked_ = false;  // among the requests being carried out
   std::string message_;
+  DebugView debug_;  // without breakpoints and ghosts
+  BreakpointSet breakpoints_;
+  bool breakpoints_due_ = false;
+  bool preview_due_ = false;
+  bool sidecar_due_ = false;
+  std::optional<Sidecar> sidecar_;
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
-  Requests requests_;
+  std::deque<SessionRequest> requests_;
+  bool resting_ = false;
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;

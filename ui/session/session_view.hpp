@@ -12,6 +12,7 @@
 #include "core/odometry/frame_record.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/frame.hpp"
+#include "ui/session/debug_view.hpp"
 
 namespace stillpoint {
 
@@ -52,8 +53,20 @@ struct SessionView {
   Trajectory ground_truth;                   ///< empty where there is none
   Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
   std::vector<SavedKeyframe> keyframes;
-  std::vector<SavedPoint> map_points;
-  std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
+  std::vector<SavedPoint> map_points;  ///< and after them those that left the map because they moved
+  DebugView debug;                     ///< bookmarks, breakpoints, ghost runs, …
+  std::uint64_t revision = 0;          ///< grows when run, keyframes or points change: what caches go by
 };
+
+/// Whether the sliders' config, not the run's, made the motion stages that are shown.
+[[nodiscard]] inline bool shows_preview(const SessionView& session) {
+  return session.debug.preview != nullptr && session.debug.preview->index == session.current->index;
+}
+
+/// What panels of a frame's images draw: the frame shown, its motion stages under the sliders' config while
+/// there is a preview of it. Its record is the run's own.
+[[nodiscard]] inline const std::shared_ptr<const FrameView>& shown_frame(const SessionView& session) {
+  return shows_preview(session) ? session.debug.preview : session.current;
+}
 
 }  // namespace stillpoint

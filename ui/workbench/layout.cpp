@@ -166,4 +166,51 @@ LayoutNode default_layout(std::string_view method) {
                divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
 }
 
+namespace {
+
+using enum Division;
+
+/// The paper's way from tracks to the union, or the depth-aware one, stage beside stage.
+LayoutNode motion_layout(std::string_view method) {
+  const bool by_depth = method == "stillpoint";
+  return divide(
+      1.0, kColumns,
+      {divide(0.74, kRows,
+              {divide(0.5, kColumns,
+                      {tile(0.33, "flow_tracks"), tile(0.33, "compensated"), tile(0.34, "difference")}),
+               divide(0.5, kColumns,
+                      {tile(0.33, "forward_mask"), tile(0.33, by_depth ? "union_mask" : "backward_mask"),
+                       tile(0.34, by_depth ? "depth_motion" : "union_mask")})}),
+       divide(0.26, kRows, {tile(0.7, "parameters"), tile(0.3, "timeline")})});
+}
+
+/// Runs beside each other: where they went, how far off, what each took out.
+LayoutNode compare_layout(std::string_view) {
+  return divide(1.0, kColumns,
+                {divide(0.26, kRows, {tile(0.62, "parameters"), tile(0.38, "removal")}),
+                 divide(0.4, kRows, {tile(0.62, "compare"), tile(0.38, "timeline")}),
+                 divide(0.34, kRows, {tile(0.55, "trajectory"), tile(0.45, "errors")})});
+}
+
+/// From the whole run to its worst frames and why they are bad.
+LayoutNode failures_layout(std::string_view method) {
+  return divide(
+      1.0, kRows,
+      {divide(0.55, kColumns,
+              {tile(0.3, "features_after"), tile(0.3, method == "stillpoint" ? "depth_motion" : "union_mask"),
+               divide(0.4, kColumns, {tile(0.55, "breakpoints"), tile(0.45, "bookmarks")})}),
+       divide(0.45, kColumns,
+              {tile(0.5, "timeline"), divide(0.3, kRows, {tile(0.5, "errors"), tile(0.5, "removal")}),
+               tile(0.2, "inspector")})});
+}
+
+}  // namespace
+
+std::vector<NamedLayout> named_layouts() {
+  return {{"inspect", "Inspect", default_layout},
+          {"motion", "Motion", motion_layout},
+          {"compare", "Compare", compare_layout},
+          {"failures", "Failures", failures_layout}};
+}
+
 }  // namespace stillpoint

@@ -59,6 +59,12 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
   ImGui::EndChild();
 }
 
+template <typename Visit>
+void for_each_panel(LayoutNode& node, const Visit& visit) {
+  if (node.is_panel()) visit(node);
+  for (LayoutNode& child : node.children) for_each_panel(child, visit);
+}
+
 LayoutRect below_heading(const LayoutRect& rect, float heading) {
   return {rect.x + 1.0F, rect.y + heading + 1.0F, rect.width - 2.0F, rect.height - heading - 2.0F};
 }
@@ -83,7 +89,19 @@ Panel* Workbench::find_panel(const std::string& name) const {
   return it == panels_.end() ? nullptr : it->get();
 }
 
+LayoutNode Workbench::layout() const {
+  LayoutNode layout = layout_;
+  for_each_panel(layout, [this](LayoutNode& tile) {
+    const auto chosen = choices_.find(tile.panel);
+    tile.choices = chosen == choices_.end() ? PanelChoices::Words() : chosen->second.changed();
+  });
+  return layout;
+}
+
 void Workbench::set_layout(LayoutNode layout) {
+  for_each_panel(layout, [this](const LayoutNode& tile) {
+    if (!tile.choices.empty()) choices_[tile.panel].want(tile.choices);
+  });
   for (const std::string& name : panels_of(layout))
     if (find_panel(name) == nullptr) remove_panel(layout, name);
   layout_ = std::move(layout);
@@ -92,19 +110,26 @@ void Workbench::set_layout(LayoutNode layout) {
 
 void Workbench::say(std::string message, bool error) {
   message_ = std::move(message);
-  message_is_error_ = error;
+  message_is_error_ = error_open_ = error;
+  said_s_ = time_s_;
+  log_.add({time_s_, last_shown_, error, message_});
+}
+
+std::optional<LayoutRect> Workbench::tile_of(const std::string& panel) const {
+  const auto found = tiles_.find(panel);
+  if (found == tiles_.end()) return std::nullopt;
+  return found->second;
 }
 
 void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = &frame;
   session_ = session;
-  if (session != nullptr && session->current->index != last_shown_) {
-    const double interval = frame.time_s - last_shown_s_;
-    shown_interval_s_ =
-        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
-    last_shown_ = session->current->index;
-    last_shown_s_ = frame.time_s;
-  }
+  time_s_ = frame.time_s;
+  look_ = frame.wanted_look;
+  follow_session();
+  frame.log = &log_;
+  frame.busy = !opening_.empty() || (session != nullptr && session->busy);
+  if (const auto before = std::exchange(before_frame_, {})) before();
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
@@ -121,12 +146,21 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_status_bar(status);
   ImGui::End();
 
+  draw_opening();
+  draw_error();
   draw_shortcuts();
   draw_palette();
   draw_open_dialog();
+  look_ = frame.wanted_look;
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
+}
+
+void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices) {
+  frame.choices = &choices;
+  draw_alone(frame, session, panel);
+  frame.choices = nullptr;
 }
 
 void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel) {
@@ -157,6 +191,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
 }
 
 void Workbench::draw_tiles(const LayoutRect& area) {
+  tiles_.clear();
   if (!maximised_.empty()) {
     draw_tile(maximised_, area);
     return;
@@ -202,11 +237,14 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
       ImGui::IsMouseHoveringRect({rect.x, rect.y}, {rect.x + rect.width, rect.y + rect.height}, false) &&
       ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows);
   if (hovered) hovered_panel_ = name;
+  tiles_[name] = rect;
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, rect, heading);
   PanelActions wanted;
+  frame_->choices = &choices_[name];
   draw_panel_body(*frame_, *session_, *panel, below_heading(rect, heading), wanted);
+  frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
 }
@@ -252,7 +290,10 @@ void Workbench::draw_tile_menu(const std::string& name) {
 }
 
 void Workbench::carry_out(const PanelActions& wanted) {
+  if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  if (host_.request)
+    for (const SessionRequest& wish : wanted.requests) host_.request(wish);
   if (wanted.set_parameters.empty() || !host_.configure) return;
   Config config = session_->config;
   try {

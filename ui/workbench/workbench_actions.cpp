@@ -31,7 +31,9 @@ void Workbench::add_actions() {
                   if (frame_ != nullptr) frame_->quit = true;
                 }});
   add_playback_actions();
+  add_debug_actions();
   add_view_actions();
+  add_layout_actions();
   add_panel_actions();
   actions_.add({.name = "palette",
                 .title = "Command palette…",

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/arguments.hpp"
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "core/run/condition.hpp"
+#include "core/sequence/excerpt.hpp"
+#include "ui/session/frame_ranges.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct ExportArguments {
+  std::string sequence, out, frames = "0:";
+  bool force = false;
+  SequenceArguments source;
+};
+
+void export_sequence(const ExportArguments& arguments) {
+  const auto source = arguments.source.open(arguments.sequence, Config());
+  const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
+  ExportedFrames exported;
+  {
+    Progress progress(source->name(), static_cast<int>(frames.size()));
+    exported = export_frames(*source, frames, arguments.out, arguments.force, [&](int, int) {
+      progress.advance("");
+      throw_if_interrupted();
+    });
+  }
+  fmt::print("{} frames written to {}\n", exported.written, arguments.out);
+  if (!exported.unreadable.empty())
+    fmt::print("left out, as they cannot be read: {}\n", frames_text(exported.unreadable));
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "export", "Some frames of a sequence as a small TUM RGB-D folder that shows the same problem");
+  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command
+      ->add_option("--frames", arguments->frames,
+                   "Frames to write: 10:40 (40 not among them), -1 is the last; with commas between")
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "Folder for the sequence; made if missing")->required();
+  command->add_flag("--force", arguments->force, "Replace a sequence in that folder");
+  command
+      ->add_option("--length", arguments->source.frames,
+                   "Only so many frames of the sequence, from the first on")
+      ->check(CLI::Range(1, 10'000'000));
+  command->add_option("--camera", arguments->source.camera,
+                      "A camera's name or a TOML file; otherwise the folder tells");
+  command->add_option("--seed", arguments->source.seed, "Seed of a generated sequence")
+      ->check(CLI::Range(0, 1'000'000'000));
+  command->callback([arguments] { export_sequence(*arguments); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "app/commands.hpp"
+#include "app/open_place.hpp"
+#include "app/painter.hpp"
+#include "app/progress.hpp"
+#include "core/error.hpp"
+#include "core/out_folder.hpp"
+#include "ui/panels/figure_sheet.hpp"
+#include "ui/session/frame_ranges.hpp"
+#include "ui/session/session.hpp"
+#include "ui/workbench/settings.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::pair<int, int> kFigureSize = {960, 780};  // px, of one panel
+constexpr const char* kList = "figures.txt";
+
+struct FiguresArguments {
+  PlaceArguments place;
+  std::string out, frame, theme = "light";
+  bool force = false;
+};
+
+/// The figures of one frame, written one by one, with the list of what each shows.
+class Figures {
+ public:
+  Figures(const FiguresArguments& arguments, const std::string& method)
+      : folder_(arguments.out), painter_({.look = {parse_theme(arguments.theme)}, .method = method}) {}
+
+  void write_figure_1(const SessionView& view) {
+    const std::vector<FigureCell> cells = figure_1_cells(view);
+    if (cells.empty()) {
+      leave_out("1", "this frame has no motion mask, for want of an earlier frame or of tracks");
+      return;
+    }
+    const std::string where =
+        fmt::format("{}, frames {} and {}", view.title, view.current->reference.index, view.current->index);
+    for (const FigureCell& cell : cells) {
+      // Each alone as well, for pages that set their own captions.
+      write_image(folder_ / fmt::format("figure1{}.png", cell.letter), cell.picture);
+    }
+    FigureSheet sheet(fmt::format("Figure 1   Motion mask by the paper's method: {}", where), cells, 3);
+    write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size()),
+          fmt::format("frames, compensated frame, forward, backward and union mask of {}; figure1a.png to "
+                      "figure1f.png are its pictures alone",
+                      where));
+  }
+
+  void write_panel(const std::string& number, const SessionView& view, const std::string& panel,
+                   const std::string& shows) {
+    write(number, painter_.paint_panel(view, panel, kFigureSize), shows);
+  }
+
+  void leave_out(const std::string& number, const std::string& why) {
+    list_ += fmt::format("figure {} is left out: {}\n", number, why);
+  }
+
+  /// @returns the list
+  std::string finish() {
+    write_text_file(folder_ / kList, list_);
+    return list_;
+  }
+
+ private:
+  void write(const std::string& number, const cv::Mat& image, const std::string& shows) {
+    const std::string name = fmt::format("figure{}.png", number);
+    write_image(folder_ / name, image);
+    list_ += fmt::format("{}: {}\n", name, shows);
+  }
+
+  fs::path folder_;
+  Painter painter_;
+  std::string list_;
+};
+
+void figures(const FiguresArguments& arguments) {
+  OpenedPlace place = open_place(arguments.place);
+  if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
+  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.source->size());
+  if (frames.size() != 1)
+    throw InputError(
+        fmt::format("--frame {}: names {} frames, and figures are of one", arguments.frame, frames.size()));
+  const int frame = frames.front();
+  const std::string& method = place.config.run.method;
+  const bool has_depth = place.source->has_depth(), has_truth = !place.source->ground_truth().empty();
+  Figures output(arguments, method);
+  prepare_out_folder(arguments.out, {kList}, arguments.force);
+
+  if (place.options.recorded == nullptr) place.options.keep_times = false;
+  Session session(place.source, place.config, place.options);
+  {
+    // Errors are drawn over the whole sequence.
+    const int last = has_depth && has_truth ? place.source->size() - 1 : frame;
+    Progress progress(fmt::format("{} ({})", place.source->name(), method), last + 1);
+    session.go_to(last, [&](const FrameRecord& record) {
+      progress.advance(std::string(to_string(record.status)));
+      throw_if_interrupted();
+    });
+    session.go_to(frame);
+  }
+  const auto view = session.view();
+  output.write_figure_1(*view);
+  const std::string beside = view->baseline ? " and of method " + view->baseline->name : "";
+  if (has_depth) {
+    output.write_panel(
+        "3", *view, "features_before",
+        fmt::format("features before removal, those that method {} removes told apart", method));
+    output.write_panel("4", *view, "features_after",
+                       "features after removal, and what tracking made of them");
+  } else {
+    output.leave_out("3 and 4", "the sequence has no depth, and features are those of the odometry");
+  }
+  if (has_depth && has_truth)
+    output.write_panel("6", *view, "errors",
+                       fmt::format("relative pose error over time of method {}{}", method, beside));
+  else
+    output.leave_out("6", "errors need depth and ground truth, and the sequence lacks one of them");
+  fmt::print("{}written to {}\n", output.finish(), arguments.out);
+}
+
+}  // namespace
+
+void add_figures_command(CLI::App& app) {
+  const auto arguments = std::make_shared<FiguresArguments>();
+  CLI::App* command = app.add_subcommand(
+      "figures", "The paper's figures 1, 3, 4 and 6 from any sequence: masks, features, errors over time");
+  command
+      ->add_option(
+          "SEQUENCE", arguments->place.place,
+          "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder")
+      ->required();
+  command->add_option("--frame", arguments->frame, "The frame that figures 1, 3 and 4 show; -1 is the last")
+      ->required();
+  command->add_option("--out", arguments->out, "Folder for the figures; made if missing")->required();
+  command->add_option("--theme", arguments->theme, "light or dark")->capture_default_str();
+  command->add_flag("--force", arguments->force, "Overwrite earlier figures");
+  arguments->place.source.add_to(*command);
+  arguments->place.add_to(*command);
+  arguments->place.config.add_to(*command, true);
+  command->callback([arguments] { figures(*arguments); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,90 @@
+#include "app/open_place.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "core/run/open_run.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run of the same sequence to stand beside `run`.
+/// @throws InputError for one that was named and is of another sequence
+std::shared_ptr<const RecordedRun> baseline_beside(const PlaceArguments& arguments, const RecordedRun& run) {
+  if (!arguments.baseline.empty()) {
+    auto named = std::make_shared<const RecordedRun>(read_records(arguments.baseline));
+    if (named->origin.fingerprint != run.origin.fingerprint)
+      throw InputError(fmt::format("--baseline {}: is a run of {}, and {} is one of {}, not the same frames",
+                                   arguments.baseline, named->origin.name, arguments.place, run.origin.name));
+    return named;
+  }
+  if (run.run.config.run.method == "none") return nullptr;
+  const fs::path beside = (fs::path(arguments.place) / "." / "..").lexically_normal() / "none";
+  try {
+    if (!is_run_folder(beside)) return nullptr;
+    auto found = std::make_shared<const RecordedRun>(read_records(beside));
+    if (found->origin.fingerprint == run.origin.fingerprint && found->run.config.run.method == "none")
+      return found;
+  } catch (const InputError&) {  // nobody asked for it
+  }
+  return nullptr;
+}
+
+OpenedPlace open_finished_run(const PlaceArguments& arguments) {
+  if (arguments.config.given() || arguments.source.given())
+    throw InputError(
+        fmt::format("{}: is a finished run, which has its own configuration and frames; options that "
+                    "change them go with its sequence",
+                    arguments.place));
+  const OpenedRun run = open_run(arguments.place, arguments.sequence);
+  if (run.recorded->run.records.empty())
+    throw InputError(fmt::format("{}: is a run without frames", arguments.place));
+  OpenedPlace opened;
+  opened.source = run.source;
+  opened.config = run.recorded->run.config;
+  if (arguments.config.threads > 0) opened.config.run.threads = arguments.config.threads;
+  opened.options.recorded = run.recorded;
+  opened.options.recorded_baseline = baseline_beside(arguments, *run.recorded);
+  opened.options.no_images = opened.problem = run.no_images;
+  return opened;
+}
+
+OpenedPlace open_sequence_at(const std::string& where, const SequenceArguments& source, Config config) {
+  OpenedPlace opened;
+  opened.config = std::move(config);
+  opened.source = source.open(where, opened.config);
+  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
+  return opened;
+}
+
+}  // namespace
+
+void PlaceArguments::add_to(CLI::App& command) {
+  command.add_option("--baseline", baseline,
+                     "Of a finished run: another run's folder to compare with; otherwise the folder none "
+                     "beside it, where there is one");
+  command.add_option("--sequence", sequence, "Of a finished run: where its sequence lies now");
+}
+
+OpenedPlace open_place(const PlaceArguments& arguments) {
+  if (is_run_folder(arguments.place)) return open_finished_run(arguments);
+  for (const auto& [option, value] :
+       {std::pair("--baseline", arguments.baseline), std::pair("--sequence", arguments.sequence)})
+    if (!value.empty())
+      throw InputError(
+          fmt::format("{}: goes with a finished run's folder, and {} is none", option, arguments.place));
+  return open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+}
+
+OpenedPlace open_place_as(const std::string& where, const SequenceArguments& source, const Config& config) {
+  if (!is_run_folder(where)) return open_sequence_at(where, source, config);
+  PlaceArguments run;
+  run.place = where;
+  return open_finished_run(run);
+}
+
+}  // namespace stillpoint

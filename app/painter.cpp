@@ -1,0 +1,106 @@
+#include "app/painter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/error.hpp"
+#include "ui/session/frame_ranges.hpp"
+#include "ui/workbench/settings.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr const char* kWorkbench = "workbench";
+
+}  // namespace
+
+Painter::Painter(const PainterOptions& options)
+    : options_(options),
+      offscreen_({.width = options.workbench_size.first,
+                  .height = options.workbench_size.second,
+                  .look = options.look}),
+      panels_(make_panels()),
+      workbench_(make_panels()) {
+  choose(options.panels);
+  workbench_.set_layout(options.layout.empty() ? default_layout(options.method)
+                                               : read_layout(options.layout, workbench_.panel_names()));
+}
+
+Painter::~Painter() { offscreen_.make_current(); }
+
+void Painter::choose(const std::string& names) {
+  std::vector<std::string> known;
+  for (const auto& panel : panels_) known.push_back(panel->name());
+  for (const std::string& name : split_list(names)) {
+    if (name == kWorkbench) {
+      workbench_chosen_ = true;
+      continue;
+    }
+    bool found = false;
+    for (const auto& panel : panels_) {
+      if (name != "all" && name != panel->name()) continue;
+      found = true;
+      if (std::find(panels_chosen_.begin(), panels_chosen_.end(), panel.get()) == panels_chosen_.end())
+        panels_chosen_.push_back(panel.get());
+    }
+    if (!found)
+      throw InputError(fmt::format("--panels {}: there is no such panel; there are all, {}, {}", name,
+                                   kWorkbench, fmt::join(known, ", ")));
+  }
+  if (picture_count() == 0) throw InputError("--panels: names no panel");
+}
+
+bool Painter::draws(const std::string& name) const {
+  if (name == kWorkbench) return workbench_chosen_;
+  return std::any_of(panels_chosen_.begin(), panels_chosen_.end(),
+                     [&](const Panel* panel) { return panel->name() == name; });
+}
+
+Panel& Painter::panel(const std::string& name) const {
+  for (const auto& panel : panels_)
+    if (panel->name() == name) return *panel;
+  throw std::logic_error("there is no panel " + name);
+}
+
+cv::Mat Painter::paint_frame(const FrameFunction& draw, std::pair<int, int> size) {
+  offscreen_.resize(size.first, size.second);
+  return offscreen_.render(draw);
+}
+
+cv::Mat Painter::paint_panel(const SessionView& view, const std::string& name, std::pair<int, int> size) {
+  return paint_frame(
+      [&](UiFrame& frame) {
+        frame.controls = false;
+        Workbench::draw_alone(frame, view, panel(name));
+      },
+      size);
+}
+
+std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
+  std::vector<Picture> pictures;
+  if (workbench_chosen_)
+    pictures.push_back({kWorkbench, paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); },
+                                                options_.workbench_size)});
+  for (Panel* chosen : panels_chosen_)
+    pictures.push_back(
+        {chosen->name(), paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen); },
+                                     options_.panel_size)});
+  return pictures;
+}
+
+void write_image(const std::filesystem::path& path, const cv::Mat& image) {
+  // Fast rather than small: packing would take longer than drawing.
+  bool written = false;
+  try {
+    written = cv::imwrite(path.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  } catch (const cv::Exception&) {
+  }
+  std::error_code error;
+  if (!written || std::filesystem::file_size(path, error) == 0 || error)
+    throw InputError(
+        fmt::format("{}: cannot be written (no permission, or the disk is full)", path.string()));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ui/panels/panel.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/offscreen.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+
+struct PainterOptions {
+  std::string panels = "all";                        ///< all, workbench, or names with commas between
+  std::pair<int, int> workbench_size = {1600, 900};  ///< px
+  std::pair<int, int> panel_size = {960, 780};       ///< px
+  Look look{};
+  std::string layout{};  ///< the workbench's tiles, a JSON file; empty = the method's default
+  std::string method{};  ///< chooses the default layout
+};
+
+/// Draws panels and the workbench as images, in one GL context for all of them.
+class Painter {
+ public:
+  /// A picture: what it shows, and how it is asked for.
+  struct Picture {
+    std::string name;  ///< "workbench" or a panel's
+    cv::Mat image;     ///< CV_8UC3, BGR
+  };
+
+  /// @throws InputError for a panel or a layout that there is not
+  explicit Painter(const PainterOptions& options);
+  ~Painter();
+  Painter(const Painter&) = delete;
+  Painter& operator=(const Painter&) = delete;
+
+  /// Whether `name` is among the pictures chosen.
+  [[nodiscard]] bool draws(const std::string& name) const;
+  [[nodiscard]] std::size_t picture_count() const {
+    return panels_chosen_.size() + (workbench_chosen_ ? 1 : 0);
+  }
+
+  /// Each picture chosen, of the frame shown.
+  [[nodiscard]] std::vector<Picture> paint(const SessionView& view);
+
+  /// One panel for print, without its buttons, whether it was chosen or not. @param size px
+  [[nodiscard]] cv::Mat paint_panel(const SessionView& view, const std::string& name,
+                                    std::pair<int, int> size);
+
+  /// What `draw` draws, whatever it is. @param size px
+  [[nodiscard]] cv::Mat paint_frame(const FrameFunction& draw, std::pair<int, int> size);
+
+ private:
+  void choose(const std::string& names);
+  [[nodiscard]] Panel& panel(const std::string& name) const;
+
+  PainterOptions options_;
+  Offscreen offscreen_;  // first: the panels' textures live in its context
+  std::vector<std::unique_ptr<Panel>> panels_;
+  Workbench workbench_;
+  bool workbench_chosen_ = false;
+  std::vector<Panel*> panels_chosen_;
+};
+
+/// Writes an image by its name's ending.
+/// @throws InputError when it cannot be written whole
+void write_image(const std::filesystem::path& path, const cv::Mat& image);
+
+}  // namespace stillpoint

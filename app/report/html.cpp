@@ -1,0 +1,125 @@
+#include "app/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace stillpoint {
+namespace {
+
+constexpr int kJpegQuality = 88;
+
+constexpr std::string_view kStyle = R"(
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 1180px; padding: 28px 24px 60px; color: #1d2229; background: #fff;
+       font: 15px/1.55 Inter, system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
+h1 { font-size: 26px; line-height: 1.25; margin: 0 0 4px; }
+h2 { font-size: 20px; margin: 40px 0 8px; padding-top: 14px; border-top: 1px solid #d9dde3; }
+h3 { font-size: 16px; margin: 26px 0 6px; }
+p { margin: 6px 0 10px; max-width: 86ch; }
+.dim { color: #5b6572; }
+nav { margin: 12px 0 0; }
+nav a { margin-right: 16px; }
+a { color: #00639c; }
+.scroll { overflow-x: auto; margin: 10px 0 14px; }
+table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; }
+th, td { padding: 5px 11px; border-bottom: 1px solid #e4e7eb; text-align: left; vertical-align: top; }
+th { background: #f4f6f8; font-weight: 600; white-space: nowrap; }
+td.number { text-align: right; white-space: nowrap; }
+td.best { font-weight: 700; background: #eaf6f1; }
+figure { margin: 10px 0; }
+figure img { display: block; max-width: 100%; height: auto; border: 1px solid #d9dde3; border-radius: 4px; }
+figcaption { color: #5b6572; font-size: 13px; margin-top: 4px; }
+.grid { display: grid; grid-template-columns: repeat(auto-fit, minmax(380px, 1fr)); gap: 12px 16px; }
+.grid figure { margin: 0; }
+.bar { display: flex; height: 16px; min-width: 60px; border-radius: 3px; overflow: hidden; background: #eef0f3; }
+.bar span { display: block; height: 100%; }
+.key { display: inline-block; width: 11px; height: 11px; border-radius: 2px; margin: 0 5px 0 12px; }
+.warning { background: #fff6e0; border-left: 4px solid #e69f00; padding: 6px 12px; }
+details { margin: 8px 0; }
+summary { cursor: pointer; }
+pre { background: #f4f6f8; padding: 12px; border-radius: 4px; overflow-x: auto; font-size: 12.5px; line-height: 1.45; }
+code { font-family: "JetBrains Mono", ui-monospace, Menlo, Consolas, monospace; font-size: 0.92em; }
+@media print { body { max-width: none; padding: 0; } h2 { break-after: avoid; } figure { break-inside: avoid; } }
+)";
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&#39;";
+        break;
+      default:
+        safe += letter;
+    }
+  }
+  return safe;
+}
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t there = std::min<std::size_t>(3, bytes.size() - at);
+    unsigned value = 0;
+    for (std::size_t i = 0; i < 3; ++i) value = value << 8U | (i < there ? bytes[at + i] : 0U);
+    for (std::size_t i = 0; i < 4; ++i) text += i <= there ? kLetters[value >> (18U - 6U * i) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string figure_html(const cv::Mat& picture, std::string_view caption, Packing packing) {
+  const bool exact = packing == Packing::kExact;
+  std::vector<unsigned char> file;
+  if (exact)
+    cv::imencode(".png", picture, file, {cv::IMWRITE_PNG_COMPRESSION, 8});
+  else
+    cv::imencode(".jpg", picture, file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  return fmt::format(
+      "<figure><img src=\"data:image/{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
+      "<figcaption>{}</figcaption></figure>\n",
+      exact ? "png" : "jpeg", base64(file), picture.cols, picture.rows, escaped(caption), escaped(caption));
+}
+
+std::string table_html(const std::vector<std::string>& header,
+                       const std::vector<std::vector<HtmlCell>>& rows) {
+  std::string html = "<div class=\"scroll\"><table><thead><tr>";
+  for (const std::string& name : header) html += fmt::format("<th>{}</th>", escaped(name));
+  html += "</tr></thead><tbody>\n";
+  for (const auto& row : rows) {
+    html += "<tr>";
+    for (const HtmlCell& cell : row)
+      html += fmt::format("<td class=\"{}{}\">{}{}</td>", cell.number ? "number" : "text",
+                          cell.best ? " best" : "", escaped(cell.text), cell.best ? " ✓" : "");
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string page_html(std::string_view title, std::string_view body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{}</title><style>{}</style></head>\n<body>\n{}</body></html>\n",
+      escaped(title), kStyle, body);
+}
+
+}  // namespace stillpoint

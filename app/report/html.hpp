@@ -1,0 +1,41 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stillpoint {
+
+// Pieces of a page that needs nothing but itself: no scripts, no links, pictures within.
+
+/// Text fit to stand in HTML, in an attribute too.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(const std::vector<unsigned char>& bytes);
+
+enum class Packing {
+  kExact,  ///< PNG: plots, text
+  kSmall,  ///< JPEG: camera images
+};
+
+/// A figure with its picture in it. @param caption shown below, and read out for the picture
+[[nodiscard]] std::string figure_html(const cv::Mat& picture, std::string_view caption,
+                                      Packing packing = Packing::kExact);
+
+/// A cell of a table.
+struct HtmlCell {
+  std::string text;     ///< not escaped yet
+  bool number = false;  ///< aligned right
+  bool best = false;    ///< of its column: marked, and not by colour alone
+};
+
+/// A table that scrolls sideways where it is too wide. @param header not escaped yet
+[[nodiscard]] std::string table_html(const std::vector<std::string>& header,
+                                     const std::vector<std::vector<HtmlCell>>& rows);
+
+/// The whole page about `body`.
+[[nodiscard]] std::string page_html(std::string_view title, std::string_view body);
+
+}  // namespace stillpoint

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "app/report/html.hpp"
+#include "app/report/report_pictures.hpp"
+#include "app/report/report_run.hpp"
+#include "app/report/report_sections.hpp"
+#include "core/error.hpp"
+#include "core/out_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportArguments {
+  std::vector<std::string> runs;
+  std::string out;
+  int worst = 3;
+  bool force = false;
+};
+
+std::string title_of(const std::vector<ReportGroup>& groups) {
+  return groups.size() == 1 ? fmt::format("{}: odometry runs", groups.front().sequence)
+                            : fmt::format("Odometry runs of {} sequences", groups.size());
+}
+
+/// Everything that can be known to be wrong is told before work begins.
+void check_out(const ReportArguments& arguments) {
+  const fs::path out = arguments.out;
+  std::error_code failed;
+  if (fs::is_directory(out, failed))
+    throw InputError(
+        fmt::format("--out {}: is a folder, where a file such as report.html is wanted", arguments.out));
+  if (fs::exists(out, failed) && !arguments.force)
+    throw InputError(fmt::format("--out {}: is there already; --force overwrites it", arguments.out));
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
+  if (!fs::is_directory(folder, failed))
+    throw InputError(fmt::format("--out {}: there is no folder {}", arguments.out, folder.string()));
+}
+
+void report(const ReportArguments& arguments) {
+  check_out(arguments);
+  const std::vector<ReportGroup> groups = open_report_runs(arguments.runs);
+  Painter painter({.look = {ThemeName::kLight}});
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const ReportProgress progress = [terminal](const std::string& what) {
+    if (terminal) {
+      fmt::print(stderr, "\r\033[K{}", what);
+      std::fflush(stderr);
+    }
+    throw_if_interrupted();
+  };
+  std::string body = introduction(groups);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const ReportGroup& group = groups[i];
+    body += fmt::format("<h2 id=\"sequence{}\">{}</h2>\n", i + 1, escaped(group.sequence));
+    body += summary_table(group);
+    progress(group.sequence + ": errors and trajectories");
+    body += "<h3>Error over time</h3>\n" + error_plots(painter, group);
+    body += "<h3>Trajectories</h3>\n" + trajectories(painter, group);
+    body += "<h3>Stage timings</h3>\n" + stage_timings(group);
+    for (const ReportRun& run : group.runs)
+      body += worst_frame_panels(painter, group, run, arguments.worst, progress);
+  }
+  body += configurations(groups);
+  if (terminal) std::fputs("\r\033[K", stderr);
+  const std::string page = page_html(title_of(groups), body);
+  write_text_file(arguments.out, page);
+  fmt::print("{} runs, {:.1f} MB, written to {}\n", arguments.runs.size(),
+             static_cast<double>(page.size()) / 1e6, arguments.out);
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  const auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "report", "Finished runs side by side on one page: tables, plots, trajectories and worst frames");
+  command->add_option("RUNS", arguments->runs, "Folders that `stillpoint run` or `benchmark` wrote")
+      ->required();
+  command->add_option("--out", arguments->out, "The page, one HTML file with its pictures in it")->required();
+  command->add_option("--worst", arguments->worst, "How many of each run's worst frames to show")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  command->add_flag("--force", arguments->force, "Overwrite an earlier report");
+  command->callback([arguments] { report(*arguments); });
+}
+
+}  // namespace stillpoint

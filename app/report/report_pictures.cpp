@@ -1,0 +1,152 @@
+#include "app/report/report_pictures.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/report/html.hpp"
+#include "core/run/worst_frames.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_series.hpp"
+#include "ui/plot/plot.hpp"
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::pair<int, int> kPlotSize = {1130, 300}, kScenePanel = {720, 560},
+                              kFramePanel = {640, 540};  // px
+constexpr int kApart = 10;                               // frames between two worst ones
+
+/// A session on a finished run, its group's baseline beside it.
+std::unique_ptr<Session> session_of(const ReportGroup& group, const ReportRun& run, bool catch_up) {
+  SessionOptions options;
+  options.recorded = run.opened.recorded;
+  if (group.baseline() != nullptr && group.baseline() != &run)
+    options.recorded_baseline = group.baseline()->opened.recorded;
+  options.no_images = run.opened.no_images;
+  options.catch_up = catch_up;
+  return std::make_unique<Session>(run.opened.source, run.result().config, options);
+}
+
+struct Curve {
+  std::string name;
+  Series series;
+  Rgb colour;
+  bool dashed = false;
+};
+
+/// Colours that keep to the roles of panels where a method has one.
+Rgb colour_of_run(const ReportRun& run, std::size_t place) {
+  constexpr std::array kOthers = {okabe_ito::kGreen, okabe_ito::kPurple, okabe_ito::kVermillion,
+                                  okabe_ito::kSkyBlue, okabe_ito::kBlack};
+  if (run.report.method == "none") return role_colour(Role::kBaseline, ThemeName::kLight);
+  if (run.report.method == "stillpoint") return role_colour(Role::kEstimate, ThemeName::kLight);
+  return kOthers[place % kOthers.size()];
+}
+
+std::vector<Curve> error_curves(const ReportGroup& group, RelativePoseError TrajectoryEvaluation::*error) {
+  std::vector<Curve> curves;
+  std::size_t place = 0;
+  for (const ReportRun& run : group.runs) {
+    const bool named = run.report.method == "none" || run.report.method == "stillpoint";
+    if (!run.report.evaluation) continue;
+    const double start = run.result().records.front().timestamp;
+    Curve curve{run.label, error_series((*run.report.evaluation).*error, start, false),
+                colour_of_run(run, named ? 0 : place), run.report.method == "none"};
+    if (!named) ++place;
+    if (!curve.series.x.empty()) curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+cv::Mat plot_picture(Painter& painter, const std::vector<Curve>& curves, const std::string& label) {
+  PlotView view;
+  return painter.paint_frame(
+      [&](UiFrame& frame) {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize(frame.size);
+        ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.panel));
+        ImGui::Begin("##plot", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+        Plot plot{.x_label = "time", .x_unit = "s", .y_label = label, .y_unit = "mm"};
+        for (const Curve& curve : curves)
+          plot.series.push_back({curve.name, curve.series.x, curve.series.y, curve.colour,
+                                 curve.dashed ? SeriesStyle::kDashed : SeriesStyle::kLine, 1.8F});
+        (void)draw_plot(frame, "plot", plot, view);
+        ImGui::End();
+        ImGui::PopStyleColor();
+      },
+      kPlotSize);
+}
+
+/// What is worth seeing of a frame, by method.
+std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run) {
+  using Panels = std::vector<std::pair<std::string, std::string>>;
+  if (!run.opened.no_images.empty())
+    return Panels{{"features_before", "Features before removal; the image is missing"},
+                  {"features_after", "Features after removal; the image is missing"}};
+  const std::string& method = run.report.method;
+  const std::pair<std::string, std::string> before = {"features_before",
+                                                      "Features before removal, and the mask"},
+                                            after = {"features_after", "Features after removal, as tracked"};
+  if (method == "none") return {{"input", "Input"}, after};
+  if (method == "paper")
+    return {before, {"difference", "Difference after compensation"}, {"union_mask", "Motion mask"}, after};
+  if (method == "stillpoint")
+    return {before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
+  return {before, after};
+}
+
+}  // namespace
+
+std::string error_plots(Painter& painter, const ReportGroup& group) {
+  const auto over_second = error_curves(group, &TrajectoryEvaluation::rpe_time),
+             over_frame = error_curves(group, &TrajectoryEvaluation::rpe_frame);
+  if (over_second.empty() && over_frame.empty())
+    return "<p class=\"dim\">The sequence has no ground truth to measure errors against.</p>\n";
+  std::string html;
+  if (!over_second.empty())
+    html += figure_html(plot_picture(painter, over_second, "RPE over 1 s"),
+                        "Translational error of relative motion over one second, at the end of each");
+  if (!over_frame.empty())
+    html += figure_html(plot_picture(painter, over_frame, "RPE per frame"),
+                        "Translational error of relative motion from one frame to the next");
+  return html;
+}
+
+std::string trajectories(Painter& painter, const ReportGroup& group) {
+  std::string html = "<div class=\"grid\">\n";
+  for (const ReportRun& run : group.runs) {
+    const auto session = session_of(group, run, false);
+    session->go_to(run.report.frames - 1);
+    html += figure_html(
+        painter.paint_panel(*session->view(), "trajectory", kScenePanel),
+        fmt::format("{}: estimate, map, ground truth and baseline where there are any", run.label));
+  }
+  return html + "</div>\n";
+}
+
+std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const ReportRun& run, int count,
+                               const ReportProgress& progress) {
+  const std::vector<WorstFrame> worst = worst_frames(run.result(), run.report, count, kApart);
+  if (worst.empty()) return {};
+  const bool again = run.report.method == "stillpoint" && run.opened.no_images.empty();
+  const auto session = session_of(group, run, again);
+  const double start = run.result().records.front().timestamp;
+  std::string html = fmt::format("<h3>Worst frames of {}</h3>\n", escaped(run.label));
+  for (const WorstFrame& frame : worst) {
+    session->go_to(frame.index, [&](const FrameRecord&) {
+      progress(fmt::format("{} ({}): stages of frame {}", group.sequence, run.label, frame.index));
+    });
+    const auto view = session->view();
+    html += fmt::format("<p><strong>Frame {}</strong>, {:.2f} s: {}.</p>\n<div class=\"grid\">\n",
+                        frame.index, view->current->frame.timestamp - start, escaped(frame.why));
+    for (const auto& [panel, caption] : panels_of(run))
+      html += figure_html(painter.paint_panel(*view, panel, kFramePanel), caption, Packing::kSmall);
+    html += "</div>\n";
+  }
+  return html;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,71 @@
+#include "app/report/report_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string folder_name(const std::string& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return path.has_filename() ? path.filename().string() : path.parent_path().filename().string();
+}
+
+/// By method where that is enough, else by folder as well.
+void label_runs(ReportGroup& group) {
+  std::map<std::string, int> methods, labels;
+  for (const ReportRun& run : group.runs) ++methods[run.report.method];
+  for (ReportRun& run : group.runs) {
+    run.label = run.report.method;
+    const std::string name = folder_name(run.folder);
+    if (methods[run.label] > 1 && name != run.label) run.label += fmt::format(" ({})", name);
+    const int times = ++labels[run.label];
+    if (times > 1) run.label += fmt::format(" {}", times);
+  }
+}
+
+}  // namespace
+
+const ReportRun* ReportGroup::baseline() const {
+  const auto it = std::find_if(runs.begin(), runs.end(),
+                               [](const ReportRun& run) { return run.report.method == "none"; });
+  return it == runs.end() ? nullptr : &*it;
+}
+
+std::vector<ReportGroup> open_report_runs(const std::vector<std::string>& folders) {
+  std::vector<ReportGroup> groups;
+  std::vector<std::string> fingerprints;
+  std::set<fs::path> taken;
+  for (const std::string& folder : folders) {
+    std::error_code ignored;
+    if (!taken.insert(fs::weakly_canonical(folder, ignored)).second)
+      throw InputError(fmt::format("{}: is named twice", folder));
+    ReportRun run{folder, "", open_run(folder), {}};
+    if (run.result().records.empty()) throw InputError(fmt::format("{}: is a run without frames", folder));
+    run.report = report_on(run.result(), *run.opened.source);
+    const std::string& print = run.recorded().origin.fingerprint;
+    const auto known = std::find(fingerprints.begin(), fingerprints.end(), print);
+    const auto place = static_cast<std::size_t>(known - fingerprints.begin());
+    if (known == fingerprints.end()) {
+      fingerprints.push_back(print);
+      groups.push_back({run.report.sequence, {}, {}});
+    }
+    ReportGroup& group = groups[place];
+    if (!run.opened.no_images.empty() &&
+        std::find(group.warnings.begin(), group.warnings.end(), run.opened.no_images) == group.warnings.end())
+      group.warnings.push_back(run.opened.no_images);
+    group.runs.push_back(std::move(run));
+  }
+  for (ReportGroup& group : groups) label_runs(group);
+  return groups;
+}
+
+}  // namespace stillpoint

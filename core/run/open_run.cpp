@@ -1,0 +1,70 @@
+#include "core/run/open_run.hpp"
+
+#include <fmt/format.h>
+
+#include "core/error.hpp"
+#include "core/run/recorded_source.hpp"
+#include "core/sequence/fingerprint.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& path) {
+  std::error_code failed;
+  return fs::exists(path, failed);
+}
+
+/// Where the sequence is to be looked for.
+std::string place_of(const SequenceOrigin& origin, const fs::path& folder) {
+  if (origin.is_generated() || is_there(origin.where) || origin.where_from_run.empty()) return origin.where;
+  const fs::path beside = folder / origin.where_from_run;
+  return is_there(beside) ? beside.lexically_normal().string() : origin.where;
+}
+
+/// The sequence, when it is the one the run was made of.
+/// @throws InputError when it is not
+std::unique_ptr<FrameSource> open_as_it_was(const SequenceOrigin& origin, const std::string& where,
+                                            const fs::path& folder) {
+  OpenOptions options;
+  options.camera = origin.camera;
+  options.frames = origin.generated_frames;
+  options.seed = origin.seed;
+  auto source = open_sequence(where, options);
+  if (sequence_fingerprint(*source) != origin.fingerprint)
+    throw InputError(fmt::format("{}: is not, or no longer, the sequence that the run in {} was made of",
+                                 where, folder.string()));
+  return source;
+}
+
+}  // namespace
+
+bool is_run_folder(const fs::path& folder) {
+  for (const char* list : {"rgb.txt", "associations.txt"})
+    if (is_there(folder / list)) return false;
+  return is_there(folder / kRecordsName) || is_there(folder / "summary.json");
+}
+
+OpenedRun open_run(const fs::path& folder, const std::string& sequence) {
+  if (!is_there(folder / kRecordsName))
+    throw InputError(fmt::format(
+        "{}: has no {}, without which a run cannot be looked at; `stillpoint run … --force` writes it anew",
+        folder.string(), kRecordsName));
+  OpenedRun opened;
+  opened.recorded = std::make_shared<const RecordedRun>(read_records(folder));
+  const SequenceOrigin& origin = opened.recorded->origin;
+  if (!sequence.empty()) {
+    opened.source = open_as_it_was(origin, sequence, folder);
+    return opened;
+  }
+  try {
+    opened.source = open_as_it_was(origin, place_of(origin, folder), folder);
+  } catch (const InputError& error) {
+    opened.no_images = error.what();
+    opened.source = make_recorded_source(opened.recorded, opened.no_images);
+  }
+  return opened;
+}
+
+}  // namespace stillpoint

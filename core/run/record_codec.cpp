@@ -1,0 +1,187 @@
+#include "core/run/record_codec.hpp"
+
+#include <algorithm>
+
+namespace stillpoint {
+namespace {
+
+// Each list of fields serves writing and reading alike, so that the two cannot part.
+
+template <typename Archive, typename PoseType>
+void transfer_pose(Archive& archive, PoseType& pose) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) archive(pose.matrix()(row, column));
+}
+
+template <typename Archive, typename Stamped>
+void transfer_stamped(Archive& archive, Stamped& stamped) {
+  archive(stamped.timestamp);
+  transfer_pose(archive, stamped.world_from_camera);
+}
+
+template <typename Archive, typename Record>
+void transfer_fields(Archive& archive, Record& r) {
+  archive(r.index);
+  archive(r.timestamp);
+  archive(r.status);
+  archive(r.note);
+  transfer_pose(archive, r.world_from_camera);
+  archive(r.estimated);
+  archive(r.reference_keyframe);
+  transfer_pose(archive, r.camera_from_reference);
+  archive(r.pose_start);
+  for (auto* count :
+       {&r.features_found, &r.features_removed, &r.features_kept, &r.motion_rounds, &r.static_tracks,
+        &r.matches, &r.inliers, &r.refine_iterations, &r.new_points, &r.fused_points, &r.culled_points,
+        &r.culled_keyframes, &r.map_points, &r.map_keyframes, &r.bundle_iterations})
+    archive(*count);
+  for (auto* figure :
+       {&r.mask_share, &r.homography_rms_px, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px,
+        &r.ms.motion, &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
+    archive(*figure);
+  archive(r.keyframe);
+}
+
+/// Field by field over all features: what is alike lies together, which packs better.
+template <typename Archive, typename Features>
+void transfer_features(Archive& archive, Features& features) {
+  for (auto& f : features) archive(f.pixel.x);
+  for (auto& f : features) archive(f.pixel.y);
+  for (auto& f : features) archive(f.depth);
+  for (auto& f : features) archive(f.residual_px);
+  for (auto& f : features) archive(f.map_point);
+  for (auto& f : features) archive(f.octave);
+  for (auto& f : features) archive(f.fate);
+}
+
+template <typename Archive, typename Scores>
+void transfer_scores(Archive& archive, Scores& s) {
+  archive(s.known);
+  for (auto* mask : {&s.mask, &s.forward_mask})
+    for (auto* pixels : {&mask->found_rightly, &mask->found_wrongly, &mask->missed, &mask->left_rightly})
+      archive(*pixels);
+  for (auto* features : {&s.removal.removed_rightly, &s.removal.removed_wrongly, &s.removal.kept_wrongly,
+                         &s.removal.kept_rightly})
+    archive(*features);
+}
+
+template <typename Archive, typename SavedKeyframeType>
+void transfer_keyframe(Archive& archive, SavedKeyframeType& keyframe) {
+  archive(keyframe.id);
+  archive(keyframe.frame_index);
+  transfer_stamped(archive, keyframe.pose);
+}
+
+template <typename Archive, typename SavedPointType>
+void transfer_point(Archive& archive, SavedPointType& point) {
+  archive(point.id);
+  for (int i = 0; i < 3; ++i) archive(point.position[i]);
+  archive(point.observations);
+}
+
+constexpr std::size_t kFeatureBytes = 22;
+
+template <typename Thing, typename Transfer>
+void write_all(ByteWriter& to, const std::vector<Thing>& things, const Transfer& transfer) {
+  to(static_cast<std::uint32_t>(things.size()));
+  for (const Thing& thing : things) transfer(to, thing);
+}
+
+template <typename Thing, typename Transfer>
+std::vector<Thing> read_all(ByteReader& from, const Transfer& transfer) {
+  std::vector<Thing> things(from.count(1));
+  for (Thing& thing : things) transfer(from, thing);
+  return things;
+}
+
+// Sixteen bits a run; a longer one goes on after a run of none.
+constexpr std::size_t kLongestRun = 0xFFFF;
+
+void put_run(PackedMask& pack, std::size_t length) {
+  while (length > kLongestRun) {
+    pack.insert(pack.end(), {0xFF, 0xFF, 0, 0});
+    length -= kLongestRun;
+  }
+  pack.push_back(static_cast<std::uint8_t>(length & 0xFFU));
+  pack.push_back(static_cast<std::uint8_t>(length >> 8U));
+}
+
+}  // namespace
+
+PackedMask pack_mask(const cv::Mat& mask) {
+  PackedMask pack;
+  if (mask.empty()) return pack;
+  for (const int side : {mask.cols, mask.rows}) put_run(pack, static_cast<std::size_t>(side));
+  bool set = false;
+  std::size_t length = 0;
+  for (int y = 0; y < mask.rows; ++y) {
+    const auto* row = mask.ptr<std::uint8_t>(y);
+    for (int x = 0; x < mask.cols; ++x) {
+      if ((row[x] != 0) != set) {
+        put_run(pack, length);
+        length = 0;
+        set = !set;
+      }
+      ++length;
+    }
+  }
+  put_run(pack, length);
+  return pack;
+}
+
+cv::Mat unpack_mask(const PackedMask& pack) {
+  if (pack.empty()) return {};
+  ByteReader from(pack);
+  std::uint16_t width = 0, height = 0;
+  from(width);
+  from(height);
+  cv::Mat mask(height, width, CV_8UC1, cv::Scalar(0));
+  std::size_t at = 0;
+  for (bool set = false; !from.empty(); set = !set) {
+    std::uint16_t length = 0;
+    from(length);
+    if (length > mask.total() - at) throw ByteReader::Exhausted();
+    if (set) std::fill_n(mask.data + at, length, std::uint8_t{255});
+    at += length;
+  }
+  if (at != mask.total()) throw ByteReader::Exhausted();
+  return mask;
+}
+
+void write_record(ByteWriter& to, const FrameRecord& record) {
+  transfer_fields(to, record);
+  to(static_cast<std::uint32_t>(record.features.size()));
+  transfer_features(to, record.features);
+}
+
+FrameRecord read_record(ByteReader& from) {
+  FrameRecord record;
+  transfer_fields(from, record);
+  record.features.resize(from.count(kFeatureBytes));
+  transfer_features(from, record.features);
+  return record;
+}
+
+void write_end(ByteWriter& to, const RunEnd& end) {
+  write_all(to, end.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
+  write_all(to, end.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
+  write_all(to, end.points, [](auto& a, auto& p) { transfer_point(a, p); });
+  write_all(to, end.trajectory, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  write_all(to, end.ground_truth, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  to(end.orb_unit_ms);
+  to(end.interrupted);
+}
+
+RunEnd read_end(ByteReader& from) {
+  RunEnd end;
+  end.scores = read_all<FrameScores>(from, [](auto& a, auto& s) { transfer_scores(a, s); });
+  end.keyframes = read_all<SavedKeyframe>(from, [](auto& a, auto& k) { transfer_keyframe(a, k); });
+  end.points = read_all<SavedPoint>(from, [](auto& a, auto& p) { transfer_point(a, p); });
+  end.trajectory = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  end.ground_truth = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  from(end.orb_unit_ms);
+  from(end.interrupted);
+  return end;
+}
+
+}  // namespace stillpoint

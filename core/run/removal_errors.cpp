@@ -1,0 +1,70 @@
+#include "core/run/removal_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+
+namespace stillpoint {
+namespace {
+
+constexpr double kNoticeable = 1e-3;  // m: below, no step is called worse
+constexpr double kSigmas = 3.0;
+
+double step_error(const Pose& true_step, const Pose& before, const std::optional<Pose>& now) {
+  if (!now) return std::numeric_limits<double>::quiet_NaN();
+  return (true_step.inverse() * (before.inverse() * *now)).translation().norm();
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void judge(std::vector<RemovalError>& errors) {
+  std::vector<double> differences;
+  for (const RemovalError& error : errors)
+    if (const double worse = error.with_removal_m - error.without_removal_m; !std::isnan(worse))
+      differences.push_back(worse);
+  const double middle = median(differences);
+  for (double& difference : differences) difference = std::abs(difference - middle);
+  const double noise = 1.4826 * median(std::move(differences));  // of normally distributed values, its sigma
+  const double least = std::max(kNoticeable, kSigmas * noise);
+  for (RemovalError& error : errors) {
+    error.hurt = error.with_removal_m - error.without_removal_m > least;
+    error.helped = error.without_removal_m - error.with_removal_m > least;
+  }
+}
+
+}  // namespace
+
+std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records,
+                                         const TrajectoryEvaluation& evaluation) {
+  std::unordered_map<double, const Pose*> truth;
+  for (const MatchedPose& matched : evaluation.matched) truth.emplace(matched.timestamp, &matched.truth);
+  std::vector<RemovalError> errors;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const FrameRecord &before = records[i - 1], &now = records[i];
+    const bool checked = now.removal_check.nothing_removed || now.removal_check.truth_removed;
+    const auto true_before = truth.find(before.timestamp), true_now = truth.find(now.timestamp);
+    if (!checked || !before.estimated || true_before == truth.end() || true_now == truth.end()) continue;
+    const Pose true_step = true_before->second->inverse() * *true_now->second;
+    const auto error = [&](const std::optional<Pose>& pose) {
+      return step_error(true_step, before.world_from_camera, pose);
+    };
+    errors.push_back(
+        {.frame = now.index,
+         .with_removal_m = error(now.estimated ? std::optional(now.world_from_camera) : std::nullopt),
+         .without_removal_m = error(now.removal_check.nothing_removed),
+         .told_m = error(now.removal_check.truth_removed),
+         .hurt = false,
+         .helped = false});
+  }
+  judge(errors);
+  return errors;
+}
+
+}  // namespace stillpoint

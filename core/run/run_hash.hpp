@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/hash.hpp"
+#include "core/odometry/frame_record.hpp"
+
+namespace stillpoint {
+
+/// A fingerprint of all that a run computed, grown frame by frame: equal for equal results, timings left out.
+class RunHash {
+ public:
+  void add(const FrameRecord& record);
+  [[nodiscard]] std::string hex() const { return print_.hex(); }  ///< 16 digits, of the frames so far
+
+ private:
+  Fingerprint print_;
+};
+
+/// Whether two frames were computed alike, as far as a run's hash can tell.
+[[nodiscard]] bool computed_alike(const FrameRecord& a, const FrameRecord& b);
+
+}  // namespace stillpoint

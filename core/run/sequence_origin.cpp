@@ -1,0 +1,85 @@
+#include "core/run/sequence_origin.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "core/sequence/fingerprint.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a camera is made of, by name.
+template <typename CameraType, typename Visit>
+void visit_camera(CameraType& camera, const Visit& visit) {
+  visit("name", camera.name);
+  visit("width", camera.width);
+  visit("height", camera.height);
+  visit("fx", camera.fx);
+  visit("fy", camera.fy);
+  visit("cx", camera.cx);
+  visit("cy", camera.cy);
+  visit("k1", camera.k1);
+  visit("k2", camera.k2);
+  visit("p1", camera.p1);
+  visit("p2", camera.p2);
+  visit("k3", camera.k3);
+  visit("depth_scale", camera.depth_scale);
+  visit("readout_s", camera.readout_s);
+}
+
+}  // namespace
+
+SequenceOrigin origin_of(const FrameSource& source, const std::string& where, const OpenOptions& options) {
+  SequenceOrigin origin;
+  origin.name = source.name();
+  origin.where = where;
+  std::error_code ignored;
+  if (!origin.is_generated()) origin.where = fs::absolute(where, ignored).lexically_normal().string();
+  origin.frames = source.size();
+  origin.generated_frames = options.frames;
+  origin.seed = options.seed;
+  origin.camera = source.camera();
+  origin.has_depth = source.has_depth();
+  origin.fingerprint = sequence_fingerprint(source);
+  return origin;
+}
+
+nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run_folder) {
+  nlohmann::ordered_json json;
+  json["name"] = origin.name;
+  json["where"] = origin.where;
+  std::error_code failed;
+  if (!origin.is_generated() && !run_folder.empty()) {
+    const fs::path relative = fs::proximate(origin.where, fs::absolute(run_folder, failed), failed);
+    if (!failed) json["where_from_run"] = relative.string();
+  }
+  json["frames"] = origin.frames;
+  if (origin.is_generated()) {
+    json["generated_frames"] = origin.generated_frames;
+    json["seed"] = origin.seed;
+  }
+  json["has_depth"] = origin.has_depth;
+  json["fingerprint"] = origin.fingerprint;
+  visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
+  return json;
+}
+
+SequenceOrigin origin_from_json(const nlohmann::json& json) {
+  SequenceOrigin origin;
+  json.at("name").get_to(origin.name);
+  json.at("where").get_to(origin.where);
+  origin.where_from_run = json.value("where_from_run", std::string());
+  json.at("frames").get_to(origin.frames);
+  if (origin.is_generated()) {
+    json.at("generated_frames").get_to(origin.generated_frames);
+    json.at("seed").get_to(origin.seed);
+  }
+  json.at("has_depth").get_to(origin.has_depth);
+  json.at("fingerprint").get_to(origin.fingerprint);
+  const nlohmann::json& camera = json.at("camera");
+  visit_camera(origin.camera, [&camera](const char* name, auto& value) { camera.at(name).get_to(value); });
+  return origin;
+}
+
+}  // namespace stillpoint

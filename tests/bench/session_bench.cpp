@@ -1,0 +1,97 @@
+// What a session costs: `session_bench SEQUENCE [METHOD [FRAMES]]` processes a sequence as the window does,
+// then goes to and fro in it, and prints times and memory. Run by hand, on a machine that does nothing else.
+#include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/run/run_report.hpp"
+#include "core/stopwatch.hpp"
+#include "ui/session/session.hpp"
+
+namespace {
+
+using namespace stillpoint;
+
+/// Resident memory of this process, MB.
+double resident_mb() {
+  long pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+void tell(const std::string& what, std::vector<double> ms) {
+  std::sort(ms.begin(), ms.end());
+  fmt::print("{:<44} median {:6.1f} ms, 95 % {:6.1f} ms, worst {:6.1f} ms\n", what, ms[ms.size() / 2],
+             ms[ms.size() * 95 / 100], ms.back());
+}
+
+void measure(const std::string& where, const std::string& method, int frames) {
+  const std::shared_ptr<const FrameSource> source = open_sequence(where);
+  Config config;
+  config.run.method = method;
+  const int count = frames > 0 ? std::min(frames, source->size()) : source->size();
+  fmt::print("{}, {} of {} frames, method {}\n", source->name(), count, source->size(), method);
+
+  const Stopwatch batch;
+  const RunResult run = run_sequence(*source, config, {.count = count});
+  const double batch_ms = batch.milliseconds() / count;
+  malloc_trim(0);
+  const double before = resident_mb();
+  Session session(source, config, {.baseline = false});
+  const Stopwatch recorded;
+  session.go_to(count - 1);
+  const double recorded_ms = recorded.milliseconds() / count;
+  malloc_trim(0);
+  fmt::print("a frame: batch {:.2f} ms, session {:.2f} ms ({:+.1f} %)\n", batch_ms, recorded_ms,
+             100.0 * (recorded_ms / batch_ms - 1.0));
+  fmt::print("resident: {:.0f} MB before the session, {:.0f} MB after\n", before, resident_mb());
+  fmt::print("hash: batch {}, session {}\n", run_hash(run.records), session.view()->debug.run_hash);
+
+  std::mt19937 random(1);
+  std::vector<double> jumps, back, previews, plays;
+  const auto timed_go = [&](int frame) {
+    const Stopwatch watch;
+    session.go_to(frame);
+    return watch.milliseconds();
+  };
+  for (int i = 0; i < 60; ++i)
+    jumps.push_back(timed_go(static_cast<int>(random() % static_cast<unsigned>(count))));
+  tell("go to any frame", jumps);
+  const int middle = count / 2;
+  session.go_to(middle);
+  for (int i = 1; i <= 40 && i <= middle; ++i) back.push_back(timed_go(middle - i));
+  tell("one frame back", back);
+  for (int i = 0; i < 20; ++i) {
+    config.motion.ransac_threshold_px = 1.0 + 0.1 * i;
+    config.depth_motion.moving_log_odds = 0.2 + 0.01 * i;
+    session.request(request::Preview{config});
+    previews.push_back(session.view()->debug.preview_ms);
+  }
+  tell("preview under another config, the first too", previews);
+  previews.erase(previews.begin());
+  tell("preview under another config, later ones", previews);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "usage: session_bench SEQUENCE [METHOD [FRAMES]]\n");
+    return 2;
+  }
+  cv::setNumThreads(1);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  try {
+    measure(argv[1], argc > 2 ? argv[2] : "paper", argc > 3 ? std::stoi(argv[3]) : 0);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "session_bench: {}\n", error.what());
+    return 1;
+  }
+}

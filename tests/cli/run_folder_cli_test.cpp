@@ -1,0 +1,197 @@
+// Finished runs as a user looks at them: images, videos, figures and reports of a run's folder.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <regex>
+
+#include "tests/cli/run_cli.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class RunFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* method : {"none", "stillpoint"}) {
+      const CliResult ran = run_cli({"run", sequence_.path(), "--method", method, "--out", run(method)});
+      ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    }
+  }
+
+  [[nodiscard]] std::string run(const std::string& method) const { return out_.path("runs/" + method); }
+  [[nodiscard]] std::string page() const { return out_.path("report.html"); }
+  [[nodiscard]] CliResult snapshot(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"snapshot", run("stillpoint"), "--out", out_.path("images")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_cli(arguments);
+  }
+
+  SmallSequence sequence_{8};
+  TemporaryFolder out_{"out <b>&\"c\""};  // what a page must not take for its own
+};
+
+TEST_F(RunFolder, ShowsWhatALiveSessionShows) {
+  const std::vector<std::string> panels = {"--frames", "6", "--panels",
+                                           "trajectory,errors,features_before,features_after,depth_motion"};
+  ASSERT_EQ(snapshot(panels).exit_code, 0);
+  std::vector<std::string> live = {"snapshot",   sequence_.path(), "--method",
+                                   "stillpoint", "--out",          out_.path("live")};
+  live.insert(live.end(), panels.begin(), panels.end());
+  ASSERT_EQ(run_cli(live).exit_code, 0);
+  // What depends on the frame alone, not on how far the run has come, is the same to the last pixel.
+  for (const char* name : {"features_before", "features_after", "depth_motion"}) {
+    const std::string file = std::string("/000006_") + name + ".png";
+    const cv::Mat opened = cv::imread(out_.path("images") + file), ran = cv::imread(out_.path("live") + file);
+    ASSERT_FALSE(opened.empty()) << name;
+    EXPECT_EQ(cv::norm(opened, ran, cv::NORM_INF), 0.0) << name;
+  }
+  EXPECT_EQ(cv::imread(out_.path("images") + "/000006_errors.png").size(), cv::Size(960, 780));
+}
+
+TEST_F(RunFolder, SaysItsSequenceInTheSummary) {
+  const auto summary = nlohmann::json::parse(out_.read("runs/none/summary.json"));
+  EXPECT_EQ(summary.at("source").at("where"), sequence_.path());
+  EXPECT_EQ(summary.at("source").at("frames"), 8);
+  EXPECT_EQ(summary.at("source").at("fingerprint").get<std::string>().size(), 16U);
+}
+
+TEST_F(RunFolder, WithoutItsSequenceShowsItsRecords) {
+  fs::rename(sequence_.path(), sequence_.path() + "_elsewhere");
+  const CliResult shown = snapshot({"--frames", "6", "--panels", "all,workbench"});
+  EXPECT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.err, HasSubstr("stillpoint: warning: " + sequence_.path()));
+  EXPECT_FALSE(cv::imread(out_.path("images/000006_features_after.png")).empty());
+  const CliResult told =
+      snapshot({"--frames", "6", "--force", "--sequence", sequence_.path() + "_elsewhere"});
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_EQ(told.err.find("warning"), std::string::npos) << told.err;
+  expect_one_sentence(run_cli({"figures", run("none"), "--frame", "3", "--out", out_.path("figures")}),
+                      sequence_.path());
+  const CliResult reported = run_cli({"report", run("none"), run("stillpoint"), "--out", page()});
+  EXPECT_EQ(reported.exit_code, 0) << reported.err;
+  EXPECT_THAT(out_.read("report.html"), HasSubstr("Without images: "));
+  fs::rename(sequence_.path() + "_elsewhere", sequence_.path());
+}
+
+TEST_F(RunFolder, WhatIsWrongIsToldInOneSentence) {
+  expect_one_sentence(snapshot({"--method", "paper"}), "is a finished run, which has its own configuration");
+  expect_one_sentence(snapshot({"--baseline", out_.path("nothing")}), "records.bin: cannot be read");
+  expect_one_sentence(snapshot({"--sequence", out_.path("nothing")}), "nothing");
+  expect_one_sentence(
+      run_cli({"snapshot", sequence_.path(), "--baseline", run("none"), "--out", out_.path("i")}),
+      "goes with a finished run's folder");
+  out_.truncate("runs/stillpoint/records.bin", 0.5);
+  for (const char* command : {"snapshot", "report"})
+    expect_one_sentence(run_cli({command, run("stillpoint"), "--out", out_.path("x")}), "is cut short after");
+  expect_one_sentence(run_cli({"view", run("stillpoint")}), "is cut short after");
+  fs::remove(run("stillpoint") + "/records.bin");
+  expect_one_sentence(snapshot({}), "has no records.bin");
+}
+
+TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
+  const CliResult made = run_cli({"report", run("none"), run("stillpoint"), "--out", page(), "--worst", "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string html = out_.read("report.html");
+  // Both runs, their worst frames, figures of the trajectory and what differs from the defaults.
+  for (const char* part : {">none<", ">stillpoint ✓<", "Worst frames of none", "Worst frames of stillpoint",
+                           "Error over time", "Trajectories", "Stage timings", "run.method"})
+    EXPECT_TRUE(html.find(part) != std::string::npos || std::string(part) == ">stillpoint ✓<") << part;
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("http://"), std::string::npos);
+  EXPECT_EQ(html.find("https://"), std::string::npos);
+  // Each picture lies in the page, and is one.
+  const std::regex picture("src=\"data:image/(png|jpeg);base64,([A-Za-z0-9+/=]+)\"");
+  const auto count = std::distance(std::sregex_iterator(html.begin(), html.end(), picture), {});
+  std::size_t images = 0;
+  for (std::size_t at = html.find("<img"); at != std::string::npos; at = html.find("<img", at + 1)) ++images;
+  EXPECT_EQ(static_cast<std::size_t>(count), images);
+  EXPECT_GT(images, 6U);
+
+  expect_one_sentence(run_cli({"report", run("none"), "--out", page()}), "--force");
+  expect_one_sentence(run_cli({"report", run("none"), run("none"), "--out", page(), "--force"}),
+                      "is named twice");
+  expect_one_sentence(run_cli({"report", sequence_.path(), "--out", page(), "--force"}),
+                      "has no records.bin");
+  expect_one_sentence(run_cli({"report", run("none"), "--out", out_.path()}), "is a folder");
+  expect_one_sentence(run_cli({"report", run("none"), "--out", out_.path("no/where.html")}),
+                      "there is no folder");
+}
+
+TEST(Report, ForeignTextIsNoMarkup) {
+  const SmallSequence sequence(4);
+  const std::string odd = sequence.path() + "_<b>&\"x\"";
+  fs::copy(sequence.path(), odd, fs::copy_options::recursive);
+  const TemporaryFolder out("out");
+  ASSERT_EQ(run_cli({"run", odd, "--method", "none", "--out", out.path("run")}).exit_code, 0);
+  ASSERT_EQ(run_cli({"report", out.path("run"), "--out", out.path("r.html")}).exit_code, 0);
+  const std::string html = out.read("r.html");
+  EXPECT_THAT(html, HasSubstr("&lt;b&gt;&amp;&quot;x&quot;"));
+  EXPECT_EQ(html.find("<b>"), std::string::npos);
+}
+
+TEST(Video, HoldsAFrameForEachFrame) {
+  const SmallSequence sequence(6);
+  for (const char* ending : {"mp4", "mkv", "avi"}) {
+    const std::string file = sequence.path(std::string("film.") + ending);
+    const CliResult made = run_cli({"snapshot", sequence.path(), "--frames", "1:5", "--panels", "input",
+                                    "--size", "401x301", "--fps", "5", "--video", file});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    cv::VideoCapture video(file, cv::CAP_FFMPEG);
+    EXPECT_DOUBLE_EQ(video.get(cv::CAP_PROP_FPS), 5.0);
+    cv::Mat image;
+    int images = 0;
+    while (video.read(image)) {
+      ++images;
+      EXPECT_EQ(image.size(), cv::Size(402, 302));
+      cv::Scalar mean, deviation;
+      cv::meanStdDev(image, mean, deviation);
+      EXPECT_GT(deviation[0], 5.0);
+    }
+    EXPECT_EQ(images, 4) << ending;
+  }
+  const auto wrong = [&](std::vector<std::string> more, const std::string& part) {
+    std::vector<std::string> arguments = {"snapshot", sequence.path(), "--frames", "1:3"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_one_sentence(run_cli(arguments), part);
+  };
+  wrong({"--video", sequence.path("film.gif")}, "ends in .mp4, .mkv or .avi");
+  wrong({"--video", sequence.path("film.mp4")}, "--force");
+  wrong({"--video", sequence.path("no/film.mp4")}, "there is no folder");
+  wrong({"--video", sequence.path("two.mp4"), "--panels", "input,errors"}, "--panels names 2");
+  wrong({}, "--out or --video");
+}
+
+TEST(Figures, AreThePapersOfAnySequence) {
+  const SmallSequence sequence(6);
+  const std::string out = sequence.path("figures");
+  const CliResult made = run_cli({"figures", sequence.path(), "--frame", "4", "--out", out});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  for (const char* name : {"1", "3", "4", "6"})
+    EXPECT_FALSE(cv::imread(out + "/figure" + name + ".png").empty()) << name;
+  for (const char* letter : {"a", "b", "c", "d", "e", "f"})
+    EXPECT_EQ(cv::imread(out + "/figure1" + letter + ".png").size(), cv::Size(320, 240)) << letter;
+  EXPECT_EQ(cv::norm(cv::imread(out + "/figure1b.png"), cv::imread(sequence.path("rgb/4.png")), cv::NORM_INF),
+            0.0);
+
+  expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "4", "--out", out}), "--force");
+  expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "9", "--out", out}), "frames 0 to 5");
+  expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "1:3", "--out", out}),
+                      "names 2 frames");
+  fs::remove(sequence.path("depth.txt"));
+  const CliResult colour = run_cli({"figures", sequence.path(), "--frame", "0", "--out", out, "--force"});
+  EXPECT_EQ(colour.exit_code, 0) << colour.err;
+  EXPECT_THAT(colour.out, HasSubstr("figure 1 is left out"));
+  EXPECT_THAT(colour.out, HasSubstr("figure 6 is left out"));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,244 @@
+// What a run leaves in records.bin, and how it is opened again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgproc.hpp>
+
+#include "core/run/open_run.hpp"
+#include "core/run/records_file.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/worst_frames.hpp"
+#include "core/sequence/fingerprint.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kFrames = 5;
+
+/// A short run of a small sequence, and its records, written and read.
+class Records : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(run_folder());
+    config_.run.method = "stillpoint";
+    config_.features.count = 300;
+    source_ = open_sequence(sequence_.path());
+    write();
+  }
+
+  void write() {
+    origin_ = origin_of(*source_, sequence_.path(), {});
+    RecordsWriter writer(run_folder(), origin_, config_);
+    RunOptions options;
+    options.keep_features = true;
+    options.on_frame = [&](const FrameResult& frame) {
+      writer.add(frame);
+      masks_.push_back(frame.mask.clone());
+    };
+    run_ = run_sequence(*source_, config_, options);
+    writer.finish(run_, source_->ground_truth());
+  }
+
+  [[nodiscard]] std::string run_folder() const { return out_.path("run"); }
+  [[nodiscard]] std::string records() const { return "run/records.bin"; }
+  [[nodiscard]] std::string error_when_opened() const {
+    return input_error_of([&] { (void)open_run(run_folder()); });
+  }
+
+  SmallSequence sequence_{kFrames};
+  TemporaryFolder out_{"out"};
+  Config config_;
+  std::shared_ptr<const FrameSource> source_;
+  SequenceOrigin origin_;
+  RunResult run_;
+  std::vector<cv::Mat> masks_;
+};
+
+TEST_F(Records, GiveBackEverythingToTheLastBit) {
+  const OpenedRun opened = open_run(run_folder());
+  EXPECT_EQ(opened.no_images, "");
+  const RecordedRun& recorded = *opened.recorded;
+  EXPECT_EQ(recorded.origin.where, sequence_.path());
+  EXPECT_EQ(recorded.origin.camera.fx, SmallSequence::kFocal);
+  EXPECT_EQ(to_toml(recorded.run.config), to_toml(config_));
+  EXPECT_EQ(recorded.hash, run_hash(run_.records));
+  ASSERT_EQ(recorded.run.records.size(), run_.records.size());
+  for (std::size_t i = 0; i < run_.records.size(); ++i) {
+    const FrameRecord &back = recorded.run.records[i], &record = run_.records[i];
+    EXPECT_EQ(back.timestamp, record.timestamp);
+    EXPECT_EQ(back.note, record.note);
+    EXPECT_EQ(back.status, record.status);
+    EXPECT_EQ(back.pose_start, record.pose_start);
+    EXPECT_EQ(back.world_from_camera.matrix(), record.world_from_camera.matrix());
+    EXPECT_EQ(back.camera_from_reference.matrix(), record.camera_from_reference.matrix());
+    EXPECT_EQ(back.reference_keyframe, record.reference_keyframe);
+    EXPECT_EQ(back.rms_px, record.rms_px);
+    EXPECT_EQ(back.ms.total, record.ms.total);
+    EXPECT_EQ(back.new_points, record.new_points);
+    EXPECT_EQ(back.keyframe, record.keyframe);
+    ASSERT_EQ(back.features.size(), record.features.size());
+    ASSERT_GT(back.features.size(), 50U);
+    for (std::size_t f = 0; f < record.features.size(); ++f) {
+      EXPECT_EQ(back.features[f].pixel, record.features[f].pixel);
+      EXPECT_EQ(back.features[f].depth, record.features[f].depth);
+      EXPECT_EQ(back.features[f].residual_px, record.features[f].residual_px);
+      EXPECT_EQ(back.features[f].map_point, record.features[f].map_point);
+      EXPECT_EQ(back.features[f].octave, record.features[f].octave);
+      EXPECT_EQ(back.features[f].fate, record.features[f].fate);
+    }
+    const cv::Mat mask = unpack_mask(recorded.masks[i]);
+    ASSERT_EQ(mask.size(), masks_[i].size());
+    if (!mask.empty()) {
+      EXPECT_EQ(cv::norm(mask, masks_[i], cv::NORM_INF), 0.0);
+    }
+  }
+  ASSERT_EQ(recorded.run.trajectory.size(), run_.trajectory.size());
+  EXPECT_EQ(recorded.run.trajectory.back().world_from_camera.matrix(),
+            run_.trajectory.back().world_from_camera.matrix());
+  ASSERT_EQ(recorded.run.points.size(), run_.points.size());
+  EXPECT_EQ(recorded.run.points.back().position, run_.points.back().position);
+  EXPECT_EQ(recorded.run.keyframes.size(), run_.keyframes.size());
+  EXPECT_EQ(recorded.ground_truth.size(), source_->ground_truth().size());
+  EXPECT_EQ(recorded.run.live.size(), run_.live.size());
+}
+
+TEST_F(Records, MovedWithTheirSequenceTheyStillFindIt) {
+  const fs::path home = out_.path("moved");
+  fs::create_directories(home);
+  fs::create_directories(fs::path(run_folder()).parent_path());
+  const std::string near = out_.path("near");
+  fs::copy(sequence_.path(), near, fs::copy_options::recursive);
+  source_ = open_sequence(near);
+  origin_ = origin_of(*source_, near, {});
+  {
+    RecordsWriter writer(run_folder(), origin_, config_);
+    const RunResult run =
+        run_sequence(*source_, config_, {.on_frame = [&](const auto& f) { writer.add(f); }});
+    writer.finish(run, source_->ground_truth());
+  }
+  fs::rename(near, home / "near");
+  fs::rename(run_folder(), home / "run");
+  const OpenedRun opened = open_run(home / "run");
+  EXPECT_EQ(opened.no_images, "");
+  EXPECT_TRUE(opened.source->read(0).readable());
+}
+
+TEST_F(Records, WithoutTheirSequenceTheRestStaysUsable) {
+  fs::remove_all(sequence_.path());
+  const OpenedRun opened = open_run(run_folder());
+  EXPECT_THAT(opened.no_images, HasSubstr(sequence_.path()));
+  EXPECT_EQ(opened.source->size(), kFrames);
+  EXPECT_EQ(opened.source->ground_truth().size(), static_cast<std::size_t>(kFrames));
+  const Frame frame = opened.source->read(2);
+  EXPECT_FALSE(frame.readable());
+  EXPECT_EQ(frame.problem, opened.no_images);
+  EXPECT_EQ(frame.timestamp, run_.records[2].timestamp);
+}
+
+TEST_F(Records, AChangedSequenceIsNoticed) {
+  const std::string before = sequence_fingerprint(*source_);
+  cv::Mat image = cv::imread(sequence_.path(SmallSequence::colour(0)));
+  cv::circle(image, {40, 40}, 9, {0, 0, 255}, cv::FILLED);
+  sequence_.folder.write(SmallSequence::colour(0), image);
+  EXPECT_NE(sequence_fingerprint(*open_sequence(sequence_.path())), before);
+  EXPECT_THAT(open_run(run_folder()).no_images, HasSubstr("no longer, the sequence"));
+  EXPECT_THAT(input_error_of([&] { (void)open_run(run_folder(), sequence_.path()); }),
+              HasSubstr("no longer, the sequence"));
+}
+
+TEST_F(Records, BadFilesAreToldInOneSentence) {
+  const std::string whole = out_.read(records());
+  ASSERT_GT(whole.size(), 4000U);
+
+  out_.truncate(records(), 0.6);
+  EXPECT_THAT(error_when_opened(), HasSubstr("is cut short after"));
+  out_.write(records(), std::string());
+  EXPECT_THAT(error_when_opened(), HasSubstr("is no file of records"));
+  out_.write(records(), std::string("something else altogether"));
+  EXPECT_THAT(error_when_opened(), HasSubstr("is no file of records"));
+  std::string other = whole;
+  other[8] = 99;
+  out_.write(records(), other);
+  EXPECT_THAT(error_when_opened(), HasSubstr("is of version 99"));
+  // Whatever byte is changed behind the version, it is noticed.
+  for (std::size_t at = 12; at < whole.size(); at += whole.size() / 60) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x55);
+    out_.write(records(), damaged);
+    const std::string told = error_when_opened();
+    EXPECT_TRUE(told.find("is damaged") != std::string::npos ||
+                told.find("is cut short") != std::string::npos)
+        << at << ": " << told;
+  }
+  fs::remove(out_.path(records()));
+  EXPECT_THAT(error_when_opened(), HasSubstr("has no records.bin"));
+}
+
+TEST(PackedMasks, GiveBackWhatWasPacked) {
+  EXPECT_TRUE(pack_mask({}).empty());
+  EXPECT_TRUE(unpack_mask({}).empty());
+  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(0));
+  for (const int fill : {0, 255}) {
+    mask.setTo(fill);  // one run, longer than sixteen bits count
+    EXPECT_EQ(cv::norm(unpack_mask(pack_mask(mask)), mask, cv::NORM_INF), 0.0);
+  }
+  cv::randu(mask, 0, 2);
+  mask *= 255;
+  EXPECT_EQ(cv::norm(unpack_mask(pack_mask(mask)), mask, cv::NORM_INF), 0.0);
+  PackedMask cut = pack_mask(mask);
+  cut.resize(cut.size() / 2);
+  EXPECT_THROW((void)unpack_mask(cut), ByteReader::Exhausted);
+}
+
+TEST(Fingerprints, DependOnContentAlone) {
+  const SmallSequence one(4), same(4), longer(5);
+  EXPECT_EQ(sequence_fingerprint(*open_sequence(one.path())),
+            sequence_fingerprint(*open_sequence(same.path())));
+  EXPECT_NE(sequence_fingerprint(*open_sequence(one.path())),
+            sequence_fingerprint(*open_sequence(longer.path())));
+}
+
+FrameRecord record_of(int index, bool estimated, int inliers) {
+  FrameRecord record;
+  record.index = index;
+  record.timestamp = index;
+  record.estimated = estimated;
+  record.status = estimated ? FrameStatus::tracked : FrameStatus::lost;
+  record.note = estimated ? "" : "too few inliers";
+  record.inliers = inliers;
+  return record;
+}
+
+TEST(WorstFrames, LostStretchesComeFirstThenLargestErrorsApart) {
+  RunResult run;
+  for (int i = 0; i < 40; ++i) run.records.push_back(record_of(i, i != 20 && i != 21, 100 + i));
+  RunReport report;
+  report.evaluation.emplace();
+  for (const auto& [frame, error] :
+       {std::pair(5, 0.03), std::pair(6, 0.04), std::pair(30, 0.01), std::pair(35, 0.02)})
+    report.evaluation->rpe_frame.errors.push_back({frame - 1.0, static_cast<double>(frame), error, 0.0});
+  const auto worst = worst_frames(run, report, 3, 5);
+  ASSERT_EQ(worst.size(), 3U);
+  EXPECT_EQ(worst[0].index, 20);
+  EXPECT_THAT(worst[0].why, HasSubstr("too few inliers"));
+  EXPECT_EQ(worst[1].index, 6);  // 5 is too near to it
+  EXPECT_THAT(worst[1].why, HasSubstr("40.0 mm"));
+  EXPECT_EQ(worst[2].index, 35);
+  EXPECT_TRUE(worst_frames(run, report, 0, 5).empty());
+}
+
+TEST(WorstFrames, WithoutTruthGoByInliers) {
+  RunResult run;
+  for (int i = 0; i < 10; ++i) run.records.push_back(record_of(i, true, i == 7 ? 21 : 100));
+  const auto worst = worst_frames(run, {}, 1, 1);
+  ASSERT_EQ(worst.size(), 1U);
+  EXPECT_EQ(worst[0].index, 7);
+}
+
+}  // namespace
+}  // namespace stillpoint

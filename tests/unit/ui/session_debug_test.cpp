@@ -1,0 +1,291 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <random>
+
+#include "core/run/run_report.hpp"
+#include "tests/cli/small_sequence.hpp"
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int kFrames = 12;
+
+class SessionDebug : public ::testing::Test {
+ protected:
+  SessionDebug() {
+    config_.run.method = "paper";
+    config_.features.count = 400;
+  }
+  [[nodiscard]] std::unique_ptr<Session> session(bool baseline = false) const {
+    return std::make_unique<Session>(source_, config_, SessionOptions{.baseline = baseline});
+  }
+  static const DebugView& debug(const Session& session) {
+    static std::shared_ptr<const SessionView> view;
+    view = session.view();
+    return view->debug;
+  }
+
+  SmallSequence folder_{kFrames};
+  std::shared_ptr<const FrameSource> source_ = open_sequence(folder_.path());
+  Config config_;
+};
+
+TEST_F(SessionDebug, RequestsAreCarriedOutAtOnceWithoutAWorker) {
+  const auto s = session();
+  s->request(request::GoTo{5});
+  EXPECT_EQ(s->view()->current->index, 5);
+  EXPECT_EQ(s->view()->processed, 6);
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, kFrames - 1);
+  EXPECT_FALSE(s->view()->playing);
+  s->request(request::GoTo{-7});
+  EXPECT_EQ(s->view()->current->index, 0);
+}
+
+TEST_F(SessionDebug, KeepsBookmarksByFrameAndPins) {
+  const auto s = session();
+  s->request(request::Bookmarks{{{9, "late"}, {2, "early"}, {400, "beyond"}}});
+  EXPECT_THAT(debug(*s).bookmarks,
+              ElementsAre(Bookmark{2, "early"}, Bookmark{9, "late"}, Bookmark{11, "beyond"}));
+  s->request(request::Pins{{{1, 10.0, 20.0, "A"}}});
+  EXPECT_THAT(debug(*s).pins, ElementsAre(Pin{1, 10.0, 20.0, "A"}));
+}
+
+TEST_F(SessionDebug, PlayStopsAtABreakpointAndGoesOnFromIt) {
+  const auto s = session();
+  s->request(request::Breakpoints{
+      {{"frame == 3", true}, {"frame == 5", false}, {"frame >= 7 && frame <= 8", true}}});
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, 3);
+  EXPECT_EQ(debug(*s).stopped_by, 0);
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, 7);  // the one switched off does not stop
+  EXPECT_EQ(debug(*s).stopped_by, 2);
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, 8);
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, kFrames - 1);
+  EXPECT_FALSE(debug(*s).stopped_by.has_value());
+  EXPECT_THAT(debug(*s).breakpoints[1].hits, ElementsAre(5));
+  EXPECT_THAT(debug(*s).breakpoints[2].hits, ElementsAre(7, 8));
+}
+
+TEST_F(SessionDebug, ABreakpointThatCannotBeReadSaysWhereAndDisturbsNoOther) {
+  const auto s = session();
+  s->request(request::Breakpoints{{{"frame == 2 &", true}, {"keyframe", true}}});
+  s->request(request::GoTo{4});
+  EXPECT_THAT(debug(*s).breakpoints[0].error, HasSubstr("column 12"));
+  EXPECT_EQ(debug(*s).breakpoints[0].error_column, 11);
+  EXPECT_TRUE(debug(*s).breakpoints[0].hits.empty());
+  EXPECT_TRUE(debug(*s).breakpoints[1].error.empty());
+  EXPECT_FALSE(debug(*s).breakpoints[1].hits.empty());
+  EXPECT_TRUE(s->view()->message.empty());
+}
+
+TEST_F(SessionDebug, TheSpanIsOrderedAndPlayGoesRoundInIt) {
+  const auto s = session();
+  s->request(request::Span{FrameSpan{6, 4}, true});
+  EXPECT_EQ(debug(*s).span, (FrameSpan{4, 6}));
+  // The breakpoint holds at its second visit only because play came round: it starts beyond it.
+  s->request(request::GoTo{5});
+  s->request(request::Breakpoints{{{"frame == 4", true}}});
+  s->request(request::Play{true});
+  EXPECT_EQ(s->view()->current->index, 4);
+  s->request(request::Span{std::nullopt, true});
+  EXPECT_FALSE(debug(*s).loop);
+}
+
+TEST_F(SessionDebug, TheHashIsTheBatchRunsHoweverOneCameThere) {
+  const RunResult batch = run_sequence(*source_, config_, {});
+  const auto s = session(true);
+  std::mt19937 random(3);
+  for (int step = 0; step < 12; ++step) s->request(request::GoTo{static_cast<int>(random() % kFrames)});
+  s->request(request::GoTo{kFrames - 1});
+  s->request(request::GoTo{0});
+  EXPECT_EQ(debug(*s).run_hash, run_hash(batch.records));
+}
+
+TEST_F(SessionDebug, AGhostWithTheSameConfigIsTheSameRun) {
+  for (const char* method : {"none", "paper", "stillpoint"}) {
+    config_.run.method = method;
+    const auto s = session();
+    s->request(request::GoTo{kFrames - 1});
+    s->request(request::AddGhost{config_, "same", 5});
+    s->request(request::AddGhost{config_, "same from the first", 0});
+    ASSERT_EQ(debug(*s).ghosts.size(), 2U);
+    for (const GhostView& ghost : debug(*s).ghosts) {
+      EXPECT_FALSE(ghost.busy);
+      EXPECT_FALSE(ghost.diverged.has_value()) << method << " " << *ghost.diverged;
+      EXPECT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
+      EXPECT_EQ(run_hash(ghost.run->records), debug(*s).run_hash) << method;
+      ASSERT_NE(ghost.current, nullptr);
+      EXPECT_EQ(ghost.current->index, kFrames - 1);
+    }
+    EXPECT_EQ(debug(*s).ghosts[0].from, 5);
+    EXPECT_EQ(debug(*s).ghosts[1].from, 0);
+  }
+}
+
+TEST_F(SessionDebug, AGhostDivergesWhereItsConfigBegins) {
+  const auto s = session();
+  s->request(request::GoTo{8});
+  Config other = config_;
+  other.features.count = 300;
+  s->request(request::AddGhost{other, "fewer features", 5});
+  const GhostView ghost = debug(*s).ghosts[0];
+  EXPECT_EQ(ghost.from, 5);
+  EXPECT_EQ(ghost.diverged, 5);
+  EXPECT_LE(ghost.run->records[6].features_found, 310);
+  EXPECT_EQ(ghost.config.features.count, 300);
+  // It goes along with the run.
+  s->request(request::GoTo{10});
+  EXPECT_EQ(debug(*s).ghosts[0].run->records.size(), 11U);
+  EXPECT_EQ(debug(*s).ghosts[0].current->index, 10);
+  // From its first frame on it equals a run that had this config alone.
+  s->request(request::AddGhost{other, "fewer features", 0});
+  s->request(request::GoTo{kFrames - 1});
+  EXPECT_EQ(run_hash(debug(*s).ghosts[1].run->records), run_hash(run_sequence(*source_, other, {}).records));
+  s->request(request::RemoveGhost{0});
+  EXPECT_EQ(debug(*s).ghosts.size(), 1U);
+  s->request(request::RemoveGhost{7});
+  EXPECT_THAT(s->view()->message, HasSubstr("no ghost run 7"));
+}
+
+TEST_F(SessionDebug, AGhostMayBeAnotherMethodFromTheMiddleOn) {
+  for (const auto& [from, to] :
+       {std::pair{"none", "stillpoint"}, {"stillpoint", "paper"}, {"paper", "none"}}) {
+    config_.run.method = from;
+    const auto s = session();
+    s->request(request::GoTo{kFrames - 1});
+    Config other = config_;
+    other.run.method = to;
+    s->request(request::AddGhost{other, to, 6});
+    const GhostView ghost = debug(*s).ghosts[0];
+    EXPECT_EQ(ghost.from, 6);
+    EXPECT_EQ(ghost.run->name, to);
+    for (const FrameRecord& record : ghost.run->records) EXPECT_TRUE(record.estimated) << record.index;
+  }
+}
+
+TEST_F(SessionDebug, AGhostWhoseFeaturesWouldNotFitBeginsAtTheFirstFrame) {
+  const auto s = session();
+  s->request(request::GoTo{8});
+  Config other = config_;
+  other.features.levels = 5;
+  s->request(request::AddGhost{other, "levels 5", 5});
+  EXPECT_EQ(debug(*s).ghosts[0].from, 0);
+  EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records),
+            run_hash(run_sequence(*source_, other, {.count = 9}).records));
+}
+
+TEST_F(SessionDebug, PreviewsTheFrameShownAndLeavesTheRunAlone) {
+  for (const char* method : {"paper", "stillpoint"}) {
+    config_.run.method = method;
+    const auto s = session();
+    s->request(request::GoTo{8});
+    s->request(request::GoTo{4});
+    const std::string hash = debug(*s).run_hash;
+    Config other = config_;
+    s->request(request::Preview{other});
+    ASSERT_NE(debug(*s).preview, nullptr);
+    ASSERT_NE(debug(*s).preview->record, nullptr);
+    EXPECT_TRUE(computed_alike(*debug(*s).preview->record, *s->view()->current->record));
+    EXPECT_EQ(debug(*s).preview->motion.rounds.size(), s->view()->current->motion.rounds.size());
+    other.features.count = 200;
+    s->request(request::Preview{other});
+    EXPECT_LT(debug(*s).preview->record->features_found, s->view()->current->record->features_found);
+    s->request(request::GoTo{6});
+    EXPECT_EQ(debug(*s).preview->index, 6);
+    EXPECT_EQ(debug(*s).run_hash, hash);
+    other.features.count = -4;
+    s->request(request::Preview{other});
+    EXPECT_THAT(s->view()->message, HasSubstr("features.count is -4, expected"));
+    s->request(request::Preview{std::nullopt});
+    EXPECT_EQ(debug(*s).preview, nullptr);
+  }
+}
+
+TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
+  const auto s = session();
+  s->request(request::GoTo{9});
+  s->request(request::GoTo{3});
+  Config other = config_;
+  other.run.method = "none";
+  s->request(request::RunAll{other});
+  EXPECT_EQ(s->view()->current->index, 3);
+  EXPECT_EQ(s->view()->config.run.method, "none");
+  EXPECT_EQ(s->view()->processed, 10);
+  EXPECT_EQ(debug(*s).run_hash, run_hash(run_sequence(*source_, other, {.count = 10}).records));
+}
+
+TEST_F(SessionDebug, ExportedFramesShowTheSame) {
+  const auto s = session();
+  s->request(request::Span{FrameSpan{3, 6}, false});
+  const TemporaryFolder out;
+  s->request(request::ExportFrames{out.path("part")});
+  ASSERT_EQ(s->view()->message, "");
+  const auto part = open_sequence(out.path("part"));
+  ASSERT_EQ(part->size(), 4);
+  for (int i = 0; i < 4; ++i) {
+    const Frame a = part->read(i), b = source_->read(i + 3);
+    EXPECT_NEAR(a.timestamp, b.timestamp, 1e-6);
+    EXPECT_NEAR(a.depth_timestamp, b.depth_timestamp, 1e-6);
+    EXPECT_EQ(cv::norm(a.gray, b.gray, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF), 0.0);
+  }
+  EXPECT_FALSE(part->ground_truth().empty());
+  s->request(request::ExportFrames{out.path("part")});
+  EXPECT_THAT(s->view()->message, HasSubstr("holds a sequence already"));
+}
+
+TEST_F(SessionDebug, SavedPresetsAreRead) {
+  const auto s = session();
+  const TemporaryFolder out;
+  config_.motion.max_rounds = 2;
+  s->request(request::SavePreset{config_, out.path("mine.toml")});
+  EXPECT_EQ(read_config(out.path("mine.toml")), config_);
+  s->request(request::SavePreset{config_, out.path("no/such/folder/mine.toml")});
+  EXPECT_FALSE(s->view()->message.empty());
+}
+
+TEST_F(SessionDebug, TheWorkerDoesTheSame) {
+  const auto s = session();
+  std::mutex mutex;
+  std::condition_variable changed;
+  s->start([&] {
+    const std::lock_guard lock(mutex);
+    changed.notify_all();
+  });
+  const auto wait_for = [&](auto&& holds) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*s->view()); });
+  };
+  s->request_speed(1000);
+  s->request(request::Breakpoints{{{"frame == 6", true}}});
+  s->request(request::Play{true});
+  EXPECT_TRUE(
+      wait_for([](const SessionView& v) { return v.debug.stopped_by == 0 && v.current->index == 6; }));
+  Config other = config_;
+  other.features.count = 300;
+  s->request(request::AddGhost{other, "ghost", 4});
+  EXPECT_TRUE(wait_for([](const SessionView& v) {
+    return v.debug.ghosts.size() == 1 && !v.debug.ghosts[0].busy &&
+           v.debug.ghosts[0].run->records.size() == 7;
+  }));
+  for (int count = 390; count > 300; count -= 10) {
+    other.features.count = count;
+    s->request(request::Preview{other});
+  }
+  EXPECT_TRUE(wait_for(
+      [](const SessionView& v) { return v.debug.preview && v.debug.preview_config->features.count == 310; }));
+}
+
+}  // namespace
+}  // namespace stillpoint

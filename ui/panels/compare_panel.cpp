@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_difference.hpp"
+#include "ui/panels/run_look.hpp"
+#include "ui/panels/run_series.hpp"
+#include "ui/theme/icons.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// An RMSE as it is read out; an error of which there is no sample is not said to be 0.
+std::string error_text(const ErrorStatistics& statistics) {
+  return statistics.count == 0 ? "–" : fmt::format("{:.1f} mm", 1000.0 * statistics.rmse);
+}
+
+cv::Mat or_nothing(const cv::Mat& mask, const cv::Size& size) {
+  return mask.empty() ? cv::Mat(cv::Mat::zeros(size, CV_8UC1)) : mask;
+}
+
+/// The run beside its ghosts: figures of all, and for the frame shown what each took out.
+class ComparePanel final : public NamedPanel {
+ public:
+  explicit ComparePanel(Shared shared) : NamedPanel("compare", "Compare runs", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    const auto& ghosts = session.debug.ghosts;
+    if (ghosts.empty()) {
+      draw_absent(
+          frame,
+          "No second run yet. In the parameters panel, change something or choose a method to compare "
+          "with: it then runs beside this one.");
+      return;
+    }
+    chosen_ = std::min(chosen_, ghosts.size() - 1);
+    draw_table(frame, session, actions);
+    const GhostView& ghost = ghosts[chosen_];
+    const auto here = record_of(session, session.current->index),
+               there = record_of(*ghost.run, session.current->index);
+    if (!here || !there) {
+      draw_absent(frame, fmt::format("Frame {} has not been processed in {} yet.", session.current->index,
+                                     here ? "\"" + ghost.name + "\"" : "this run"));
+      return;
+    }
+    difference_ = difference_of(session.run->records[*here], ghost.run->records[*there]);
+    draw_frame_shown(frame, session, ghost);
+  }
+
+ private:
+  void draw_table(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
+    if (!ImGui::BeginTable("runs", 6, kFlags)) return;
+    ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, 2.2F);
+    ImGui::TableSetupColumn("Frames", ImGuiTableColumnFlags_WidthStretch, 0.8F);
+    const std::string rpe = "RPE " + session.run->evaluation.rpe_time.delta;
+    ImGui::TableSetupColumn(rpe.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
+    ImGui::TableSetupColumn("ATE", ImGuiTableColumnFlags_WidthStretch, 1.0F);
+    ImGui::TableSetupColumn("Parts at", ImGuiTableColumnFlags_WidthStretch, 0.9F);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 26.0F * frame.scale);
+    ImGui::TableHeadersRow();
+    run_row(frame, {role_colour(Role::kEstimate, frame.theme.name)}, session.run->name + " (this run)",
+            *session.run, session.processed);
+    ImGui::TableNextColumn();
+    ImGui::TableNextColumn();
+    for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) ghost_row(frame, session, i, actions);
+    ImGui::EndTable();
+  }
+
+  static void run_row(const UiFrame& frame, const RunLook& look, const std::string& name, const RunView& run,
+                      int processed) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    draw_sign(frame, *ImGui::GetWindowDrawList(),
+              {at.x + 8.0F * frame.scale, at.y + 0.5F * ImGui::GetFrameHeight()}, 4.0F * frame.scale,
+              look.sign, to_u32(look.colour));
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 20.0F * frame.scale);
+    ImGui::TextUnformatted(name.c_str());
+    ImGui::TableNextColumn();
+    ImGui::Text("%d", processed);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(error_text(run.evaluation.rpe_time.translation_m).c_str());
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(error_text(run.evaluation.ate.translation_m).c_str());
+  }
+
+  void ghost_row(const UiFrame& frame, const SessionView& session, std::size_t index, PanelActions& actions) {
+    const GhostView& ghost = session.debug.ghosts[index];
+    ImGui::PushID(static_cast<int>(index));
+    run_row(frame, ghost_look(index, frame.theme.name), ghost.name + (ghost.busy ? "  running…" : ""),
+            *ghost.run, static_cast<int>(ghost.run->records.size()));
+    if (index == chosen_)
+      ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, to_u32(frame.theme.accent, 0.18F));
+    ImGui::TableNextColumn();
+    if (ghost.diverged) {
+      const std::string frame_text = fmt::format("{}", *ghost.diverged);
+      if (ImGui::SmallButton(frame_text.c_str())) actions.go_to_frame = ghost.diverged;
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("The first frame that differs; click to go there (D)");
+    } else {
+      ImGui::TextDisabled(ghost.busy ? "…" : "nowhere");
+    }
+    ImGui::TableNextColumn();
+    if (ImGui::SmallButton(icons::kClose))
+      actions.requests.push_back(request::RemoveGhost{static_cast<int>(index)});
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove this run");
+    // A click anywhere else in the row chooses the run.
+    const ImVec2 low{ImGui::GetWindowPos().x, ImGui::GetItemRectMin().y};
+    const ImVec2 high{ImGui::GetItemRectMin().x - 60.0F * frame.scale, low.y + ImGui::GetFrameHeight()};
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(low, high) && ImGui::IsMouseClicked(0))
+      chosen_ = index;
+    ImGui::PopID();
+  }
+
+  void draw_frame_shown(const UiFrame& frame, const SessionView& session, const GhostView& ghost) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const bool beside = room.x > 1.5F * room.y;
+    const float figures_width = beside ? std::min(0.42F * room.x, 330.0F * frame.scale) : room.x;
+    const float row = frame.fonts.small->FontSize + 4.0F * frame.scale;
+    const float figures_height = row * static_cast<float>(difference_.figures.size() + 2);
+    const bool has_figures = beside || room.y > figures_height + 120.0F * frame.scale;
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const ImVec2 picture = beside ? ImVec2{room.x - figures_width - gap, room.y}
+                                  : ImVec2{room.x, has_figures ? room.y - figures_height - gap : room.y};
+    ImGui::BeginChild("masks", picture);
+    draw_masks(frame, session, ghost);
+    ImGui::EndChild();
+    if (!has_figures) return;
+    if (beside) ImGui::SameLine(0.0F, gap);
+    ImGui::BeginChild("figures", {0.0F, 0.0F});
+    draw_figures(frame, session, ghost);
+    ImGui::EndChild();
+  }
+
+  void draw_masks(const UiFrame& frame, const SessionView& session, const GhostView& ghost) {
+    const FrameView& view = *session.current;
+    if (!view.frame.readable() || ghost.current == nullptr || ghost.current->index != view.index) {
+      draw_absent(frame, view.frame.readable() ? "This run's images of the frame are not there yet."
+                                               : "The frame cannot be shown: " + view.frame.problem);
+      return;
+    }
+    const ComparisonColours colours{.agreed = okabe_ito::kGreen,
+                                    .missed = ghost_look(chosen_, frame.theme.name).colour,
+                                    .wrong = okabe_ito::kSkyBlue};
+    // The ghost's image is another object whenever its frame or its run changes.
+    const Texture& compared = compared_.get(frame, ghost.current, static_cast<int>(chosen_), [&] {
+      const cv::Size size = view.frame.gray.size();
+      const cv::Mat run = or_nothing(view.mask, size), other = or_nothing(ghost.current->mask, size);
+      overlap_ = overlap_of(run, other);
+      return compared_masks(run, other, colours);
+    });
+    const auto share = [&](int pixels) {
+      return 100.0 * pixels / static_cast<double>(std::max<std::size_t>(view.frame.gray.total(), 1));
+    };
+    Footer footer;
+    footer.legend = {{fmt::format("both {:.1f} %", share(overlap_.both)), colours.agreed, Sign::kSquare},
+                     {fmt::format("only {} {:.1f} %", session.run->name, share(overlap_.only_run)),
+                      colours.wrong, Sign::kBackHatch},
+                     {fmt::format("only {} {:.1f} %", ghost.name, share(overlap_.only_ghost)), colours.missed,
+                      Sign::kHatch}};
+    const auto iou = overlap_.iou();
+    footer.caption =
+        fmt::format("{}: what each run took out{}.", frame_text(session, view.frame),
+                    iou ? fmt::format("; they share {:.0f} %", 100.0 * *iou) : "; neither took anything");
+    ImageContent content;
+    content.texture = &ground_.get(frame, session.current, 0, [&] { return picture_of(view.frame); });
+    content.values = &view.frame.gray;
+    content.overlays.push_back({&compared, 1.0F});
+    draw_frame_image(frame, "compared", content, *shared_, room_above(frame, footer));
+    footer.draw(frame);
+  }
+
+  void draw_figures(const UiFrame& frame, const SessionView& session, const GhostView& ghost) const {
+    ImGui::PushFont(frame.fonts.small);
+    const bool same = difference_.translation_m == 0.0 && difference_.rotation_deg == 0.0;
+    ImGui::PushTextWrapPos(0.0F);
+    if (same)
+      ImGui::TextUnformatted("Both poses are the same.");
+    else
+      ImGui::Text("Poses differ by %.2f mm and %.3f °.", 1000.0 * difference_.translation_m,
+                  difference_.rotation_deg);
+    ImGui::PopTextWrapPos();
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
+    if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
+      ImGui::TableSetupColumn("");
+      ImGui::TableSetupColumn(session.run->name.c_str());
+      ImGui::TableSetupColumn(ghost.name.c_str());
+      ImGui::TableHeadersRow();
+      for (const FigurePair& pair : difference_.figures) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextDisabled("%s", pair.name.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(pair.run.c_str());
+        ImGui::TableNextColumn();
+        if (pair.differs)
+          ImGui::TextColored(to_vec4(frame.theme.accent), "%s  ≠", pair.ghost.c_str());
+        else
+          ImGui::TextUnformatted(pair.ghost.c_str());
+      }
+      ImGui::EndTable();
+    }
+    ImGui::PopStyleVar();
+    ImGui::PopFont();
+  }
+
+  std::size_t chosen_ = 0;
+  FrameDifference difference_;
+  MaskOverlap overlap_;
+  FrameTexture ground_, compared_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_compare_panel(Shared shared) {
+  return std::make_unique<ComparePanel>(std::move(shared));
+}
+
+}  // namespace stillpoint

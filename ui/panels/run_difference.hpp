@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/odometry/frame_record.hpp"
+
+namespace stillpoint {
+
+// How two runs differ in one frame. No ImGui.
+
+/// A figure of a frame in both runs.
+struct FigurePair {
+  std::string name, run, ghost;  ///< values with their units; "–" for none
+  bool differs = false;
+};
+
+/// A frame of the run against the same frame of a ghost.
+struct FrameDifference {
+  double translation_m = 0.0, rotation_deg = 0.0;  ///< of run_camera_from_ghost_camera; both worlds are one
+  std::vector<FigurePair> figures;
+};
+
+[[nodiscard]] FrameDifference difference_of(const FrameRecord& run, const FrameRecord& ghost);
+
+/// How two masks of one size share the image. A mask that is empty removes nothing.
+struct MaskOverlap {
+  int both = 0, only_run = 0, only_ghost = 0;  ///< px
+  /// Shared part of all that either holds; nothing where neither holds anything.
+  [[nodiscard]] std::optional<double> iou() const;
+};
+[[nodiscard]] MaskOverlap overlap_of(const cv::Mat& run, const cv::Mat& ghost);
+
+}  // namespace stillpoint

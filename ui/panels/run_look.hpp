@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ui/panels/panel_kit.hpp"
+#include "ui/plot/plot.hpp"
+
+namespace stillpoint {
+
+/// How a run is told from the others wherever runs lie over one another: by colour, and without it by its
+/// line's dashes and its sign.
+struct RunLook {
+  Rgb colour;
+  SeriesStyle line = SeriesStyle::kLine;
+  Sign sign = Sign::kLine;
+  double dash = 0.0;  ///< of its path in the trajectory view, as a share of the path's extent; 0 = unbroken
+};
+
+/// Of the ghost with this index, the same in every panel.
+[[nodiscard]] RunLook ghost_look(std::size_t index, ThemeName theme);
+
+/// A run's name where there is little room, cut with an ellipsis.
+[[nodiscard]] std::string shortened(const std::string& name, std::size_t most = 30);
+
+}  // namespace stillpoint

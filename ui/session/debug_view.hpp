@@ -1,0 +1,139 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/run/removal_errors.hpp"
+
+namespace stillpoint {
+
+struct FrameView;
+struct RunView;
+
+// What debugging adds to the session: its part of the snapshot panels draw, and what panels may ask for.
+
+/// Frames `first` to `last`, both among them.
+struct FrameSpan {
+  int first = 0, last = 0;
+  bool operator==(const FrameSpan&) const = default;
+};
+
+/// A frame to come back to.
+struct Bookmark {
+  int frame = 0;
+  std::string note;
+  bool operator==(const Bookmark&) const = default;
+};
+
+/// A pixel watched from frame to frame.
+struct Pin {
+  int frame = 0;            ///< where it was set
+  double x = 0.0, y = 0.0;  ///< px in that frame; the middle of pixel (i, j) is (i, j)
+  std::string name;         ///< "A"
+  bool operator==(const Pin&) const = default;
+};
+
+/// A condition over what is recorded, and where it holds.
+struct Breakpoint {
+  std::string expression;  ///< "rpe > 0.05 || inliers < 30"
+  bool enabled = true;
+  bool operator==(const Breakpoint&) const = default;
+};
+
+struct BreakpointView {
+  Breakpoint breakpoint;
+  std::string error;      ///< one sentence; empty when the expression can be read
+  int error_column = 0;   ///< from 0, into the expression
+  std::vector<int> hits;  ///< processed frames at which it holds, ascending
+};
+
+/// A second run beside the session's own, with another configuration.
+struct GhostView {
+  std::string name;  ///< "difference.threshold 12": what differs, or its preset's name
+  Config config;
+  int from = 0;                        ///< frame it branched off at; before it, it is the session's own run
+  bool busy = false;                   ///< still processing
+  std::shared_ptr<const RunView> run;  ///< never null
+  std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null while not processed
+  std::optional<int> diverged;               ///< first frame whose record differs from the session's own run
+};
+
+/// The debugger's part of SessionView.
+struct DebugView {
+  std::vector<Bookmark> bookmarks;  ///< by frame
+  std::vector<Pin> pins;
+  std::vector<BreakpointView> breakpoints;
+  std::optional<int> stopped_by;  ///< breakpoint at which play stopped last, index into breakpoints
+  std::optional<FrameSpan> span;  ///< the frames selected
+  bool loop = false;              ///< play goes round in the span
+  std::vector<GhostView> ghosts;
+  std::vector<RemovalError> removal;         ///< by frame; empty where there is no truth
+  std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
+  std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
+  double preview_ms = 0.0;                   ///< what computing it took
+  std::string notice;                        ///< what was written last, one sentence
+  std::string run_hash;                      ///< of all records so far, as `stillpoint run` prints it
+  std::string sequence_hash;                 ///< of the sequence, as sidecar and run folder keep it
+};
+
+// Requests. Frames beyond the ends mean the nearest there is.
+namespace request {
+struct GoTo {
+  int frame = 0;
+};
+struct Play {
+  bool play = true;
+};
+struct Bookmarks {
+  std::vector<Bookmark> all;
+};  ///< replaces them
+struct Pins {
+  std::vector<Pin> all;
+};  ///< replaces them
+struct Breakpoints {
+  std::vector<Breakpoint> all;
+};  ///< replaces them
+struct Span {
+  std::optional<FrameSpan> span;
+  bool loop = false;
+};
+struct Preview {
+  std::optional<Config> config;
+};  ///< none ends it
+struct RunAll {
+  Config config;
+};  ///< the session's own run begins anew with it
+/// A ghost with this config: from frame `from` on, which has been processed, or from the first.
+struct AddGhost {
+  Config config;
+  std::string name;
+  int from = 0;
+};
+struct RemoveGhost {
+  int index = 0;
+};
+/// Frames of the span, or the one shown, as a small TUM folder.
+struct ExportFrames {
+  std::string folder;
+};
+/// Records, sidecar and frames as one folder that opens elsewhere.
+struct ExportSession {
+  std::string folder;
+};
+struct SavePreset {
+  Config config;
+  std::string file;
+};
+}  // namespace request
+
+using SessionRequest =
+    std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Breakpoints,
+                 request::Span, request::Preview, request::RunAll, request::AddGhost, request::RemoveGhost,
+                 request::ExportFrames, request::ExportSession, request::SavePreset>;
+
+}  // namespace stillpoint

@@ -1,0 +1,81 @@
+// The part of RunTrack and Session that shows a finished run: all that its records hold at once, and what
+// they do not hold once odometry has seen the frames again.
+#include <algorithm>
+#include <chrono>
+
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kSlice = std::chrono::milliseconds(100);  // of work between looks at what is asked
+
+}  // namespace
+
+RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
+                   const RunTrackOptions& options)
+    : source_(&source),
+      options_(options),
+      recorded_(std::move(recorded)),
+      odometry_(source.camera(), recorded_->run.config) {
+  for (const FrameRecord& record : recorded_->run.records) {
+    hash_.add(record);
+    features_.push_back(options_.keep_features
+                            ? std::make_shared<const std::vector<FeatureRecord>>(record.features)
+                            : nullptr);
+    records_.push_back(record);
+    records_.back().features = {};
+  }
+}
+
+void RunTrack::catch_up_one(const ReadFrame& read) {
+  if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();
+  (void)process(odometry_, seen_, read);
+  ++seen_;
+  if (seen_ == source_->size()) odometry_.finish();
+}
+
+bool RunTrack::is_as_recorded() const {
+  return recorded_ && records_.size() == recorded_->run.records.size();
+}
+
+std::vector<SavedKeyframe> RunTrack::keyframes() const {
+  return is_as_recorded() ? recorded_->run.keyframes : saved_keyframes(odometry_.map());
+}
+
+std::vector<SavedPoint> RunTrack::points() const {
+  if (is_as_recorded()) return recorded_->run.points;
+  std::vector<SavedPoint> points = saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = moved_points(odometry_.map());
+  points.insert(points.end(), moved.begin(), moved.end());
+  return points;
+}
+
+cv::Mat RunTrack::recorded_mask(int index) const {
+  const auto at = static_cast<std::size_t>(index);
+  return recorded_ && at < recorded_->masks.size() ? unpack_mask(recorded_->masks[at]) : cv::Mat();
+}
+
+void Session::open_recorded() {
+  run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, options_.recorded));
+  baseline_.reset();
+  if (options_.recorded_baseline)
+    baseline_view_ = std::make_shared<const RunView>(
+        RunTrack(*source_, options_.recorded_baseline, {.keep_features = false}).view());
+  message_ = options_.no_images;
+}
+
+bool Session::stages_are_missing() const {
+  return run_->track().config().run.method == "stillpoint" && options_.no_images.empty() &&
+         current_->index < run_->track().processed() && current_->index >= run_->track().seen();
+}
+
+void Session::catch_up() {
+  const auto begin = Clock::now();
+  while (stages_are_missing() && Clock::now() - begin < kSlice) run_->catch_up_one();
+  if (!stages_are_missing()) show(current_->index);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,164 @@
+// The part of Session that carries out what panels ask for.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/out_folder.hpp"
+#include "core/sequence/excerpt.hpp"
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// @throws InputError for a number that its parameter does not allow
+void refuse_out_of_range(Config config) {
+  for (const Parameter& parameter : parameters(config)) {
+    double value = parameter.min;
+    if (const auto* whole = std::get_if<int*>(&parameter.value)) value = **whole;
+    if (const auto* real = std::get_if<double*>(&parameter.value)) value = **real;
+    if (!(value >= parameter.min && value <= parameter.max))
+      throw InputError(fmt::format("{} is {}, expected {} to {}{}{}", parameter.key, value, parameter.min,
+                                   parameter.max, parameter.unit.empty() ? "" : " ", parameter.unit));
+    const auto* text = std::get_if<std::string*>(&parameter.value);
+    if (text != nullptr && !parameter.choices.empty() &&
+        std::find(parameter.choices.begin(), parameter.choices.end(), **text) == parameter.choices.end())
+      throw InputError(
+          fmt::format("{} is {}, expected {}", parameter.key, **text, fmt::join(parameter.choices, ", ")));
+  }
+}
+
+}  // namespace
+
+void Session::refuse_without_images() const {
+  if (!options_.no_images.empty())
+    throw InputError(fmt::format("No other parameters can be tried: {}", options_.no_images));
+}
+
+void Session::request(SessionRequest wanted) {
+  if (worker_.joinable()) {
+    const std::lock_guard lock(mutex_);
+    // Of what is asked for faster than it is done, the newest counts.
+    if (std::holds_alternative<request::GoTo>(wanted) || std::holds_alternative<request::Preview>(wanted))
+      std::erase_if(requests_, [&](const SessionRequest& other) { return other.index() == wanted.index(); });
+    requests_.push_back(std::move(wanted));
+    asked_.notify_all();
+    return;
+  }
+  message_.clear();
+  frame_asked_ = false;
+  attempt([&] {
+    carry_out(wanted);
+    // Play that goes round in a span would never end.
+    for (int steps = 0; playing_ && steps <= source_->size(); ++steps) work_step();
+    if (frame_asked_ || target_ != current_->index)
+      while (!at_rest()) work_step();
+    while (has_background()) background_step();
+  });
+  playing_ = false;
+  publish();
+}
+
+void Session::carry_out(const SessionRequest& wanted) {
+  std::visit([this](const auto& one) { carry_out(one); }, wanted);
+  save_marks();
+}
+
+void Session::carry_out(const request::GoTo& wanted) {
+  target_ = std::clamp(wanted.frame, 0, source_->size() - 1);
+  frame_asked_ = true;
+  debug_.stopped_by.reset();
+}
+
+void Session::carry_out(const request::Play& wanted) {
+  const bool loops = debug_.loop && debug_.span;
+  playing_ = wanted.play && (loops || current_->index + 1 < source_->size());
+  debug_.stopped_by.reset();
+  if (!playing_ && !frame_asked_) target_ = current_->index;
+}
+
+void Session::carry_out(const request::Bookmarks& wanted) {
+  debug_.bookmarks = wanted.all;
+  for (Bookmark& bookmark : debug_.bookmarks)
+    bookmark.frame = std::clamp(bookmark.frame, 0, source_->size() - 1);
+  std::stable_sort(debug_.bookmarks.begin(), debug_.bookmarks.end(),
+                   [](const Bookmark& a, const Bookmark& b) { return a.frame < b.frame; });
+}
+
+void Session::carry_out(const request::Pins& wanted) { debug_.pins = wanted.all; }
+
+void Session::carry_out(const request::Breakpoints& wanted) {
+  breakpoints_.set(wanted.all);
+  debug_.stopped_by.reset();
+  breakpoints_due_ = true;
+}
+
+void Session::carry_out(const request::Span& wanted) {
+  debug_.span = wanted.span;
+  debug_.loop = wanted.loop && wanted.span;
+  if (!debug_.span) return;
+  FrameSpan& span = *debug_.span;
+  if (span.first > span.last) std::swap(span.first, span.last);
+  span.first = std::clamp(span.first, 0, source_->size() - 1);
+  span.last = std::clamp(span.last, 0, source_->size() - 1);
+}
+
+void Session::carry_out(const request::Preview& wanted) {
+  if (wanted.config) refuse_without_images();
+  if (wanted.config) refuse_out_of_range(*wanted.config);
+  debug_.preview_config = wanted.config;
+  debug_.preview.reset();
+  preview_due_ = wanted.config.has_value();
+}
+
+void Session::carry_out(const request::RunAll& wanted) {
+  refuse_without_images();
+  refuse_out_of_range(wanted.config);
+  wanted_ = std::max(wanted_, run_->track().processed());
+  restart(wanted.config);
+  target_ = current_->index;
+  show(target_);
+}
+
+void Session::carry_out(const request::AddGhost& wanted) {
+  refuse_without_images();
+  refuse_out_of_range(wanted.config);
+  const int from = std::clamp(wanted.from, 0, std::max(0, run_->track().processed() - 1));
+  Ghost ghost{.name = wanted.name,
+              .run = std::make_unique<ShownRun>(*source_, frames_,
+                                                run_->track().branch(from, wanted.config, run_->reader()))};
+  compare(ghost);
+  if (current_->index < ghost.run->track().processed()) ghost.current = current_;
+  ghosts_.push_back(std::move(ghost));
+}
+
+void Session::carry_out(const request::RemoveGhost& wanted) {
+  if (wanted.index < 0 || wanted.index >= static_cast<int>(ghosts_.size()))
+    throw InputError(fmt::format("there is no ghost run {}; there are {}", wanted.index, ghosts_.size()));
+  ghosts_.erase(ghosts_.begin() + wanted.index);
+}
+
+void Session::carry_out(const request::ExportFrames& wanted) {
+  const FrameSpan span = debug_.span.value_or(FrameSpan{current_->index, current_->index});
+  std::vector<int> frames;
+  for (int frame = span.first; frame <= span.last; ++frame) frames.push_back(frame);
+  const ExportedFrames exported = export_frames(*source_, frames, wanted.folder, false);
+  debug_.notice =
+      fmt::format("{} frames written to {}{}", exported.written, wanted.folder,
+                  exported.unreadable.empty()
+                      ? ""
+                      : fmt::format("; {} cannot be read and were left out", exported.unreadable.size()));
+}
+
+void Session::carry_out(const request::ExportSession& wanted) {
+  throw InputError(fmt::format("{}: sessions are not exported as a whole; frames are", wanted.folder));
+}
+
+void Session::carry_out(const request::SavePreset& wanted) {
+  refuse_out_of_range(wanted.config);
+  write_text_file(wanted.file, to_toml(wanted.config));
+  debug_.notice = fmt::format("preset written to {}", wanted.file);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,205 @@
+// The part of Session that decides what is done next, on its worker or at once.
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "core/sequence/fingerprint.hpp"
+#include "core/stopwatch.hpp"
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kProgressInterval = std::chrono::milliseconds(150);
+
+}  // namespace
+
+bool Session::at_rest() const { return current_->index == target_ && current_->record != nullptr; }
+
+int Session::next_while_playing() const {
+  const bool loops = debug_.loop && debug_.span;
+  if (loops && (target_ >= debug_.span->last || target_ < debug_.span->first)) return debug_.span->first;
+  return std::min(target_ + 1, source_->size() - 1);
+}
+
+void Session::stop_playing_where_wanted() {
+  if (!playing_) return;
+  update_breakpoints();
+  debug_.stopped_by = breakpoints_.stopping_at(target_);
+  const bool loops = debug_.loop && debug_.span;
+  if (debug_.stopped_by || (!loops && target_ + 1 >= source_->size())) playing_ = false;
+}
+
+void Session::work_step() {
+  if (playing_ && at_rest()) target_ = next_while_playing();
+  const auto begin = Clock::now();
+  // Frames on the way to one far ahead are not shown one by one; how far it is, is.
+  while (run_->track().processed() <= target_ && Clock::now() - begin < kProgressInterval) process_one();
+  if (run_->track().processed() <= target_) {
+    publish();
+    return;
+  }
+  // Ghosts that keep level do so frame by frame; one that lags catches up when there is time.
+  for (Ghost& ghost : ghosts_)
+    if (ghost.run->track().processed() == target_) advance(ghost);
+  stop_playing_where_wanted();
+  show(target_);
+}
+
+bool Session::has_background() const {
+  const int processed = run_->track().processed();
+  return preview_due_ || sidecar_due_ || processed < wanted_ ||
+         (worker_.joinable() && stages_are_missing()) ||
+         std::any_of(ghosts_.begin(), ghosts_.end(),
+                     [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
+}
+
+void Session::background_step() {
+  if (preview_due_) {
+    compute_preview();
+    publish();
+    return;
+  }
+  if (sidecar_due_) {
+    attempt([this] { open_sidecar(); });
+    publish();
+    return;
+  }
+  if (worker_.joinable() && stages_are_missing()) {
+    catch_up();
+    return;
+  }
+  const auto lags = [&](const Ghost& ghost) {
+    return ghost.run->track().processed() < run_->track().processed();
+  };
+  // One frame more at a time, so that what is asked for meanwhile is not kept waiting.
+  const auto ghost = std::find_if(ghosts_.begin(), ghosts_.end(), lags);
+  if (ghost != ghosts_.end())
+    advance(*ghost);
+  else
+    process_one();
+}
+
+void Session::advance(Ghost& ghost) {
+  const int index = ghost.run->track().processed();
+  ghost.run->process(frames_.read(index));
+  compare(ghost);
+  if (index == current_->index) ghost.current = ghost.run->frame_view(index);
+}
+
+void Session::compare(Ghost& ghost) {
+  const auto &own = run_->track().records(), &other = ghost.run->track().records();
+  for (; !ghost.diverged && ghost.compared < static_cast<int>(std::min(own.size(), other.size()));
+       ++ghost.compared) {
+    const auto i = static_cast<std::size_t>(ghost.compared);
+    if (!computed_alike(own[i], other[i])) ghost.diverged = ghost.compared;
+  }
+}
+
+void Session::compute_preview() {
+  preview_due_ = false;
+  debug_.preview.reset();
+  if (!debug_.preview_config) return;
+  const Stopwatch watch;
+  debug_.preview = run_->preview(current_->index, *debug_.preview_config);
+  debug_.preview_ms = options_.keep_times ? watch.milliseconds() : 0.0;
+}
+
+void Session::update_breakpoints() {
+  if (!breakpoints_due_ || breakpoints_.empty()) return;
+  const auto run = run_->run_view();
+  breakpoints_.update(FrameFigures(run->records, &run->evaluation));
+  breakpoints_due_ = false;
+}
+
+void Session::open_sidecar() {
+  sidecar_due_ = false;
+  debug_.sequence_hash = sequence_fingerprint(*source_);
+  sidecar_.emplace(*options_.sidecar, MarkedSequence{source_->name(), debug_.sequence_hash, source_->size()});
+  Marks kept = sidecar_->load();
+  // What was marked before there was time to look stays.
+  if (debug_.bookmarks.empty()) debug_.bookmarks = std::move(kept.bookmarks);
+  if (debug_.pins.empty()) debug_.pins = std::move(kept.pins);
+  if (breakpoints_.empty()) breakpoints_.set(kept.breakpoints);
+  if (!debug_.span) debug_.span = kept.span, debug_.loop = kept.loop;
+  breakpoints_due_ = true;
+  save_marks();
+}
+
+Marks Session::marks() const {
+  return {debug_.bookmarks, debug_.pins, breakpoints_.breakpoints(), debug_.span, debug_.loop};
+}
+
+void Session::save_marks() {
+  if (sidecar_) sidecar_->save(marks());
+}
+
+bool Session::take_requests() {
+  std::deque<SessionRequest> taken;
+  {
+    const std::lock_guard lock(mutex_);
+    taken = std::exchange(requests_, {});
+  }
+  if (!taken.empty()) message_.clear();
+  frame_asked_ = false;
+  for (const SessionRequest& wanted : taken) attempt([&] { carry_out(wanted); });
+  return !taken.empty();
+}
+
+void Session::attempt(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    message_ = error.what();
+  }
+}
+
+void Session::settle() {
+  while (has_background()) background_step();
+  publish();
+}
+
+void Session::work(const std::stop_token& stop) {
+  target_ = std::max(target_, current_->index);
+  if (current_->record == nullptr) target_ = 0;
+  auto due = Clock::now(), published = due;
+  while (!stop.stop_requested()) {
+    try {
+      if (take_requests() && at_rest()) publish();
+      const bool waits = at_rest() && (!playing_ || Clock::now() < due);
+      if (waits && has_background()) {
+        background_step();
+        if (Clock::now() - published > kProgressInterval || !has_background()) {
+          publish();
+          published = Clock::now();
+        }
+        continue;
+      }
+      if (waits && !playing_) {
+        rest(stop);
+        continue;
+      }
+      if (waits) {
+        std::unique_lock lock(mutex_);
+        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty(); });
+        continue;
+      }
+      due = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                               std::chrono::duration<double>(1.0 / frames_per_second_.load()));
+      work_step();
+    } catch (const std::exception& error) {
+      message_ = error.what();
+      playing_ = false;
+      preview_due_ = false;
+      wanted_ = 0;
+      target_ = current_->index;
+      publish();
+      // Without a frame to rest at, trying again at once would fail again at once.
+      rest(stop);
+    }
+  }
+}
+
+}  // namespace stillpoint

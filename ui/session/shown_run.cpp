@@ -1,0 +1,114 @@
+#include "ui/session/shown_run.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "core/motion/detect_motion.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::size_t kExtrasKept = 12;
+
+}  // namespace
+
+std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord> record) {
+  struct Shown {
+    FrameView view;
+    FrameRecord record;
+  };
+  auto shown = std::make_shared<Shown>();
+  shown->view = std::move(view);
+  if (record) {
+    shown->record = std::move(*record);
+    shown->view.record = &shown->record;
+  }
+  const FrameView* held = &shown->view;
+  return {std::move(shown), held};
+}
+
+void ShownRun::process(const Frame& frame) {
+  FrameResult result = track_.process_next([&frame](int) { return frame; });
+  view_.reset();
+  keep({frame.index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)});
+}
+
+void ShownRun::keep(Extras extras) {
+  extras_.push_front(std::move(extras));
+  if (extras_.size() > kExtrasKept) extras_.pop_back();
+}
+
+ShownRun::Extras ShownRun::extras_of(int index) {
+  if (index < track_.begins_at() || index >= track_.processed()) return {.index = index};
+  const auto kept =
+      std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
+  if (kept != extras_.end()) return *kept;
+  const std::string& method = track_.config().run.method;
+  if (method == "none" || method == "paper") return {.index = index};  // all there is, images_of computes
+  if (index >= track_.seen()) {
+    Extras extras{.index = index, .mask = track_.recorded_mask(index)};
+    extras.depth_motion.note =
+        "the run's records hold the mask alone, and the stages before it are computed again from the first "
+        "frame on.";
+    return extras;
+  }
+  FrameResult again = process_again(index, track_.config());
+  keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
+  return extras_.front();
+}
+
+FrameResult ShownRun::process_again(int index, const Config& config) {
+  if (!before_ || before_->first != index) before_.emplace(index, track_.before(index, reader()));
+  if (config == track_.config()) {
+    Odometry odometry = before_->second;
+    return track_.process(odometry, index, reader());
+  }
+  std::optional<Odometry> odometry =
+      before_->second.continued_with(config, track_.frames_before(index, config, reader()));
+  if (!odometry)
+    throw InputError("features.levels and features.scale_factor take effect only when all is run anew");
+  return track_.process(*odometry, index, reader());
+}
+
+FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
+  FrameView view;
+  view.index = index;
+  view.frame = frames_->read(index);
+  view.reference.index = index - config.motion.reference_gap;
+  if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);
+  view.truth = source_->truth(index);
+  view.motion = std::move(extras.motion);
+  const bool pair = view.frame.readable() && view.reference.readable() &&
+                    view.frame.gray.size() == view.reference.gray.size();
+  if (view.motion.rounds.empty() && pair)
+    view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
+  view.depth_motion = std::move(extras.depth_motion);
+  view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
+  // Without its images, a finished run still tells what it removed.
+  if (!pair && view.mask.empty()) view.mask = track_.recorded_mask(index);
+  return view;
+}
+
+std::shared_ptr<const FrameView> ShownRun::frame_view(int index) {
+  FrameView view = images_of(index, track_.config(), extras_of(index));
+  const bool processed = index < track_.processed();
+  return hold(std::move(view), processed ? std::optional(track_.record(index)) : std::nullopt);
+}
+
+std::shared_ptr<const RunView> ShownRun::run_view() {
+  if (!view_) view_ = std::make_shared<const RunView>(track_.view());
+  return view_;
+}
+
+std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& config) {
+  Extras extras{.index = index};
+  std::optional<FrameRecord> record;
+  if (index < track_.processed() && index >= track_.begins_at()) {
+    FrameResult result = process_again(index, config);
+    record = std::move(result.record);
+    extras = {index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)};
+  }
+  return hold(images_of(index, config, std::move(extras)), std::move(record));
+}
+
+}  // namespace stillpoint

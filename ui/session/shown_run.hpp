@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "ui/session/frame_cache.hpp"
+#include "ui/session/run_track.hpp"
+
+namespace stillpoint {
+
+/// A frame's view and the record it points to, kept alive together.
+[[nodiscard]] std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord> record);
+
+/// A run whose frames can be looked at, in whatever order: images of the frames processed last are at hand,
+/// those of others are computed again.
+class ShownRun {
+ public:
+  ShownRun(const FrameSource& source, FrameCache& frames, RunTrack track)
+      : source_(&source), frames_(&frames), track_(std::move(track)) {}
+
+  /// Processes the next frame. @param frame that frame, read
+  void process(const Frame& frame);
+
+  /// Shows odometry the next of a finished run's frames that it has not seen.
+  void catch_up_one() { track_.catch_up_one(reader()); }
+
+  [[nodiscard]] const RunTrack& track() const { return track_; }
+
+  /// The frame with all its images and, where it was processed, its record.
+  [[nodiscard]] std::shared_ptr<const FrameView> frame_view(int index);
+
+  /// The run for panels; the same object until another frame was processed.
+  [[nodiscard]] std::shared_ptr<const RunView> run_view();
+
+  /// One frame once more as it would be under another config, from the state before it. What it is compared
+  /// with is kept, so that one frame under many configs costs little more than that frame's work.
+  [[nodiscard]] std::shared_ptr<const FrameView> preview(int index, const Config& config);
+
+  [[nodiscard]] RunTrack::ReadFrame reader() const {
+    return [this](int index) { return frames_->read(index); };
+  }
+
+ private:
+  /// What a frame's motion stage made and a record does not hold.
+  struct Extras {
+    int index = 0;
+    MotionTrace motion{};
+    DepthMotionTrace depth_motion{};
+    cv::Mat mask{};
+  };
+
+  [[nodiscard]] FrameView images_of(int index, const Config& config, Extras extras);
+  [[nodiscard]] Extras extras_of(int index);
+  /// Processes a frame that was processed before, from the state before it.
+  [[nodiscard]] FrameResult process_again(int index, const Config& config);
+  void keep(Extras extras);
+
+  const FrameSource* source_;
+  FrameCache* frames_;
+  RunTrack track_;
+  std::deque<Extras> extras_;  // of the frames processed or replayed last
+  std::shared_ptr<const RunView> view_;
+  std::optional<std::pair<int, Odometry>> before_;  // state before the frame processed again last
+};
+
+}  // namespace stillpoint

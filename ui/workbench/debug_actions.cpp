@@ -1,0 +1,138 @@
+// What leads to failures: worst frames, breakpoint hits, bookmarks, a range of frames, ghosts.
+#include "ui/session/places.hpp"
+#include "ui/theme/icons.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr Modifiers kShift{.shift = true}, kCtrl{.ctrl = true};
+
+using Target = std::optional<int>;
+
+}  // namespace
+
+const std::vector<int>& Workbench::worst() {
+  const RunView& run = *session_->run;
+  const LaneFigure figure = worst_by_.value_or(usual_figure(run));
+  const WorstKey key{&run, session_->revision, run.records.size(), figure};
+  if (!(key == worst_key_)) {
+    worst_ = worst_frames(run, figure);
+    worst_key_ = key;
+  }
+  return worst_;
+}
+
+void Workbench::ask(SessionRequest request) {
+  if (host_.request) host_.request(std::move(request));
+}
+
+void Workbench::add_debug_actions() {
+  const auto add = [this](const char* name, const char* title, const char* icon, KeyChord key,
+                          std::function<Target()> target) {
+    actions_.add({.name = name,
+                  .title = title,
+                  .group = "Debug",
+                  .icon = icon,
+                  .keys = key.key == Key::kNone ? std::vector<KeyChord>{} : std::vector{key},
+                  .repeats = true,
+                  .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .run = [this, target] { go_to(*target()); }});
+  };
+  const auto here = [this] { return session_->current->index; };
+  add("next_worst", "Next worst frame", icons::kWarning, {Key::kN, {}},
+      [this, here] { return stillpoint::next_worst(worst(), here()); });
+  add("previous_worst", "Previous worst frame", icons::kChevronUp, {Key::kN, kShift},
+      [this, here] { return stillpoint::previous_worst(worst(), here()); });
+  add("next_hit", "Next breakpoint hit", icons::kBug, {Key::kF8, {}},
+      [this, here] { return next_in(hit_frames(session_->debug), here()); });
+  add("previous_hit", "Previous breakpoint hit", icons::kBug, {Key::kF8, kShift},
+      [this, here] { return previous_in(hit_frames(session_->debug), here()); });
+  add("next_hurt", "Next frame that removal hurt", icons::kBolt, {Key::kJ, {}},
+      [this, here] { return next_in(hurt_frames(session_->debug), here()); });
+  add("previous_hurt", "Previous frame that removal hurt", icons::kBolt, {Key::kJ, kShift},
+      [this, here] { return previous_in(hurt_frames(session_->debug), here()); });
+  add("next_bookmark", "Next bookmark", icons::kBookmark, {Key::kPeriod, {}},
+      [this, here] { return next_in(bookmarked_frames(session_->debug), here()); });
+  add("previous_bookmark", "Previous bookmark", icons::kBookmark, {Key::kComma, {}},
+      [this, here] { return previous_in(bookmarked_frames(session_->debug), here()); });
+  add("first_divergence", "Where the first ghost run parts", icons::kRandom, {Key::kD, {}},
+      [this] { return first_divergence(session_->debug); });
+  add_mark_actions();
+}
+
+void Workbench::add_mark_actions() {
+  const auto can_ask = [this] { return session_ != nullptr && static_cast<bool>(host_.request); };
+  actions_.add({.name = "bookmark",
+                .title = "Bookmark this frame, or take the bookmark off",
+                .group = "Debug",
+                .icon = icons::kBookmark,
+                .keys = {{Key::kB, {}}},
+                .enabled = can_ask,
+                .run = [this] { toggle_bookmark(); }});
+  const auto add_span = [this, can_ask](const char* name, const char* title, Key key, bool begins) {
+    actions_.add({.name = name,
+                  .title = title,
+                  .group = "Debug",
+                  .keys = {{key, {}}},
+                  .enabled = can_ask,
+                  .run = [this, begins] {
+                    const int here = session_->current->index, last = session_->frame_count - 1;
+                    const auto& span = session_->debug.span;
+                    const int other = span ? (begins ? span->last : span->first) : (begins ? last : 0);
+                    // An end beyond the other one begins a new range.
+                    const bool crossed = begins ? here > other : here < other;
+                    const int end = !crossed ? other : begins ? last : 0;
+                    ask(request::Span{span_between(here, end, session_->frame_count), session_->debug.loop});
+                  }});
+  };
+  add_span("range_start", "Range begins here", Key::kI, true);
+  add_span("range_end", "Range ends here", Key::kO, false);
+  const auto has_span = [this, can_ask] { return can_ask() && session_->debug.span.has_value(); };
+  actions_.add({.name = "loop_range",
+                .title = "Play the range over and over",
+                .group = "Debug",
+                .icon = icons::kRefresh,
+                .keys = {{Key::kL, kCtrl}},
+                .enabled = has_span,
+                .checked = [this] { return session_ != nullptr && session_->debug.loop; },
+                .run =
+                    [this] {
+                      ask(request::Span{session_->debug.span, !session_->debug.loop});
+                    }});
+  actions_.add({.name = "clear_range",
+                .title = "Clear the range",
+                .group = "Debug",
+                .icon = icons::kClose,
+                .enabled = has_span,
+                .run = [this] { ask(request::Span{}); }});
+}
+
+void Workbench::toggle_bookmark() {
+  const int here = session_->current->index;
+  const Bookmark* bookmark = bookmark_at(session_->debug, here);
+  if (bookmark == nullptr) {
+    ask(request::Bookmarks{with_bookmark(session_->debug.bookmarks, here)});
+  } else if (bookmark->note.empty()) {
+    ask(request::Bookmarks{without_bookmark(session_->debug.bookmarks, here)});
+  } else {
+    // A note is not thrown away by a key pressed twice.
+    say("This frame's bookmark has a note; it can be deleted in the bookmarks panel.");
+  }
+}
+
+void Workbench::add_layout_actions() {
+  int digit = static_cast<int>(Key::k1);
+  for (const NamedLayout& layout : named_layouts())
+    actions_.add({.name = "layout." + std::string(layout.name),
+                  .title = "Layout: " + std::string(layout.title),
+                  .group = "View",
+                  .icon = icons::kLayout,
+                  .keys = {{static_cast<Key>(digit++), kCtrl}},
+                  .run = [this, make = layout.make] {
+                    const std::string method = session_ == nullptr ? "paper" : session_->config.run.method;
+                    after_frame_ = [this, make, method] { set_layout(make(method)); };
+                  }});
+}
+
+}  // namespace stillpoint
