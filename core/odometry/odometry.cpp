@@ -39,7 +39,7 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
     // §1 beside ORB extraction: neither needs the other's result.
     auto features = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
       const Stopwatch watch;
-      OrbFeatures found = extractor_.extract(frame.gray);
+      OrbFeatures found = extractor_.extract(frame.gray, config_.run.threads);
       return std::pair(std::move(found), watch.milliseconds());
     });
     detect(frame, known_mask, result);
