@@ -130,6 +130,8 @@ std::vector<Parameter> parameters(Config& c) {
          "how far back the nearer reference lies");
   number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames",
          "how far back the farther reference lies");
+  number("depth_motion.slow_reference", &d.slow_reference, 1, 100, "frames",
+         "back to the farthest reference: for slow movers");
   number("depth_motion.depth_sigmas", &d.depth_sigmas, 1, 50, "sigma",
          "depth residual beyond which a pixel counts as moved");
   number("depth_motion.intensity_sigmas", &d.intensity_sigmas, 1, 50, "sigma",
@@ -138,6 +140,12 @@ std::vector<Parameter> parameters(Config& c) {
          "share of the local gradient a brightness residual may reach");
   number("depth_motion.memory", &d.memory, 0, 1, "", "share of the log-odds carried to the next frame");
   number("depth_motion.max_log_odds", &d.max_log_odds, 0.5, 100, "", "where evidence saturates");
+  number("depth_motion.firm_log_odds", &d.firm_log_odds, 0, 100, "",
+         "above it a pixel is firmly known to move");
+  number("depth_motion.release", &d.release, 0, 1, "",
+         "share of evidence for standing still that what firmly moves takes");
+  number("depth_motion.patch_share", &d.patch_share, 0, 1, "",
+         "share of the log-odds by a patch's shift that counts in one frame");
   number("depth_motion.segment_px", &d.segment_px, 4, 100, "px", "side of a surface patch, in blocks");
   number("depth_motion.smoothing", &d.smoothing, 0, 100, "",
          "weight of neighbours on the same surface against a patch's own evidence");
@@ -227,6 +235,8 @@ std::vector<Parameter> parameters(Config& c) {
          "points are made from depth up to here, farther only when few are near");
   number("map.min_new_points", &k.min_new_points, 0, 5000, "points",
          "so many nearest points are made however far");
+  number("map.min_cell_points", &k.min_cell_points, 0, 1000, "points",
+         "so many points are made in each part of the image of 80 px however far");
   number("map.keyframe_max_gap", &k.keyframe_max_gap, 1, 1000, "frames",
          "after so many frames a keyframe may be made whatever else");
   number("map.keyframe_min_ratio", &k.keyframe_min_ratio, 0, 1, "",

@@ -38,18 +38,22 @@ struct DepthMotionConfig {
   int use_depth = 1;          ///< 1: depth residuals are evidence
   int use_brightness = 1;     ///< 1: brightness residuals are evidence
   int near_reference = 2;     ///< frames back to the nearer reference
-  int far_reference = 10;     ///< frames back to the farther one: for slow movers
+  int far_reference = 10;     ///< frames back to the farther one
+  int slow_reference = 24;    ///< frames back to the farthest one: for slow movers
   double depth_sigmas = 4.0;  ///< depth residual beyond which a pixel counts as moved, standard deviations
   double intensity_sigmas = 4.0;  ///< the same of brightness
   double gradient_share =
       0.75;  ///< of the local gradient that a brightness residual may reach for want of exact pixels
-  double memory = 0.9;            ///< share of the log-odds carried to the next frame
-  double max_log_odds = 4.0;      ///< evidence saturates here, so that a change of mind stays possible
-  int segment_px = 10;            ///< side of a surface patch, small pixels
-  double smoothing = 0.6;         ///< weight of neighbours on the same surface against a patch's own evidence
-  double moving_log_odds = 0.35;  ///< above it a patch moves
+  double memory = 0.9;         ///< share of the log-odds carried to the next frame
+  double max_log_odds = 6.0;   ///< evidence of motion saturates here, so that a change of mind stays possible
+  double firm_log_odds = 3.0;  ///< above it a pixel is firmly known to move …
+  double release = 0.015;      ///< … and takes this share of what speaks for standing still
+  double patch_share = 0.15;   ///< of the log-odds by a patch's shift that counts in one frame
+  int segment_px = 10;         ///< side of a surface patch, small pixels
+  double smoothing = 0.6;      ///< weight of neighbours on the same surface against a patch's own evidence
+  double moving_log_odds = 0.35;   ///< above it a patch moves
   double min_area_share = 0.0015;  ///< smaller regions are noise, share of the image
-  int margin_px = 2;               ///< added about the mask at the end
+  int margin_px = 0;               ///< added about the mask at the end
   bool operator==(const DepthMotionConfig&) const = default;
 };
 
@@ -116,6 +120,7 @@ struct TrackingConfig {
 struct MapConfig {
   double far_depth_m = 3.0;   ///< points are made from depth up to here, beyond only if few are near
   int min_new_points = 100;   ///< so many nearest points are made however far
+  int min_cell_points = 5;    ///< … and so many in each part of the image of 80 px
   int keyframe_max_gap = 30;  ///< frames after which a keyframe may be made whatever else
   double keyframe_min_ratio =
       0.75;  ///< a keyframe is made when inliers fall below this share of the reference's

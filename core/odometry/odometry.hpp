@@ -119,7 +119,9 @@ class Odometry {
                                                            const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
-  void track(const Frame& frame, Current& current, FrameRecord& record);
+  /// @returns why there is no pose; empty when there is one
+  [[nodiscard]] std::string track(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] bool leaves_too_little(const Current& current) const;
   [[nodiscard]] bool estimate(Current& current, FrameRecord& record) const;
   [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record) const;
   [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record) const;

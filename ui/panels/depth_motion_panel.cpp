@@ -10,9 +10,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStages = 6;
+constexpr int kStages = 7;
 constexpr std::array<const char*, kStages> kNames{
-    "Depth residual", "Brightness residual", "Memory", "All evidence", "Segments", "Mask"};
+    "Depth residual", "Brightness residual", "Patch shifts", "Memory", "All evidence", "Segments", "Mask"};
 
 /// Method `stillpoint`'s stages: what depth and brightness say against an earlier frame, what is remembered,
 /// and what becomes of it on surfaces.
@@ -34,11 +34,15 @@ class DepthMotionPanel final : public NamedPanel {
     }
     const DepthMotionTrace& trace = session.current->depth_motion;
     Controls controls(frame);
-    controls.choice("stage", {"All", "Depth", "Brightness", "Memory", "Log-odds", "Segments", "Mask"},
-                    shown_);
+    controls.choice(
+        "stage", {"All", "Depth", "Brightness", "Shifts", "Memory", "Log-odds", "Segments", "Mask"}, shown_);
     const int references = static_cast<int>(trace.references.size());
     reference_ = std::clamp(reference_, 0, references - 1);
-    if (references > 1) controls.choice("reference", {"Near reference", "Far reference"}, reference_);
+    if (references > 1) {
+      std::vector<std::string> names{"Near reference", "Far reference", "Farthest reference"};
+      names.resize(static_cast<std::size_t>(std::min(references, 3)));
+      controls.choice("reference", names, reference_);
+    }
 
     const Footer footer = footer_of(frame, session, trace);
     const ImVec2 start = ImGui::GetCursorScreenPos();
@@ -65,7 +69,7 @@ class DepthMotionPanel final : public NamedPanel {
   }
 
  private:
-  enum Stage { kDepth, kBrightness, kMemory, kLogOdds, kSegments, kMask };
+  enum Stage { kDepth, kBrightness, kShifts, kMemory, kLogOdds, kSegments, kMask };
 
   [[nodiscard]] static std::string missing_stages(const SessionView& session) {
     const FrameView& view = *session.current;
@@ -124,6 +128,8 @@ class DepthMotionPanel final : public NamedPanel {
         return reference.depth_residual;
       case kBrightness:
         return reference.intensity_residual;
+      case kShifts:
+        return trace.slow;
       case kMemory:
         return trace.prior;
       case kLogOdds:
