@@ -48,9 +48,13 @@ const std::vector<Ingredient>& ingredients() {
       {"depth_evidence", "judging motion by depth", {"depth_motion.use_depth=0"}},
       {"brightness_evidence", "judging motion by brightness", {"depth_motion.use_brightness=0"}},
       {"memory", "carrying evidence from frame to frame", {"depth_motion.memory=0"}},
+      {"firm_memory", "letting go but slowly of what firmly moves", {"depth_motion.release=1"}},
+      {"patch_shifts", "slow movers by the shifts of patches", {"depth_motion.patch_share=0"}},
+      {"slow_reference", "the farthest of the three references", {"depth_motion.slow_reference=10"}},
       {"neighbours", "patches of one surface agreeing", {"depth_motion.smoothing=0"}},
       {"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=0"}},
       {"purge", "taking map points on movers out of the map", {"map.purge_moving=0"}},
+      {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},
       {"depth_residual", "depth beside pixels in the pose", {"tracking.depth_weight=0"}},
       {"rolling_shutter", "undoing the rolling shutter", {"tracking.correct_rolling_shutter=0"}},
       {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=0"}},
@@ -169,7 +173,8 @@ nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
     }
     const AblationChange change = change_of(row, rows.front());
     nlohmann::ordered_json variant;
-    variant["without"] = row.without.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(row.without);
+    variant["without"] =
+        row.without.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(row.without);
     if (!row.without.empty()) {
       variant["set"] = ingredient_by_name(row.without).assignments;
       variant["rpe_mean_change"] = or_null(change.mean);
