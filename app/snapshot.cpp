@@ -127,8 +127,8 @@ void snapshot(const SnapshotArguments& arguments) {
   // The records of a finished run hold all but what these show.
   place.options.catch_up =
       method == "stillpoint" &&
-      (painter.draws("depth_motion") || painter.draws("stages") || painter.draws("feature") ||
-       painter.draws("inspector") || painter.draws("workbench"));
+      (painter.draws("depth_motion") || painter.draws("colour_motion") || painter.draws("stages") ||
+       painter.draws("feature") || painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);

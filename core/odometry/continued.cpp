@@ -65,6 +65,14 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
       compares_by_homography(config_) && compares_by_homography(config) && config.motion == config_.motion;
   if (!keeps_references) next.references_ = motion_frames(before, config);
 
+  if (config.run.method != config_.run.method || !(config.colour_motion == config_.colour_motion)) {
+    next.colour_.reset();
+    for (const PastFrame& past : before) {
+      if (config.run.method != "stillpoint" || !past.frame.readable()) continue;
+      FrameResult unused;
+      next.detect_in_colour(past.frame, unused);
+    }
+  }
   if (config.run.method == "stillpoint" && same_past_views(config_, config)) return next;
   next.past_views_.clear();
   next.memory_.reset();
