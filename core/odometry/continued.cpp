@@ -7,11 +7,16 @@ namespace {
 /// Whether views and memory made under `before` serve under `after`.
 bool same_past_views(const Config& before, const Config& after) {
   return before.run.method == "stillpoint" && before.depth_motion.factor == after.depth_motion.factor &&
-         before.depth_motion.far_reference >= after.depth_motion.far_reference;
+         before.depth_motion.slow_reference >= after.depth_motion.slow_reference;
 }
 
 bool compares_by_homography(const Config& config) {
   return config.run.method != "none" && config.run.method != "oracle" && config.run.method != "stillpoint";
+}
+
+/// The same of prepared frames for the homography.
+bool same_references(const Config& before, const Config& after) {
+  return compares_by_homography(before) && compares_by_homography(after) && before.motion == after.motion;
 }
 
 std::deque<std::shared_ptr<const MotionFrame>> motion_frames(const std::vector<PastFrame>& before,
@@ -52,6 +57,15 @@ void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
   if (memory_ && !memory_->view) memory_->view = past_views_.back().view;
 }
 
+int Odometry::frames_wanted(const Config& config) const {
+  if (compares_by_homography(config))
+    return same_references(config_, config) ? 0 : config.motion.reference_gap;
+  const bool looks_back =
+      config.run.method == "stillpoint" &&
+      !(same_past_views(config_, config) && config.colour_motion == config_.colour_motion);
+  return looks_back ? config.depth_motion.slow_reference : 0;
+}
+
 std::optional<Odometry> Odometry::continued_with(const Config& config,
                                                  const std::vector<PastFrame>& before) const {
   if (config.features.levels != config_.features.levels ||
@@ -61,9 +75,7 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
   next.config_ = config;
   next.extractor_ = OrbExtractor(config.features);
 
-  const bool keeps_references =
-      compares_by_homography(config_) && compares_by_homography(config) && config.motion == config_.motion;
-  if (!keeps_references) next.references_ = motion_frames(before, config);
+  if (!same_references(config_, config)) next.references_ = motion_frames(before, config);
 
   if (config.run.method != config_.run.method || !(config.colour_motion == config_.colour_motion)) {
     next.colour_.reset();

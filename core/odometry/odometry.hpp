@@ -53,13 +53,15 @@ class Odometry {
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
 
   /// The same map and the same place, but the next frames are processed with another config. What the new
-  /// method needs of earlier frames is made from `before`, newest last: motion.reference_gap of them for the
-  /// paper's method, depth_motion.far_reference for `stillpoint`. With an equal config it goes on bit for bit
-  /// as it would have.
+  /// method needs of earlier frames is made from `before`, the last frames_wanted(config) of them, newest
+  /// last. With an equal config it goes on bit for bit as it would have.
   /// @returns nothing where the map's features would not fit the new ones (another features.levels or
   /// features.scale_factor)
   [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
                                                        const std::vector<PastFrame>& before) const;
+
+  /// How many earlier frames continued_with() needs; 0 where it has all that the new config asks for.
+  [[nodiscard]] int frames_wanted(const Config& config) const;
 
   /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
   void drop_images();

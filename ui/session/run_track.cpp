@@ -6,16 +6,13 @@
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
-namespace {
 
-/// How many frames back a method looks.
 int frames_looked_back(const Config& config) {
   if (config.run.method == "none" || config.run.method == "oracle") return 0;
-  if (config.run.method == "stillpoint") return config.depth_motion.far_reference;
-  return config.motion.reference_gap;
+  if (config.run.method != "stillpoint") return config.motion.reference_gap;
+  const DepthMotionConfig& motion = config.depth_motion;
+  return std::max({motion.near_reference, motion.far_reference, motion.slow_reference});
 }
-
-}  // namespace
 
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)
     : source_(&source), options_(options), odometry_(source.camera(), config) {}
@@ -100,9 +97,9 @@ FrameResult RunTrack::replay(int index, const ReadFrame& read) const {
   return process(odometry, index, read);
 }
 
-std::vector<PastFrame> RunTrack::frames_before(int index, const Config& config, const ReadFrame& read) const {
+std::vector<PastFrame> RunTrack::frames_before(int index, int count, const ReadFrame& read) const {
   std::vector<PastFrame> past;
-  for (int i = std::max(0, index - frames_looked_back(config)); i < index; ++i) {
+  for (int i = std::max(0, index - count); i < index; ++i) {
     const FrameRecord& record = records_[static_cast<std::size_t>(i)];
     past.push_back({read(i), record.world_from_camera.inverse(), record.estimated});
   }
@@ -112,8 +109,9 @@ std::vector<PastFrame> RunTrack::frames_before(int index, const Config& config, 
 RunTrack RunTrack::branch(int from, const Config& config, const ReadFrame& read) const {
   RunTrack other(*source_, config, options_);
   if (from <= begins_at_ || from >= processed()) return other;
+  const Odometry here = before(from, read);
   std::optional<Odometry> odometry =
-      before(from, read).continued_with(config, frames_before(from, config, read));
+      here.continued_with(config, frames_before(from, here.frames_wanted(config), read));
   if (!odometry) return other;
   other.odometry_ = std::move(*odometry);
   other.begins_at_ = from;

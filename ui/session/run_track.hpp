@@ -16,6 +16,9 @@
 
 namespace stillpoint {
 
+/// How many frames back a method looks.
+[[nodiscard]] int frames_looked_back(const Config& config);
+
 /// How much a RunTrack keeps.
 struct RunTrackOptions {
   int checkpoint_every = 25;  ///< frames between copies of the odometry; doubled when there are too many
@@ -60,9 +63,8 @@ class RunTrack {
   /// Earlier frames that before(index) looks at beside those it processes.
   [[nodiscard]] std::set<int> frames_to_restore(int index) const;
 
-  /// What Odometry::continued_with wants to go on with `config` from frame `index` on.
-  [[nodiscard]] std::vector<PastFrame> frames_before(int index, const Config& config,
-                                                     const ReadFrame& read) const;
+  /// `count` frames before frame `index`, fewer at the start: what Odometry::continued_with wants.
+  [[nodiscard]] std::vector<PastFrame> frames_before(int index, int count, const ReadFrame& read) const;
 
   /// Another run that has this one's frames up to `from`, and goes on with another config from there; from
   /// the first frame on where that cannot be (Odometry::continued_with).

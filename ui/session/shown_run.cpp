@@ -75,8 +75,9 @@ FrameResult ShownRun::process_again(int index, const Config& config) {
     Odometry odometry = before_->second;
     return track_.process(odometry, index, reader());
   }
+  const Odometry& here = before_->second;
   std::optional<Odometry> odometry =
-      before_->second.continued_with(config, track_.frames_before(index, config, reader()));
+      here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
   if (!odometry)
     throw InputError("features.levels and features.scale_factor take effect only when all is run anew");
   return track_.process(*odometry, index, reader());

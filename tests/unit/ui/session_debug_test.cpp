@@ -154,6 +154,8 @@ TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
 
 TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
   config_.run.method = "stillpoint";
+  config_.depth_motion.far_reference = 3;
+  config_.depth_motion.slow_reference = 5;
   RunTrack track(*source_, config_);
   const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
