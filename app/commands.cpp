@@ -6,6 +6,7 @@ void add_commands(CLI::App& app) {
   add_run_command(app);
   add_evaluate_command(app);
   add_benchmark_command(app);
+  add_ablate_command(app);
   add_generate_command(app);
   add_motion_command(app);
   add_snapshot_command(app);
@@ -13,6 +14,7 @@ void add_commands(CLI::App& app) {
   add_report_command(app);
   add_view_command(app);
   add_export_command(app);
+  add_replay_command(app);
   add_config_command(app);
 }
 

@@ -18,6 +18,7 @@ void add_commands(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
+void add_ablate_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);
@@ -25,6 +26,7 @@ void add_figures_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 
 /// Opens the window on the generated demo: what `stillpoint` alone does.

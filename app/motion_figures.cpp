@@ -26,7 +26,7 @@ double share_of(const cv::Mat& mask) {
   return static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(mask.total());
 }
 
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string safe = "\"";
   for (const char letter : text) {
     if (letter == '"') safe += '"';
@@ -99,9 +99,9 @@ std::string motion_csv_row(const std::string& reference, const std::string& targ
   const std::string mask_columns =
       round.mask.empty() ? ",,"
                          : fmt::format("{:.6f},{},{}", round.mask_share, round.regions.size(), largest);
-  return fmt::format("{},{},{},{},{},{},{},{}", quoted(reference), quoted(target), trace.rounds.size(),
+  return fmt::format("{},{},{},{},{},{},{},{}", in_quotes(reference), in_quotes(target), trace.rounds.size(),
                      trace.converged ? 1 : 0, mask_columns, direction_columns(round.forward),
-                     direction_columns(round.backward), quoted(trace.note));
+                     direction_columns(round.backward), in_quotes(trace.note));
 }
 
 nlohmann::json motion_json(const std::string& reference, const std::string& target,

@@ -45,11 +45,21 @@ OpenedPlace open_finished_run(const PlaceArguments& arguments) {
     throw InputError(fmt::format("{}: is a run without frames", arguments.place));
   OpenedPlace opened;
   opened.source = run.source;
+  opened.frames = static_cast<int>(run.recorded->run.records.size());
   opened.config = run.recorded->run.config;
   if (arguments.config.threads > 0) opened.config.run.threads = arguments.config.threads;
   opened.options.recorded = run.recorded;
   opened.options.recorded_baseline = baseline_beside(arguments, *run.recorded);
   opened.options.no_images = opened.problem = run.no_images;
+  return opened;
+}
+
+OpenedPlace open_sequence_at(const std::string& where, const SequenceArguments& source, Config config) {
+  OpenedPlace opened;
+  opened.config = std::move(config);
+  opened.source = source.open(where, opened.config);
+  opened.frames = opened.source->size();
+  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
   return opened;
 }
 
@@ -69,11 +79,14 @@ OpenedPlace open_place(const PlaceArguments& arguments) {
     if (!value.empty())
       throw InputError(
           fmt::format("{}: goes with a finished run's folder, and {} is none", option, arguments.place));
-  OpenedPlace opened;
-  opened.config = arguments.config.config();
-  opened.source = arguments.source.open(arguments.place, opened.config);
-  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
-  return opened;
+  return open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+}
+
+OpenedPlace open_place_as(const std::string& where, const SequenceArguments& source, const Config& config) {
+  if (!is_run_folder(where)) return open_sequence_at(where, source, config);
+  PlaceArguments run;
+  run.place = where;
+  return open_finished_run(run);
 }
 
 }  // namespace stillpoint

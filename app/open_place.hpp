@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/arguments.hpp"
-#include "ui/session/session.hpp"
+#include "ui/session/opened_place.hpp"
 
 namespace stillpoint {
 
@@ -21,16 +21,13 @@ struct PlaceArguments {
   void add_to(CLI::App& command);
 };
 
-/// A sequence or a finished run, ready for a Session.
-struct OpenedPlace {
-  std::shared_ptr<const FrameSource> source;
-  Config config;
-  SessionOptions options;  ///< with the finished run and its baseline in it
-  std::string problem;  ///< what is missing though it could be opened, one sentence; empty when all is well
-};
-
 /// @throws InputError in one sentence for what cannot be opened, and for options that a finished run, which
 /// has its own, does not take
 [[nodiscard]] OpenedPlace open_place(const PlaceArguments& arguments);
+
+/// A finished run with its own config, or a sequence to be run with `config`.
+/// @throws InputError in one sentence for what cannot be opened
+[[nodiscard]] OpenedPlace open_place_as(const std::string& where, const SequenceArguments& source,
+                                        const Config& config);
 
 }  // namespace stillpoint

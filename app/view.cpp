@@ -1,23 +1,22 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <thread>
 
-#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/open_place.hpp"
 #include "app/progress.hpp"
+#include "app/replaying.hpp"
 #include "core/error.hpp"
-#include "core/run/open_run.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/session/session.hpp"
 #include "ui/shell/window.hpp"
+#include "ui/workbench/desk.hpp"
 #include "ui/workbench/settings.hpp"
-#include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {
 namespace {
@@ -26,68 +25,44 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDemo = "generated:walking_static";
 
-using ViewArguments = PlaceArguments;
+struct ViewArguments {
+  PlaceArguments place;
+  std::string layout, record, replay, out = ".";
+};
 
 WindowOptions window_options(const Settings& settings) {
   return {.width = settings.window_size[0], .height = settings.window_size[1], .look = settings.look};
 }
 
-/// The window and what it shows: the one place where sessions come and go.
+/// The window, the desk in it, and what is kept from one time to the next.
 class Viewer {
  public:
   Viewer(const ViewArguments& arguments, const Config& config)
-      : arguments_(arguments),
-        config_(config),
-        settings_path_(settings_path()),
-        settings_(read_settings(settings_path_, names_of(make_panels()), &problem_)),
+      : settings_path_(settings_path()),
+        settings_(read_settings(settings_path_, panel_names(), &problem_)),
         window_(window_options(settings_)),
-        workbench_(make_panels(), host()) {
-    workbench_.set_layout(settings_.layout ? *settings_.layout : default_layout(config.run.method));
-    if (!problem_.empty()) workbench_.say(problem_, true);
-    workbench_.set_recent(settings_.recent);
+        desk_(desk_options(arguments, config)) {
+    if (!problem_.empty()) desk_.workbench().say(problem_, true);
+    if (!arguments.layout.empty())
+      desk_.workbench().set_layout(read_layout(arguments.layout, desk_.workbench().panel_names()));
   }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  /// Opens a sequence; when that fails the one open stays, and the window says why.
-  void open(const std::string& where) {
-    try {
-      if (is_run_folder(where)) {
-        PlaceArguments run;
-        run.place = where;
-        show(open_place(run), where);
-      } else {
-        show(open_sequence_at(where), where);
-      }
-    } catch (const InputError& error) {
-      workbench_.say(error.what(), true);
-    }
-  }
-
-  /// Shows an open sequence or a finished run. @param where it was opened from
-  void show(OpenedPlace place, const std::string& where) {
-    config_ = place.config;
-    session_.reset();
-    std::error_code none;
-    place.options.sidecar = SidecarPlaces{
-        .folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
-        .user_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences"};
-    session_ = std::make_unique<Session>(std::move(place.source), config_, place.options);
-    session_->start([] { Window::wake(); });
-    // What moves shows from the first frame that has another to be compared with.
-    session_->request_frame(config_.motion.reference_gap);
-    if (where == kDemo) session_->request_play(true);
-    window_.set_title(fmt::format("{} - Stillpoint", session_->source().name()));
-    std::error_code ignored;
-    remember(settings_.recent,
-             fs::exists(where, ignored) ? fs::absolute(where).lexically_normal().string() : where);
-    workbench_.set_recent(settings_.recent);
-    workbench_.say(place.problem, !place.options.no_images.empty());
-  }
+  [[nodiscard]] Desk& desk() { return desk_; }
 
   /// The sequence that was open when the window was last closed; empty when none was.
   [[nodiscard]] std::string last_sequence() const {
     return settings_.recent.empty() ? "" : settings_.recent.front();
+  }
+
+  /// Records what is done from now on.
+  void record(const std::string& file) {
+    const auto [width, height] = window_.framebuffer_size();
+    recorder_ = std::make_unique<Recorder>(file, desk_.recording_start({width, height}));
+    window_.canvas().set_listener([this](const InputEvent& event) {
+      recorder_->event(event, window_.canvas().time_s(), recorded_state());
+    });
   }
 
   void run() {
@@ -100,82 +75,90 @@ class Viewer {
     });
     window_.run([this](UiFrame& frame) { draw(frame); });
     save();
+    if (recorder_) recorder_->finish();
     throw_if_interrupted();
   }
 
  private:
-  /// A sequence, to be run with the config as it stands now.
-  [[nodiscard]] OpenedPlace open_sequence_at(const std::string& where) const {
-    OpenedPlace opened;
-    opened.config = config_;
-    opened.source = arguments_.source.open(where, config_);
-    if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
-    return opened;
-  }
-
-  static std::vector<std::string> names_of(const std::vector<std::unique_ptr<Panel>>& panels) {
+  static std::vector<std::string> panel_names() {
     std::vector<std::string> names;
-    for (const auto& panel : panels) names.push_back(panel->name());
+    for (const auto& panel : make_panels()) names.push_back(panel->name());
     return names;
   }
 
-  WorkbenchHost host() {
-    return {.go_to_frame = [this](int frame) { session_->request_frame(frame); },
-            .play = [this](bool play) { session_->request_play(play); },
-            .speed = [this](double fps) { session_->request_speed(fps); },
-            .configure =
-                [this](const Config& config) {
-                  config_ = config;
-                  session_->request_config(config);
-                },
-            .open = [this](const std::string& where) { open(where); },
-            .request = [this](SessionRequest wanted) { session_->request(std::move(wanted)); },
-            .compare = [this](bool compare) { session_->request_comparison(compare); }};
+  DeskOptions desk_options(const ViewArguments& arguments, const Config& config) const {
+    return {.open_place = [source = arguments.place.source](
+                              const std::string& where,
+                              const Config& wanted) { return open_place_as(where, source, wanted); },
+            .config = config,
+            .settings = settings_,
+            .marks_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences",
+            .plays_when_opened = kDemo,
+            .wake = [] { Window::wake(); }};
+  }
+
+  [[nodiscard]] RecordedState recorded_state() const {
+    const auto view = desk_.view();
+    return {view ? view->current->index : 0, view && view->playing, desk_.idle()};
   }
 
   void draw(UiFrame& frame) {
-    for (const std::string& path : frame.dropped_files) open(path);
-    const auto view = session_ ? session_->view() : nullptr;
-    workbench_.draw(frame, view.get());
-    settings_.look = frame.wanted_look;
+    desk_.draw(frame);
+    if (const std::string title = desk_.title(); title != title_) window_.set_title(title_ = title);
+    if (recorder_) {
+      recorder_->size(static_cast<int>(frame.size.x), static_cast<int>(frame.size.y));
+      recorder_->state(recorded_state());
+      if (!recorder_->intact() && !std::exchange(recording_failed_, true))
+        desk_.workbench().say("The recording cannot be written on (the disk is full?).", true);
+    }
     if (frame.close_requested || stop_requested()) frame.quit = true;
   }
 
   void save() {
-    settings_.layout = workbench_.layout();
+    settings_ = desk_.settings();
     const auto placement = window_.placement();
     settings_.window_size = {placement[2], placement[3]};
     write_settings(settings_path_, settings_);
   }
 
-  ViewArguments arguments_;
-  Config config_;
-  std::string problem_;
+  std::string problem_, title_;
   fs::path settings_path_;
   Settings settings_;
   Window window_;
-  Workbench workbench_;
-  std::unique_ptr<Session> session_;
+  Desk desk_;
+  std::unique_ptr<Recorder> recorder_;
+  bool recording_failed_ = false;
 };
 
 /// Begins with the sequence named, else with the one open last, else with the start page.
 void view(const ViewArguments& arguments) {
   // What was named and cannot be opened is told before there is a window.
   std::optional<OpenedPlace> place;
-  if (!arguments.place.empty()) place = open_place(arguments);
-  Viewer viewer(arguments, place ? place->config : arguments.config.config());
+  if (!arguments.place.place.empty()) place = open_place(arguments.place);
+  Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
-    viewer.show(std::move(*place), arguments.place);
+    viewer.desk().show(std::move(*place), arguments.place.place);
   else if (const std::string last = viewer.last_sequence(); !last.empty())
-    viewer.open(last);
+    viewer.desk().open(last);
+  if (!arguments.record.empty()) viewer.record(arguments.record);
   viewer.run();
+}
+
+/// Plays a recording in a window, which forgets it all afterwards.
+void view_replay(const ViewArguments& arguments) {
+  ReplayPlan plan(arguments.replay, arguments.place.place, arguments.place.source, arguments.place.config);
+  plan.prepare_out(arguments.out, true);
+  Window window(
+      WindowOptions{.width = plan.start().size[0], .height = plan.start().size[1], .look = plan.look()});
+  ReplayShell shell = replay_shell(window);
+  plan.play(shell, [] { Window::wake(); });
 }
 
 }  // namespace
 
 void view_demo() {
   ViewArguments arguments;
-  arguments.place = kDemo;
+  arguments.place.place = kDemo;
   view(arguments);
 }
 
@@ -184,12 +167,23 @@ void add_view_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("view", "Opens the workbench in a window, on a sequence or as it was left");
   command->add_option(
-      "SEQUENCE", arguments->place,
+      "SEQUENCE", arguments->place.place,
       "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder");
-  arguments->add_to(*command);
-  arguments->source.add_to(*command);
-  arguments->config.add_to(*command, true);
-  command->callback([arguments] { view(*arguments); });
+  arguments->place.add_to(*command);
+  command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
+  const auto* record =
+      command->add_option("--record", arguments->record, "Writes what is done in the window to this file");
+  command->add_option("--replay", arguments->replay, "Plays a file of --record in the window")
+      ->excludes(const_cast<CLI::Option*>(record));
+  command->add_option("--out", arguments->out, "Folder for a replay's screenshots")->capture_default_str();
+  arguments->place.source.add_to(*command);
+  arguments->place.config.add_to(*command, true);
+  command->callback([arguments] {
+    if (arguments->replay.empty())
+      view(*arguments);
+    else
+      view_replay(*arguments);
+  });
 }
 
 }  // namespace stillpoint

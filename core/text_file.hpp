@@ -26,6 +26,6 @@ struct TextLine {
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 /// A foreign text fit for an error message: in quotes, clipped, and without control characters.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace stillpoint

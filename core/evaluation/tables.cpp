@@ -70,11 +70,6 @@ struct GainColumn {
   }
 };
 
-void replace_all(std::string& text, std::string_view what, std::string_view with) {
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
-    text.replace(at, what.size(), with);
-}
-
 }  // namespace
 
 std::string to_markdown(const Table& table) {
@@ -110,7 +105,8 @@ std::string to_csv(const Table& table) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       std::string cell = cells[i];
       if (cell.find_first_of(",\"\r\n") != std::string::npos) {
-        replace_all(cell, "\"", "\"\"");
+        for (auto at = cell.find('"'); at != std::string::npos; at = cell.find('"', at + 2))
+          cell.insert(at, 1, '"');
         cell = "\"" + cell + "\"";
       }
       text += (i == 0 ? "" : ",") + cell;
@@ -142,7 +138,9 @@ std::optional<PublishedRow> published_row(std::string_view sequence) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   for (const std::string_view prefix : {"generated:", "rgbd_dataset_"})
     if (name.starts_with(prefix)) name.erase(0, prefix.size());
-  replace_all(name, "freiburg", "fr");
+  constexpr std::string_view kLong = "freiburg", kShort = "fr";
+  if (const auto at = name.find(kLong); at != std::string::npos)
+    name = name.substr(0, at).append(kShort).append(name, at + kLong.size());
   for (const PublishedRow& row : published_table())
     if (name == row.sequence || name == row.sequence.substr(row.sequence.find('_') + 1)) return row;
   return std::nullopt;

@@ -46,7 +46,7 @@ std::array<double, 8> read_numbers(const std::string& path, const TextLine& line
     const auto number = parse_number(columns[i]);
     if (!number || !std::isfinite(*number))
       throw InputError(fmt::format("{}:{}: found {} in column {}, expected a finite number ({})", path,
-                                   line.number, quoted(columns[i]), i + 1, kColumns));
+                                   line.number, in_quotes(columns[i]), i + 1, kColumns));
     numbers[i] = *number;
   }
   return numbers;

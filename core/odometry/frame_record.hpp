@@ -96,6 +96,9 @@ struct FrameRecord {
          bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
   int bundle_iterations = 0;
 
+  std::optional<Pose>
+      prior_pose;  ///< camera_from_world under which method `stillpoint` remembered what moves
+  std::optional<Pose> motion_pose;  ///< … and under which it then found it
   RemovalCheck removal_check;
   StageTimes ms;
   std::vector<FeatureRecord> features;

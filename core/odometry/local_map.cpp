@@ -64,6 +64,12 @@ void LocalMap::remove_point(int point) {
   points_.erase(point);
 }
 
+void LocalMap::remove_moving_point(int point) {
+  if (moved_.size() >= kMovedKept) moved_.erase(moved_.begin());
+  moved_.push_back({point, points_.at(point).position});
+  remove_point(point);
+}
+
 void LocalMap::merge_points(int from, int into) {
   if (from == into) return;
   const std::vector<Observation> moved = points_.at(from).observations;

@@ -52,6 +52,12 @@ struct RetiredKeyframe {
   Pose camera_from_anchor = Pose::Identity();
 };
 
+/// A point that left the map because it was found to move: for display only.
+struct MovedPoint {
+  int id = kNone;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, where it was last held to be
+};
+
 /// Keyframes and map points, and who sees what. Plain values throughout: a copy is a checkpoint.
 class LocalMap {
  public:
@@ -66,6 +72,12 @@ class LocalMap {
   /// Takes an observation away; a point left with none goes with it.
   void remove_observation(int point, int keyframe);
   void remove_point(int point);
+
+  /// Removes a point that moves, and remembers where it was.
+  void remove_moving_point(int point);
+  /// The last of these, at most kMovedKept, oldest first.
+  [[nodiscard]] const std::vector<MovedPoint>& moved_points() const { return moved_; }
+  static constexpr std::size_t kMovedKept = 1000;
 
   /// Moves every observation of `from` to `into` where that keyframe does not see it yet, and removes `from`.
   void merge_points(int from, int into);
@@ -102,6 +114,7 @@ class LocalMap {
   std::map<int, Keyframe> keyframes_;
   std::unordered_map<int, MapPoint> points_;  // never iterated where order matters
   std::vector<RetiredKeyframe> retired_;
+  std::vector<MovedPoint> moved_;
   int next_keyframe_ = 0, next_point_ = 0;
 };
 

@@ -84,7 +84,7 @@ std::vector<Token> tokens_of(std::string_view text) {
       for (const std::string_view known : {"||", "&&", "<=", ">=", "==", "!="})
         if (two == known) token.text = two;
       if (token.text.size() == 1 && std::string_view("<>!+-*/(),%").find(c) == std::string_view::npos)
-        fail(token.column, fmt::format("{} is not understood{}", quoted(token.text),
+        fail(token.column, fmt::format("{} is not understood{}", in_quotes(token.text),
                                        c == '=' ? "; equal is written ==" : ""));
     }
     tokens.push_back(token);
@@ -125,7 +125,7 @@ FigureUnit common_unit(const Node& a, const Node& b, const Token& between) {
   if (a.literal) return b.unit;
   if (b.literal) return a.unit;
   fail(between.column, fmt::format("left of {} stands a value that is {}, right of it one that is {}",
-                                   quoted(between.text), unit_text(a), unit_text(b)));
+                                   in_quotes(between.text), unit_text(a), unit_text(b)));
 }
 
 // ---- Values ----
@@ -210,7 +210,7 @@ class Parser {
   [[noreturn]] void unexpected(const std::string& wanted) const {
     fail(now().column, now().kind == Kind::end
                            ? fmt::format("it ends where {} is expected", wanted)
-                           : fmt::format("{} stands where {} is expected", quoted(now().text), wanted));
+                           : fmt::format("{} stands where {} is expected", in_quotes(now().text), wanted));
   }
   void expect(std::string_view text, const std::string& meaning) {
     if (!take(text)) unexpected(meaning);
@@ -326,7 +326,7 @@ class Parser {
     }
     if (literal.literal && now().kind == Kind::name && !is("and") && !is("or"))
       fail(now().column,
-           fmt::format("{} is no unit; there are m, cm, mm, deg, px, ms, s and %", quoted(now().text)));
+           fmt::format("{} is no unit; there are m, cm, mm, deg, px, ms, s and %", in_quotes(now().text)));
     literal.value = [value](const FrameFigures&, int) { return value; };
     return std::make_shared<const Node>(std::move(literal));
   }
@@ -347,7 +347,7 @@ class Parser {
   [[noreturn]] static void unknown(const Token& token, const char* what,
                                    const std::vector<std::string_view>& names) {
     const std::string_view near = nearest_name(token.text, names);
-    fail(token.column, fmt::format("there is no {} {}{}", what, quoted(token.text),
+    fail(token.column, fmt::format("there is no {} {}{}", what, in_quotes(token.text),
                                    near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
 

@@ -50,6 +50,13 @@ std::vector<SavedPoint> saved_points(const LocalMap& map) {
   return saved;
 }
 
+std::vector<SavedPoint> moved_points(const LocalMap& map) {
+  std::vector<SavedPoint> points;
+  for (const MovedPoint& point : map.moved_points())
+    points.push_back({.id = point.id, .position = point.position, .observations = 0, .moved = true});
+  return points;
+}
+
 Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records) {
   Trajectory trajectory;
   for (const FrameRecord& record : records) {
@@ -95,6 +102,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.trajectory = trajectory_so_far(odometry.map(), result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
+  result.moved = moved_points(odometry.map());
   return result;
 }
 

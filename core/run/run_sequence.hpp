@@ -18,6 +18,7 @@ struct SavedPoint {
   int id = kNone;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, world
   int observations = 0;                                ///< keyframes that see it
+  bool moved = false;                                  ///< it left the map because it was found to move
 };
 
 /// A keyframe as a run leaves it.
@@ -32,6 +33,9 @@ struct SavedKeyframe {
 /// All points of a map, by id.
 [[nodiscard]] std::vector<SavedPoint> saved_points(const LocalMap& map);
 
+/// The points that left a map because they moved, oldest first.
+[[nodiscard]] std::vector<SavedPoint> moved_points(const LocalMap& map);
+
 /// The estimated poses among `records`, hung on their reference keyframes as these stand in the map now.
 [[nodiscard]] Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records);
 
@@ -44,6 +48,7 @@ struct RunResult {
   Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
+  std::vector<SavedPoint> moved;  ///< those that left the map because they moved, oldest first
   int frames_in_sequence = 0;
   double orb_unit_ms = 0.0;  ///< the unit of speed, median over the frames; 0 when it was not measured
   bool interrupted = false;  ///< stopped before the last frame
@@ -59,7 +64,7 @@ struct RunOptions {
   bool keep_features = false;  ///< leave each record its features: 25 kB a frame, for who shows them
   bool measure_orb_unit =
       false;  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
-  std::function<void(const FrameResult&)> on_frame;  ///< called after each frame, from the calling thread
+  std::function<void(const FrameResult&)> on_frame{};  ///< called after each frame, from the calling thread
 };
 
 /// Runs the configured method over a sequence; frames are read ahead on other threads.

@@ -16,7 +16,7 @@ double read_stamp(const std::string& path, int line, std::string_view text, cons
   const auto stamp = parse_number(text);
   if (!stamp || !std::isfinite(*stamp))
     throw InputError(
-        fmt::format("{}:{}: found {} as a timestamp, expected {}", path, line, quoted(text), expected));
+        fmt::format("{}:{}: found {} as a timestamp, expected {}", path, line, in_quotes(text), expected));
   return *stamp;
 }
 
@@ -57,7 +57,7 @@ std::vector<ListEntry> read_list(const std::string& path, std::vector<std::strin
     const auto columns = split_columns(line.text);
     if (columns.size() < 2)
       throw InputError(
-          fmt::format("{}:{}: found {}, expected {}", path, line.number, quoted(line.text), kExpected));
+          fmt::format("{}:{}: found {}, expected {}", path, line.number, in_quotes(line.text), kExpected));
     const double stamp = read_stamp(path, line.number, columns[0], kExpected);
     const auto name_at = static_cast<std::size_t>(columns[1].data() - line.text.data());
     entries.push_back({stamp, line.text.substr(name_at), line.number});
@@ -75,7 +75,7 @@ std::vector<ListedPair> read_associations(const std::string& path, std::vector<s
     const auto columns = split_columns(line.text);
     if (columns.size() != 4)
       throw InputError(fmt::format("{}:{}: found {} columns in {}, expected {}", path, line.number,
-                                   columns.size(), quoted(line.text), kExpected));
+                                   columns.size(), in_quotes(line.text), kExpected));
     ListEntry first{read_stamp(path, line.number, columns[0], kExpected), std::string(columns[1]),
                     line.number};
     ListEntry second{read_stamp(path, line.number, columns[2], kExpected), std::string(columns[3]),

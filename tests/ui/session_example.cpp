@@ -1,5 +1,7 @@
 #include "tests/ui/session_example.hpp"
 
+#include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/detect_motion.hpp"
@@ -85,32 +87,70 @@ cv::Mat handmade_picture(int disc_x) {
   return picture;
 }
 
+/// Depth that falls from 3 m on the left to 1.5 m on the right, the disc at 1.2 m, a hole without any.
+cv::Mat handmade_depth(int disc_x) {
+  cv::Mat depth(240, 320, CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y)
+    for (int x = 0; x < depth.cols; ++x) depth.at<float>(y, x) = 3.0F - 1.5F * static_cast<float>(x) / 320.0F;
+  cv::circle(depth, {disc_x, 120}, 45, cv::Scalar(1.2), cv::FILLED);
+  cv::rectangle(depth, {20, 20, 40, 30}, cv::Scalar(0.0), cv::FILLED);
+  return depth;
+}
+
 Frame handmade_frame(int index) {
   Frame frame;
   frame.index = index;
   frame.timestamp = index / 30.0;
   frame.colour = handmade_picture(100 + 4 * index);
+  frame.depth = handmade_depth(100 + 4 * index);
   cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
   return frame;
 }
 
-FrameRecord handmade_record(int index) {
+/// A quarter of a circle about a table; `drift_m` away from it at the end.
+Pose handmade_pose(int index, double drift_m) {
+  const double angle = 1.6 * index / 40.0, share = index / 40.0;
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(1.5 * std::cos(angle), 1.5 * std::sin(angle), 1.2) +
+                       drift_m * Eigen::Vector3d(share * share, 0.4 * std::sin(5.0 * share), 0.3 * share);
+  const Eigen::Vector3d forward = (Eigen::Vector3d(0.0, 0.0, 0.8) - pose.translation()).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d world_from_camera;
+  world_from_camera << right, forward.cross(right), forward;
+  pose.linear() = world_from_camera;
+  return pose;
+}
+
+FrameRecord handmade_record(int index, double drift_m) {
   FrameRecord record;
   record.index = index;
   record.timestamp = index / 30.0;
   record.status = index == 0    ? FrameStatus::initialised
                   : index == 18 ? FrameStatus::lost
                                 : FrameStatus::tracked;
+  if (index == 18) record.note = "too few inliers.";
   record.estimated = index != 18;
+  record.world_from_camera = handmade_pose(index, drift_m);
   record.keyframe = index % 9 == 0;
   record.mask_share = 0.08 + 0.004 * (index % 7);
   record.inliers = 260 - 6 * (index % 11);
   record.features_found = 300;
   record.features_removed = 60;
   record.features_kept = 240;
+  record.map_points = 900 + 5 * index;
+  record.map_keyframes = 1 + index / 9;
+  record.ms = {.motion = 8.0 + index % 5,
+               .features = 6.0 + index % 3,
+               .matching = 2.0,
+               .pose = 1.5,
+               .mapping = record.keyframe ? 5.0 : 0.0,
+               .bundle = record.keyframe ? 9.0 : 0.0,
+               .total = 14.0 + index % 5 + (record.keyframe ? 14.0 : 0.0)};
   for (int i = 0; i < record.features_found; ++i) {
     FeatureRecord feature;
     feature.pixel = {static_cast<float>(10 + 37 * i % 300), static_cast<float>(8 + 53 * i % 220)};
+    feature.depth = 1.5F + 0.005F * static_cast<float>(i);
+    feature.residual_px = 0.1F * static_cast<float>(i % 20);
     feature.fate = i % 5 == 0 ? FeatureFate::removed : static_cast<FeatureFate>(i % 3);
     record.features.push_back(feature);
   }
@@ -120,10 +160,12 @@ FrameRecord handmade_record(int index) {
 std::shared_ptr<RunView> handmade_run(const std::string& name, double millimetres) {
   auto run = std::make_shared<RunView>();
   run->name = name;
+  const double drift_m = 0.01 * millimetres;
   for (int i = 0; i < 40; ++i) {
-    run->records.push_back(handmade_record(i));
+    run->records.push_back(handmade_record(i, drift_m));
     const double time = i / 30.0, size = 0.001 * millimetres * (2 + i * 5 % 8);
-    run->evaluation.matched.push_back({time, time, Pose::Identity(), Pose::Identity()});
+    if (i != 18) run->trajectory.push_back({time, handmade_pose(i, drift_m)});
+    run->evaluation.matched.push_back({time, time, handmade_pose(i, drift_m), handmade_pose(i, 0.0)});
     run->evaluation.ate.errors.push_back({time, size, 0.1});
     if (i > 0) run->evaluation.rpe_frame.errors.push_back({time - 1.0 / 30.0, time, 0.3 * size, 0.1});
     if (i > 14) run->evaluation.rpe_time.errors.push_back({time - 0.5, time, size, 0.2});
@@ -137,35 +179,105 @@ std::shared_ptr<RunView> handmade_run(const std::string& name, double millimetre
   return run;
 }
 
+/// One direction: the picture moved by four pixels, what differs, and the tracks that told so.
+DirectionTrace handmade_direction(const cv::Mat& from, const cv::Mat& to) {
+  DirectionTrace direction;
+  direction.homography.valid = true;
+  direction.homography.matrix = cv::Matx33d(1, 0.01, -1, 0, 1, 0.5, 0, 0, 1);
+  direction.homography.ransac_inliers = 80;
+  direction.homography.refined_error_px = 0.31;
+  direction.compensated = from.clone();
+  direction.valid = cv::Mat(240, 320, CV_8UC1, cv::Scalar(255));
+  direction.valid.colRange(0, 6) = 0;
+  cv::absdiff(from, to, direction.difference);
+  direction.difference.setTo(0, direction.valid == 0);
+  direction.threshold = 31;
+  direction.raw_mask = direction.difference > 31;
+  cv::dilate(direction.raw_mask, direction.mask, cv::Mat::ones(5, 5, CV_8UC1));
+  for (int i = 0; i < 120; ++i) {
+    const cv::Point2f at{static_cast<float>(12 + 53 * i % 296), static_cast<float>(10 + 37 * i % 220)};
+    const bool moves = cv::norm(at - cv::Point2f(190, 120)) < 45.0;
+    direction.tracks.push_back({at, at + (moves ? cv::Point2f(4, 0) : cv::Point2f(-1, 0.5F)),
+                                static_cast<float>(i % 9), i % 17 == 0, !moves});
+  }
+  return direction;
+}
+
+/// Method `stillpoint`'s stages, small images of a disc that moves.
+DepthMotionTrace handmade_depth_motion() {
+  DepthMotionTrace trace;
+  const cv::Size small{160, 120};
+  cv::Mat disc(small, CV_32FC1, cv::Scalar(-1.0));
+  cv::circle(disc, {96, 60}, 22, cv::Scalar(4.0), cv::FILLED);
+  for (int i = 0; i < 2; ++i) {
+    ReferenceEvidence evidence;
+    evidence.depth_residual = disc * (0.6 + 0.2 * i);
+    evidence.depth_residual(cv::Rect(10, 10, 20, 15)) = std::numeric_limits<float>::quiet_NaN();
+    evidence.intensity_residual = disc * 6.0;
+    evidence.log_odds = disc * 0.8;
+    evidence.intensity_sigma = 4.0;
+    trace.references.push_back(evidence);
+  }
+  trace.prior = disc * 0.5;
+  trace.log_odds = disc * 1.3;
+  trace.labels = cv::Mat(small, CV_32SC1, cv::Scalar(0));
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) trace.labels.at<int>(y, x) = x / 20 + 8 * (y / 20);
+  for (int i = 0; i < 48; ++i) {
+    const cv::Point2f centre{static_cast<float>(10 + 20 * (i % 8)), static_cast<float>(10 + 20 * (i / 8))};
+    const bool moving = cv::norm(centre - cv::Point2f(96, 60)) < 26.0;
+    trace.segments.push_back({centre, 2.0F, 400, moving ? 2.1F : -0.8F, moving ? 3.0F : -1.2F, moving});
+  }
+  trace.small_mask = disc > 0.0;
+  trace.mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  cv::circle(trace.mask, {192, 120}, 46, 255, cv::FILLED);
+  trace.regions = {{{146, 74, 92, 92}, {192, 120}, 6650}};
+  trace.mask_share = 6650.0 / (320.0 * 240.0);
+  return trace;
+}
+
 }  // namespace
 
 SessionView handmade_example() {
   SessionView view;
-  auto run = handmade_run("paper", 1.0);
+  auto run = handmade_run("stillpoint", 1.0);
   auto current = std::make_shared<FrameView>();
   current->index = 24;
   current->frame = handmade_frame(24);
   current->reference = handmade_frame(23);
   MotionRound round;
-  for (DirectionTrace* direction : {&round.forward, &round.backward}) {
-    direction->homography.valid = true;
-    direction->threshold = 31;
-    direction->raw_mask = direction->mask = cv::Mat::zeros(240, 320, CV_8UC1);
-  }
+  round.forward = handmade_direction(current->reference.gray, current->frame.gray);
+  round.backward = handmade_direction(current->frame.gray, current->reference.gray);
   round.mask = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(round.mask, {190, 110}, 40, 255, cv::FILLED);
   cv::rectangle(round.mask, {30, 180, 50, 24}, 255, cv::FILLED);
   round.backward_mask_in_target = round.mask;
+  round.labels = cv::Mat::zeros(240, 320, CV_32SC1);
+  round.labels.setTo(1, round.mask);
+  round.labels(cv::Rect(30, 180, 50, 24)) = 2;
   round.regions = {{{150, 70, 81, 81}, {190, 110}, 5025}, {{30, 180, 50, 24}, {55, 192}, 1200}};
+  round.mask_share = 6225.0 / (320.0 * 240.0);
   current->motion.rounds.push_back(round);
-  current->mask = round.mask;
+  current->depth_motion = handmade_depth_motion();
+  current->mask = current->depth_motion.mask;
   current->truth.moving = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(current->truth.moving, {196, 120}, 45, 255, cv::FILLED);
   current->record = &run->records[24];
   view.title = "by hand";
+  view.camera.width = 320;
+  view.camera.height = 240;
+  view.camera.fx = view.camera.fy = 260.0;
+  view.camera.cx = 159.5;
+  view.camera.cy = 119.5;
+  view.config.run.method = "stillpoint";
   view.frame_count = 60;
   view.processed = 40;
   view.current = current;
+  for (int i = 0; i < 60; ++i) view.ground_truth.push_back({i / 30.0, handmade_pose(i, 0.0)});
+  for (int i = 0; i < 40; i += 9) view.keyframes.push_back({i / 9, i, {i / 30.0, handmade_pose(i, 0.01)}});
+  for (int i = 0; i < 400; ++i)
+    view.map_points.push_back(
+        {i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
   view.run = run;
   view.baseline = handmade_run("none", 4.0);
   view.revision = 1;

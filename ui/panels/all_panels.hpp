@@ -23,6 +23,7 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_stages_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_feature_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_depth_motion_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_colour_motion_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_trajectory_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_errors_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timeline_panel(Shared shared);
@@ -33,5 +34,6 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_compare_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_removal_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_inspector_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_log_panel(Shared shared);
 
 }  // namespace stillpoint

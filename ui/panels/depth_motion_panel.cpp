@@ -10,17 +10,23 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStages = 6;
+constexpr int kStages = 7;
 constexpr std::array<const char*, kStages> kNames{
-    "Depth residual", "Brightness residual", "Memory", "All evidence", "Segments", "Mask"};
+    "Depth residual", "Brightness residual", "Patch shifts", "Memory", "All evidence", "Segments", "Mask"};
 
 /// Method `stillpoint`'s stages: what depth and brightness say against an earlier frame, what is remembered,
 /// and what becomes of it on surfaces.
 class DepthMotionPanel final : public NamedPanel {
  public:
-  explicit DepthMotionPanel(Shared shared) : NamedPanel("depth_motion", "Depth motion", std::move(shared)) {}
+  explicit DepthMotionPanel(Shared shared)
+      : NamedPanel("depth_motion", "Depth motion", shared), colour_(make_colour_motion_panel(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    // What is judged in colour instead stands where one looks for it.
+    if (!session.current->colour_motion.points.empty()) {
+      colour_->draw(frame, session, actions);
+      return;
+    }
     const std::string missing = missing_stages(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -28,11 +34,15 @@ class DepthMotionPanel final : public NamedPanel {
     }
     const DepthMotionTrace& trace = session.current->depth_motion;
     Controls controls(frame);
-    controls.choice("stage", {"All", "Depth", "Brightness", "Memory", "Log-odds", "Segments", "Mask"},
-                    shown_);
+    controls.choice(
+        "stage", {"All", "Depth", "Brightness", "Shifts", "Memory", "Log-odds", "Segments", "Mask"}, shown_);
     const int references = static_cast<int>(trace.references.size());
     reference_ = std::clamp(reference_, 0, references - 1);
-    if (references > 1) controls.choice("reference", {"Near reference", "Far reference"}, reference_);
+    if (references > 1) {
+      std::vector<std::string> names{"Near reference", "Far reference", "Farthest reference"};
+      names.resize(static_cast<std::size_t>(std::min(references, 3)));
+      controls.choice("reference", names, reference_);
+    }
 
     const Footer footer = footer_of(frame, session, trace);
     const ImVec2 start = ImGui::GetCursorScreenPos();
@@ -59,7 +69,7 @@ class DepthMotionPanel final : public NamedPanel {
   }
 
  private:
-  enum Stage { kDepth, kBrightness, kMemory, kLogOdds, kSegments, kMask };
+  enum Stage { kDepth, kBrightness, kShifts, kMemory, kLogOdds, kSegments, kMask };
 
   [[nodiscard]] static std::string missing_stages(const SessionView& session) {
     const FrameView& view = *session.current;
@@ -118,6 +128,8 @@ class DepthMotionPanel final : public NamedPanel {
         return reference.depth_residual;
       case kBrightness:
         return reference.intensity_residual;
+      case kShifts:
+        return trace.slow;
       case kMemory:
         return trace.prior;
       case kLogOdds:
@@ -234,6 +246,7 @@ class DepthMotionPanel final : public NamedPanel {
     return footer;
   }
 
+  std::unique_ptr<Panel> colour_;  // of frames without depth
   int shown_ = 0, reference_ = 0;
   std::array<FrameTexture, kStages> textures_;
   FrameTexture segments_, ground_;

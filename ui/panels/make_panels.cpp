@@ -17,6 +17,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_feature_panel(shared));
   panels.push_back(make_stages_panel(shared));
   panels.push_back(make_depth_motion_panel(shared));
+  panels.push_back(make_colour_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
   panels.push_back(make_timeline_panel(shared));
@@ -27,6 +28,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_timings_panel(shared));
   panels.push_back(make_parameters_panel(shared));
   panels.push_back(make_inspector_panel(shared));
+  panels.push_back(make_log_panel(shared));
   return panels;
 }
 

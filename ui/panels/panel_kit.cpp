@@ -1,8 +1,13 @@
 #include "ui/panels/panel_kit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
+#include "ui/panels/panel_choices.hpp"
 #include "ui/plot/plot_axis.hpp"
 
 namespace stillpoint {
@@ -10,6 +15,7 @@ namespace {
 
 constexpr float kSliderWidth = 112.0F;  // design px
 constexpr float kBarWidth = 12.0F;
+constexpr const char* kRoundId = "round";
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
   const ImFont* font = frame.fonts.small;
@@ -59,9 +65,23 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   float width = 0.0F;
   for (const std::string& name : names) width += width_of(name) + gap;
   place(width - gap);
+  const auto shown = [&] {
+    const bool any = chosen >= 0 && chosen < static_cast<int>(names.size());
+    return any ? names[static_cast<std::size_t>(chosen)] : std::string();
+  };
   const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   float right = ImGui::GetCursorScreenPos().x;
   bool changed = false;
+  // Which round is shown is a matter of the frame, not of taste.
+  const bool kept = frame_.choices != nullptr && std::string_view(id) != kRoundId;
+  if (kept) {
+    const auto wanted = frame_.choices->take(id, shown());
+    const auto found = wanted ? std::find(names.begin(), names.end(), *wanted) : names.end();
+    if (found != names.end()) {
+      chosen = static_cast<int>(found - names.begin());
+      changed = true;
+    }
+  }
   ImGui::PushID(id);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
@@ -88,6 +108,7 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   }
   ImGui::PopStyleVar();
   ImGui::PopID();
+  if (kept) frame_.choices->note(id, shown());
   right_ = right - gap;
   return changed;
 }
@@ -95,7 +116,15 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
 bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
   if (!frame_.controls) return false;
   place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
-  const bool changed = ImGui::Checkbox(label, &on);
+  bool changed = false;
+  if (frame_.choices != nullptr) {
+    if (const auto wanted = frame_.choices->take(label, on ? "on" : "off")) {
+      on = *wanted == "on";
+      changed = true;
+    }
+  }
+  changed = ImGui::Checkbox(label, &on) || changed;
+  if (frame_.choices != nullptr) frame_.choices->note(label, on ? "on" : "off");
   tooltip_of_last(tooltip);
   return changed;
 }
@@ -105,7 +134,17 @@ bool Controls::slider(const char* label, float& value, float low, float high, co
   const float name = text_width(label);
   place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
   ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
-  return ImGui::SliderFloat(label, &value, low, high, format);
+  bool changed = false;
+  const auto words = [&] { return fmt::format("{:.4g}", value); };
+  if (frame_.choices != nullptr) {
+    const auto wanted = frame_.choices->take(label, words());
+    const float number = wanted ? std::strtof(wanted->c_str(), nullptr) : value;
+    changed = wanted && std::isfinite(number);
+    if (changed) value = std::clamp(number, low, high);
+  }
+  changed = ImGui::SliderFloat(label, &value, low, high, format) || changed;
+  if (frame_.choices != nullptr) frame_.choices->note(label, words());
+  return changed;
 }
 
 void Controls::round(int rounds, int& chosen) {
@@ -113,7 +152,7 @@ void Controls::round(int rounds, int& chosen) {
   std::vector<std::string> names{"Round 1"};
   for (int i = 2; i <= rounds; ++i) names.push_back(std::to_string(i));
   int shown = chosen < 0 ? rounds - 1 : std::min(chosen, rounds - 1);
-  if (choice("round", names, shown, "Each round leaves out what the one before took for moving"))
+  if (choice(kRoundId, names, shown, "Each round leaves out what the one before took for moving"))
     chosen = shown == rounds - 1 ? -1 : shown;
 }
 

@@ -30,6 +30,8 @@ class TimelinePanel final : public NamedPanel {
       draw_absent(frame, "No frame has been processed yet.");
       return;
     }
+    if (title_ != session.title) range_.reset();
+    title_ = session.title;
     model_.update(session, lanes_);
     update_worst(session);
     if (ImGui::GetContentRegionAvail().y > kRoomForControls * frame.scale)
@@ -89,11 +91,15 @@ class TimelinePanel final : public NamedPanel {
     }
     const std::vector<int> hurt = hurt_frames(session.debug);
     if (!hurt.empty()) jump("Next hurt", "Next frame that removal made worse (J)", next_in(hurt, here));
-    const bool marked = bookmark_at(session.debug, here) != nullptr;
-    if (controls.button(icons::kBookmark,
-                        marked ? "Take the bookmark off this frame" : "Bookmark this frame (B)"))
-      actions.requests.push_back(request::Bookmarks{marked ? without_bookmark(session.debug.bookmarks, here)
-                                                           : with_bookmark(session.debug.bookmarks, here)});
+    const Bookmark* bookmark = bookmark_at(session.debug, here);
+    // A note is not thrown away by a click; the bookmarks panel deletes it.
+    ImGui::BeginDisabled(bookmark != nullptr && !bookmark->note.empty());
+    if (controls.button(icons::kBookmark, bookmark != nullptr ? "Take the bookmark off this frame (B)"
+                                                              : "Bookmark this frame (B)"))
+      actions.requests.push_back(
+          request::Bookmarks{bookmark != nullptr ? without_bookmark(session.debug.bookmarks, here)
+                                                 : with_bookmark(session.debug.bookmarks, here)});
+    ImGui::EndDisabled();
     if (controls.button("Lanes", "Which figures are shown")) ImGui::OpenPopup("which lanes");
     draw_lane_choice();
     if (session.debug.span) draw_span_controls(controls, session, actions);
@@ -265,6 +271,7 @@ class TimelinePanel final : public NamedPanel {
   std::optional<LaneFigure> worst_by_;
   std::tuple<const RunView*, std::uint64_t, std::size_t, LaneFigure> worst_key_{};
   std::vector<int> worst_;
+  std::string title_;               // of the sequence shown last
   std::optional<AxisRange> range_;  // frames; none shows all
   std::optional<int> hovered_;
   SpanDrag drag_;

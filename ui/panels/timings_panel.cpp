@@ -62,6 +62,12 @@ class TimingsPanel final : public NamedPanel {
     footer.caption =
         "Wall time. Motion and features run beside each other where threads allow, so stages may add up to "
         "more than the whole.";
+    if (frame.pace != nullptr && frame.pace->busy_frames > 0)
+      footer.caption += fmt::format(
+          " The interface: {:.0f} ms a frame; beside work at the longest {:.0f} ms, {} of {} frames over "
+          "{:.0f} ms.",
+          frame.pace->mean_ms, frame.pace->longest_busy_ms, frame.pace->busy_over_limit,
+          frame.pace->busy_frames, UiPace::kLimitMs);
     // In a low panel the plot alone is shown, and names the stages itself.
     const bool has_table = room.y > table + kRoomForPlot * frame.scale;
     const float below = footer.height(frame) + ImGui::GetStyle().ItemSpacing.y * (has_table ? 2.0F : 1.0F) +
@@ -108,7 +114,7 @@ class TimingsPanel final : public NamedPanel {
       plot.series.push_back(
           {named ? kStages[i].name : "", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
     plot.series.push_back({"whole frame", index_, total_, frame.theme.text, SeriesStyle::kSteps, 1.5F});
-    plot.levels.push_back({kFrameTime, "30 Hz", role_colour(Role::kWarning, frame.theme.name)});
+    plot.levels.push_back({kFrameTime, "30 frames a second", role_colour(Role::kWarning, frame.theme.name)});
     plot.cursor_x = session.current->index + 0.5;
     const double first = index_.front(), last = index_.back();
     plot.x_limits = AxisRange{first, last + 1.0};

@@ -9,6 +9,9 @@ namespace {
 constexpr float kGridWidth = 1.0F, kAxesWidth = 2.0F, kErrorWidth = 1.6F, kKeyframeWidth = 1.1F,
                 kCurrentWidth = 2.0F;
 constexpr float kPointSize = 2.5F, kRemovedPointSize = 4.0F;
+// Above so many, points lie so close that their round edges are not seen, but are paid for.
+constexpr GLsizei kManyPoints = 20000;
+constexpr float kPlainPointSize = 2.0F;
 constexpr float kImageOpacity = 0.92F;
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
@@ -153,11 +156,28 @@ void SceneRenderer::draw_segments(const Batch& batch, float width_px) const {
   gl_->DrawElementsBaseVertex(GL_TRIANGLES, 6 * batch.count, GL_UNSIGNED_INT, nullptr, 0);
 }
 
-void SceneRenderer::draw_points(const Batch& batch, float size_px) const {
+void SceneRenderer::draw_points(const Batch& batch) const {
   if (batch.count == 0) return;
-  point_program_.set("size_px", size_px);
   gl_->BindVertexArray(batch.vertex_array.id());
   gl_->DrawArrays(GL_POINTS, 0, batch.count);
+}
+
+void SceneRenderer::draw_kept_points(const SceneView& view, const Eigen::Matrix4f& clip_from_world,
+                                     const Theme& theme, float scale) {
+  const bool plain = kept_points_.count > kManyPoints;
+  if (plain && !plain_point_program_) plain_point_program_.emplace(Program::embedded(*gl_, "plain_point"));
+  const Program& program = plain ? *plain_point_program_ : point_program_;
+  program.use();
+  program.set("clip_from_world", clip_from_world);
+  program.set("reference_depth", static_cast<float>(view.distance));
+  program.set("size_px", scale * (plain ? kPlainPointSize : kPointSize));
+  if (plain) {
+    const ImVec4 ground = to_vec4(theme.plot);
+    program.set("ground", Eigen::Vector4f(ground.x, ground.y, ground.z, 1.0F));
+    gl_->Disable(GL_BLEND);
+  }
+  draw_points(kept_points_);
+  gl_->Enable(GL_BLEND);
 }
 
 void SceneRenderer::draw_current_image(const SceneData& scene) {
@@ -216,11 +236,12 @@ void SceneRenderer::draw(const SceneData& scene, const SceneView& view, const Th
     gl_->DepthMask(GL_TRUE);
   }
 
+  draw_kept_points(view, clip_from_world, theme, scale);
   point_program_.use();
   point_program_.set("clip_from_world", clip_from_world);
   point_program_.set("reference_depth", static_cast<float>(view.distance));
-  draw_points(kept_points_, kPointSize * scale);
-  draw_points(removed_points_, kRemovedPointSize * scale);
+  point_program_.set("size_px", kRemovedPointSize * scale);
+  draw_points(removed_points_);
 
   image_program_.use();
   image_program_.set("clip_from_world", clip_from_world);

@@ -37,12 +37,15 @@ class SceneRenderer {
   void upload_scene(const SceneData& scene, ThemeName theme);
   void upload_paths(const SceneData& scene, const SceneView& view, const Viewport& viewport, ThemeName theme);
   void draw_segments(const Batch& batch, float width_px) const;
-  void draw_points(const Batch& batch, float size_px) const;
+  void draw_points(const Batch& batch) const;
+  void draw_kept_points(const SceneView& view, const Eigen::Matrix4f& clip_from_world, const Theme& theme,
+                        float scale);
   void draw_current_image(const SceneData& scene);
 
   const Gl* gl_;
   Program line_program_, point_program_, image_program_;
-  GlObject segment_indices_;  ///< two triangles a segment, shared by all batches
+  std::optional<Program> plain_point_program_;  ///< made when there are many points
+  GlObject segment_indices_;                    ///< two triangles a segment, shared by all batches
   std::size_t indexed_segments_ = 0;
   Batch grid_, axes_, errors_, keyframes_, current_, kept_points_, removed_points_;
   std::vector<PathBatch> paths_;

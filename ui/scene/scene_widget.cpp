@@ -212,8 +212,16 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
 
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
     framebuffer_.emplace(*gl_, width, height, kSamples);
+    drawn_.reset();
   }
-  renderer_.draw(scene, view, frame.theme, frame.scale, *framebuffer_);
+  Drawn wanted{
+      scene.revision, scene.image_revision, view_from_world(view), view.fov_y,       scene.ground_m, {},
+      scene.up,       scene.show_grid,      scene.show_axes,       frame.theme.name, frame.scale};
+  if (scene.current) wanted.current = scene.current->matrix();
+  if (drawn_ != wanted) {
+    renderer_.draw(scene, view, frame.theme, frame.scale, *framebuffer_);
+    drawn_ = wanted;
+  }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddImage(framebuffer_->texture().imgui_id(), low, high, {0, 1}, {1, 0});
 

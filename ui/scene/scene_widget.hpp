@@ -45,6 +45,20 @@ class SceneWidget {
   const Gl* gl_;
   SceneRenderer renderer_;
   std::optional<Framebuffer> framebuffer_;
+
+  /// What a picture of the scene depends on: the one drawn last serves until something of it changes.
+  struct Drawn {
+    std::uint64_t revision = 0, image_revision = 0;
+    Eigen::Matrix4d view_from_world;
+    double fov_y = 0.0, ground_m = 0.0;
+    std::optional<Eigen::Matrix4d> current;
+    Eigen::Vector3d up;
+    bool show_grid = false, show_axes = false;
+    ThemeName theme = ThemeName::kDark;
+    float scale = 1.0F;
+    bool operator==(const Drawn&) const = default;
+  };
+  std::optional<Drawn> drawn_;
 };
 
 /// A round length for a scale bar of at most `longest_px`: its metres, 1, 2 or 5 times a power of ten.

@@ -33,8 +33,8 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 }
 
 [[noreturn]] void refuse(std::string_view text) {
-  throw InputError(
-      fmt::format("--frames {}: expected frames like 10, 20:40:5 or -1, with commas between", quoted(text)));
+  throw InputError(fmt::format("--frames {}: expected frames like 10, 20:40:5 or -1, with commas between",
+                               in_quotes(text)));
 }
 
 int number_or(std::string_view part, int otherwise, std::string_view whole) {
@@ -79,7 +79,7 @@ std::pair<int, int> parse_size(std::string_view text) {
   const auto fits = [](int side) { return side >= kSmallestSide && side <= kLargestSide; };
   if (!width || !height || !fits(*width) || !fits(*height))
     throw InputError(fmt::format("--size {}: expected WIDTHxHEIGHT, each {} to {} px, like 1600x900",
-                                 quoted(text), kSmallestSide, kLargestSide));
+                                 in_quotes(text), kSmallestSide, kLargestSide));
   return {*width, *height};
 }
 

@@ -74,6 +74,8 @@ class Session {
   void request_frame(int frame) { request(request::GoTo{frame}); }
   void request_play(bool play) { request(request::Play{play}); }  ///< from the frame shown on
   void request_speed(double frames_per_second);
+  /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
+  [[nodiscard]] bool idle() const;
   /// Whether the frame before the one shown is wanted as well: made when there is nothing else to do.
   void request_comparison(bool wanted);
   /// Another config: the run begins anew and goes on to the frame shown.
@@ -122,6 +124,8 @@ class Session {
   [[nodiscard]] bool at_rest() const;
   [[nodiscard]] int next_while_playing() const;
   void stop_playing_where_wanted();
+  /// Waits until something is asked for or, with `until_comparison`, until the frame before is.
+  void rest(const std::stop_token& stop, bool until_comparison);
   void work_step();
   void settle();
   // What is done when nothing else is asked for, a frame at a time.
@@ -155,15 +159,17 @@ class Session {
   bool preview_due_ = false;
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
+  std::atomic<bool> stopping_ = false;  // what is under way is to end
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
   std::deque<SessionRequest> requests_;
+  bool resting_ = false;
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
   std::atomic<bool> compares_ = false;  // FrameView::before is wanted
-  std::jthread worker_;  // last: it ends before what it works with
+  std::jthread worker_;                 // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

@@ -58,6 +58,11 @@ bool Session::has_background() const {
 
 void Session::background_step() {
   if (preview_due_) {
+    // A finished run's frames are seen here first, one at a time.
+    if (run_->track().seen() < std::min(current_->index, run_->track().processed())) {
+      run_->catch_up_one();
+      return;
+    }
     compute_preview();
     publish();
     return;
@@ -120,7 +125,9 @@ void Session::update_breakpoints() {
 
 void Session::open_sidecar() {
   sidecar_due_ = false;
-  debug_.sequence_hash = sequence_fingerprint(*source_);
+  // A finished run may be shown without its images.
+  debug_.sequence_hash =
+      options_.recorded ? options_.recorded->origin.fingerprint : sequence_fingerprint(*source_);
   sidecar_.emplace(*options_.sidecar, MarkedSequence{source_->name(), debug_.sequence_hash, source_->size()});
   Marks kept = sidecar_->load();
   // What was marked before there was time to look stays.
@@ -169,8 +176,6 @@ void Session::work(const std::stop_token& stop) {
   target_ = std::max(target_, current_->index);
   if (current_->record == nullptr) target_ = 0;
   auto due = Clock::now(), published = due;
-  const auto asked = [this] { return !requests_.empty(); };
-  const auto due_or_asked = [this] { return !requests_.empty() || (compares_ && lacks_before()); };
   while (!stop.stop_requested()) {
     try {
       if (take_requests() && at_rest()) publish();
@@ -183,12 +188,13 @@ void Session::work(const std::stop_token& stop) {
         }
         continue;
       }
+      if (waits && !playing_) {
+        rest(stop, true);
+        continue;
+      }
       if (waits) {
         std::unique_lock lock(mutex_);
-        if (playing_)
-          asked_.wait_until(lock, stop, due, asked);
-        else
-          asked_.wait(lock, stop, due_or_asked);
+        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty(); });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -202,8 +208,7 @@ void Session::work(const std::stop_token& stop) {
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
-      std::unique_lock lock(mutex_);
-      asked_.wait(lock, stop, asked);
+      rest(stop, false);
     }
   }
 }

@@ -48,6 +48,7 @@ class ShownRun {
     int index = 0;
     MotionTrace motion{};
     DepthMotionTrace depth_motion{};
+    ColourMotionTrace colour_motion{};
     cv::Mat mask{};
   };
 

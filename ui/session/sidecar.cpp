@@ -78,7 +78,7 @@ class MarksReader {
     const Json name = json.value("name", Json());
     if (name == sequence_.name) refuse("the sequence has changed since it was written");
     refuse(fmt::format("it belongs to another sequence ({})",
-                       quoted(name.is_string() ? name.get<std::string>() : "?")));
+                       in_quotes(name.is_string() ? name.get<std::string>() : "?")));
   }
   [[nodiscard]] Json list(const Json& json, const char* key) const {
     Json items = json.value(key, Json::array());
@@ -92,7 +92,7 @@ class MarksReader {
   [[nodiscard]] int frame(const Json& json, const char* key) const {
     const Json value = member(json, key);
     if (!value.is_number_integer() || value < 0 || value >= sequence_.frames)
-      refuse(fmt::format("\"{}\" is {}, expected a frame from 0 to {}", key, quoted(value.dump()),
+      refuse(fmt::format("\"{}\" is {}, expected a frame from 0 to {}", key, in_quotes(value.dump()),
                          sequence_.frames - 1));
     return value.get<int>();
   }
@@ -122,7 +122,7 @@ bool can_write_in(const fs::path& folder) {
   return !folder.empty() && fs::is_directory(folder, error) && ::access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
-bool exists(const fs::path& file) {
+bool is_there(const fs::path& file) {
   std::error_code error;
   return !file.empty() && fs::exists(file, error);
 }
@@ -163,12 +163,12 @@ void write_marks(const fs::path& file, const MarkedSequence& sequence, const Mar
 Sidecar::Sidecar(const SidecarPlaces& places, MarkedSequence sequence) : sequence_(std::move(sequence)) {
   if (!places.user_folder.empty()) user_file_ = places.user_folder / (sequence_.hash + ".json");
   const fs::path beside = places.folder.empty() ? fs::path() : places.folder / kSidecarName;
-  const bool in_folder = can_write_in(places.folder) || (exists(beside) && !exists(user_file_));
+  const bool in_folder = can_write_in(places.folder) || (is_there(beside) && !is_there(user_file_));
   file_ = in_folder ? beside : user_file_;
 }
 
 Marks Sidecar::load() {
-  if (!exists(file_)) return {};
+  if (!is_there(file_)) return {};
   try {
     kept_ = read_marks(file_, sequence_);
   } catch (const InputError&) {

@@ -47,6 +47,7 @@ std::vector<std::string> Canvas::take_input() {
   std::vector<std::string> dropped;
   for (const InputEvent& event : input_.next_frame()) {
     apply_to_imgui(event);
+    if (listener_) listener_(event);
     if (const auto* files = std::get_if<FilesDropped>(&event)) {
       dropped.insert(dropped.end(), files->paths.begin(), files->paths.end());
     }
@@ -54,8 +55,8 @@ std::vector<std::string> Canvas::take_input() {
   return dropped;
 }
 
-UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction& function,
-                      const std::function<void()>& bind_target, bool close_requested) {
+UiFrame Canvas::build(int width, int height, double delta_s, const FrameFunction& function,
+                      bool close_requested) {
   ImGui::SetCurrentContext(imgui_);
   dress();
   ImGuiIO& io = ImGui::GetIO();
@@ -70,11 +71,23 @@ UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction
                 .time_s = time_s_,
                 .dropped_files = take_input(),
                 .close_requested = close_requested,
+                .pace = &pace_,
                 .wanted_look = look_};
   ImGui::NewFrame();
   function(frame);
   ImGui::Render();
+  look_ = frame.wanted_look;
+  was_busy_ = frame.busy;
+  return frame;
+}
 
+UiFrame Canvas::frame_unseen(int width, int height, double delta_s, const FrameFunction& function) {
+  return build(width, height, delta_s, function, false);
+}
+
+UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction& function,
+                      const std::function<void()>& bind_target, bool close_requested) {
+  UiFrame frame = build(width, height, delta_s, function, close_requested);
   bind_target();
   const ImVec4 background = to_vec4(frame.theme.background);
   gl_->Disable(GL_SCISSOR_TEST);
@@ -83,7 +96,6 @@ UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction
   gl_->ClearColor(background.x, background.y, background.z, 1.0F);
   gl_->Clear(GL_COLOR_BUFFER_BIT);
   renderer_->draw(*ImGui::GetDrawData(), height);
-  look_ = frame.wanted_look;
   return frame;
 }
 

@@ -10,12 +10,16 @@
 
 #include "ui/gl/framebuffer.hpp"
 #include "ui/gl/imgui_renderer.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/shell/graphics_context.hpp"
 #include "ui/shell/input.hpp"
+#include "ui/shell/ui_pace.hpp"
 #include "ui/theme/fonts.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {
+
+class PanelChoices;
 
 /// How the interface looks, in a window and in images alike.
 struct Look {
@@ -35,6 +39,10 @@ struct UiFrame {
   bool controls = true;                      ///< false in pictures for print: panels leave out their buttons
   std::vector<std::string> dropped_files{};  ///< since the frame before
   bool close_requested = false;              ///< the person closes the window
+  const UiPace* pace = nullptr;              ///< how fast the interface is; null where nobody measures
+  const EventLog* log = nullptr;             ///< what was said; null where nothing is
+  PanelChoices* choices = nullptr;           ///< of the panel being drawn; null where none are kept
+  bool busy = false;                         ///< work goes on beside the interface: its pace counts
   Look wanted_look{};                        ///< from the next frame on
   double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
   bool quit = false;                                                ///< leave the shell's loop
@@ -59,7 +67,18 @@ class Canvas {
   UiFrame frame(int width, int height, double delta_s, const FrameFunction& function,
                 const std::function<void()>& bind_target, bool close_requested = false);
 
+  /// The same without drawing: what was sent is taken, and windows find their sizes.
+  UiFrame frame_unseen(int width, int height, double delta_s, const FrameFunction& function);
+
   void send(InputEvent event) { input_.push(std::move(event)); }
+
+  /// Told each event when the interface takes it, for recordings; empty tells nobody.
+  void set_listener(std::function<void(const InputEvent&)> listener) { listener_ = std::move(listener); }
+
+  /// What the shell measured of its last frame.
+  void note_pace(double ms) { pace_.add(ms, was_busy_); }
+  [[nodiscard]] double time_s() const { return time_s_; }  ///< of the interface's clock
+  [[nodiscard]] const UiPace& pace() const { return pace_; }
   [[nodiscard]] bool has_pending_input() const { return !input_.empty(); }
 
   /// Factor the display itself asks for, over Look::scale.
@@ -76,6 +95,7 @@ class Canvas {
 
  private:
   void dress();
+  UiFrame build(int width, int height, double delta_s, const FrameFunction& function, bool close_requested);
   std::vector<std::string> take_input();
 
   std::unique_ptr<Gl> gl_;
@@ -83,6 +103,9 @@ class Canvas {
   ImGuiContext* imgui_ = nullptr;
   std::unique_ptr<ImGuiRenderer> renderer_;
   InputQueue input_;
+  std::function<void(const InputEvent&)> listener_;
+  UiPace pace_;
+  bool was_busy_ = false;
   Fonts fonts_;
   Look look_;
   float display_scale_ = 1.0F;

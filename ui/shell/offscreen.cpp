@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -43,13 +44,23 @@ void Offscreen::make_current() const {
 
 UiFrame Offscreen::draw(const FrameFunction& function) {
   make_current();
-  return canvas_->frame(framebuffer_->width(), framebuffer_->height(), kFrameSeconds, function,
-                        [this] { framebuffer_->bind(); });
+  const Stopwatch watch;
+  UiFrame frame = canvas_->frame(framebuffer_->width(), framebuffer_->height(), kFrameSeconds, function,
+                                 [this] { framebuffer_->bind(); });
+  // Drawn, not only asked for: as in a window, where showing the frame waits for it.
+  canvas_->gl().Finish();
+  canvas_->note_pace(watch.milliseconds());
+  return frame;
 }
 
 cv::Mat Offscreen::render(const FrameFunction& function) {
-  while (canvas_->has_pending_input()) draw(function);
-  for (int i = 0; i < kSettlingFrames; ++i) draw(function);
+  make_current();
+  // Only the last frame is looked at.
+  for (int left = kSettlingFrames - 1; left > 0; --left) {
+    if (canvas_->has_pending_input()) left = kSettlingFrames;
+    canvas_->frame_unseen(framebuffer_->width(), framebuffer_->height(), kFrameSeconds, function);
+  }
+  draw(function);
   return image();
 }
 
@@ -61,6 +72,7 @@ cv::Mat Offscreen::image() const {
 
 void Offscreen::resize(int width, int height) {
   require_size(width, height);
+  if (width == framebuffer_->width() && height == framebuffer_->height()) return;
   make_current();
   framebuffer_ = std::make_unique<Framebuffer>(canvas_->gl(), width, height);
 }

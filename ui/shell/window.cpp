@@ -36,6 +36,7 @@ GLFWwindow* create_window(const WindowOptions& options) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.gl_debug ? GLFW_TRUE : GLFW_FALSE);
   glfwWindowHint(GLFW_MAXIMIZED, options.maximised ? GLFW_TRUE : GLFW_FALSE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "stillpoint");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "stillpoint");
@@ -63,7 +64,7 @@ std::array<float, 2> pixel_ratio(GLFWwindow* window) {
 
 void send_mouse_position(GLFWwindow* window, double x, double y) {
   const auto [ratio_x, ratio_y] = pixel_ratio(window);
-  self(window).send(MouseMoved{static_cast<float>(x) * ratio_x, static_cast<float>(y) * ratio_y});
+  self(window).receive(MouseMoved{static_cast<float>(x) * ratio_x, static_cast<float>(y) * ratio_y});
 }
 
 /// The modifiers held now, for events that GLFW reports without.
@@ -158,10 +159,10 @@ void Window::connect_input() {
     double x = 0.0, y = 0.0;
     glfwGetCursorPos(window, &x, &y);
     send_mouse_position(window, x, y);
-    self(window).send(MouseButton{button, action == GLFW_PRESS, modifiers_from_glfw(modifiers)});
+    self(window).receive(MouseButton{button, action == GLFW_PRESS, modifiers_from_glfw(modifiers)});
   });
   glfwSetScrollCallback(window_, [](GLFWwindow* window, double dx, double dy) {
-    self(window).send(MouseWheel{static_cast<float>(dx), static_cast<float>(dy), held_modifiers(window)});
+    self(window).receive(MouseWheel{static_cast<float>(dx), static_cast<float>(dy), held_modifiers(window)});
   });
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int code, int, int action, int modifiers) {
     // ImGui repeats held keys itself.
@@ -169,15 +170,15 @@ void Window::connect_input() {
     // The bits GLFW gives on X11 are those from before the key: wrong for the modifier keys themselves.
     const Key key = key_from_glfw(code);
     const Modifiers held = key == Key::kNone ? held_modifiers(window) : modifiers_from_glfw(modifiers);
-    self(window).send(KeyChanged{key, action == GLFW_PRESS, held});
+    self(window).receive(KeyChanged{key, action == GLFW_PRESS, held});
   });
   glfwSetCharCallback(
-      window_, [](GLFWwindow* window, unsigned codepoint) { self(window).send(TextTyped{codepoint}); });
+      window_, [](GLFWwindow* window, unsigned codepoint) { self(window).receive(TextTyped{codepoint}); });
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int focused) {
-    self(window).send(FocusChanged{focused == GLFW_TRUE});
+    self(window).receive(FocusChanged{focused == GLFW_TRUE});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
-    self(window).send(FilesDropped{{paths, paths + count}});
+    self(window).receive(FilesDropped{{paths, paths + count}});
   });
 }
 
@@ -221,9 +222,11 @@ UiFrame Window::draw_unshown(const FrameFunction& function) {
 }
 
 UiFrame Window::draw(const FrameFunction& function) {
+  const double begin = glfwGetTime();
   glfwPollEvents();
   UiFrame frame = draw_unshown(function);
   glfwSwapBuffers(window_);
+  canvas_->note_pace(1000.0 * (glfwGetTime() - begin));
   return frame;
 }
 

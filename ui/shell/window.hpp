@@ -15,6 +15,7 @@ struct WindowOptions {
   std::string title = "Stillpoint";
   Look look{};
   bool maximised = false;
+  bool gl_debug = false;  ///< a context that tells every error as it happens; slower
 };
 
 /// The shell with a display: a GLFW window with an OpenGL 3.3 core context, drawn when something changes.
@@ -42,6 +43,12 @@ class Window {
   static void wake();
 
   void send(InputEvent event) { canvas_->send(std::move(event)); }
+  /// An event of the display.
+  void receive(InputEvent event) {
+    if (listens_) send(std::move(event));
+  }
+  /// Whether what a person does at the display counts; a replay takes no hints.
+  void listen(bool listens) { listens_ = listens; }
   void set_title(const std::string& title);
   void resize(int width, int height);
   [[nodiscard]] Canvas& canvas() { return *canvas_; }
@@ -61,6 +68,7 @@ class Window {
   std::unique_ptr<Canvas> canvas_;
   std::array<GLFWcursor*, 16> cursors_{};
   double last_frame_s_ = 0.0;
+  bool listens_ = true;
 };
 
 }  // namespace stillpoint

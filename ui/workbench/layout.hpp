@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,9 @@ struct LayoutNode {
   enum class Division { kColumns, kRows };
   std::string panel;  ///< name of the panel; empty with children
   Division division = Division::kColumns;
-  std::vector<LayoutNode> children;
-  double share = 1.0;  ///< of the parent's extent; siblings' shares add up to 1
+  std::vector<LayoutNode> children{};
+  std::map<std::string, std::string> choices{};  ///< of the panel's controls, as PanelChoices has them
+  double share = 1.0;                            ///< of the parent's extent; siblings' shares add up to 1
 
   [[nodiscard]] bool is_panel() const { return children.empty(); }
   bool operator==(const LayoutNode&) const = default;
@@ -78,7 +80,8 @@ struct NamedLayout {
 /// Inspect (the default layout), Motion, Compare, Failures, Stages.
 [[nodiscard]] std::vector<NamedLayout> named_layouts();
 
-/// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input"}, {"share": 0.6, "rows": […]}]}.
+/// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input", "choices": {"Map points": "off"}},
+/// {"share": 0.6, "rows": […]}]}.
 [[nodiscard]] std::string to_json(const LayoutNode& root);
 
 /// Reads to_json()'s text. Shares that do not add up to 1 are scaled; left out, they are equal.

@@ -18,6 +18,7 @@ Json node_to_json(const LayoutNode& node) {
   json["share"] = node.share;
   if (node.is_panel()) {
     json["panel"] = node.panel;
+    for (const auto& [control, value] : node.choices) json["choices"][control] = value;
   } else {
     Json children = Json::array();
     for (const LayoutNode& child : node.children) children.push_back(node_to_json(child));
@@ -41,6 +42,7 @@ class LayoutReader {
     LayoutNode node;
     if (json.contains("panel")) {
       node.panel = read_panel(json["panel"]);
+      if (json.contains("choices")) read_choices(json["choices"], node);
     } else {
       const bool columns = json.contains("columns");
       node.division = columns ? LayoutNode::Division::kColumns : LayoutNode::Division::kRows;
@@ -63,6 +65,15 @@ class LayoutReader {
       refuse(fmt::format("there is no panel '{}'; the panels are {}", name, fmt::join(known_, ", ")));
     if (!seen_.insert(name).second) refuse(fmt::format("panel '{}' is named twice", name));
     return name;
+  }
+
+  void read_choices(const Json& json, LayoutNode& node) {
+    if (!json.is_object()) refuse("\"choices\" must be an object of controls and values");
+    for (const auto& [control, value] : json.items()) {
+      if (!value.is_string())
+        refuse(fmt::format("the choice '{}' of panel '{}' must be a text", control, node.panel));
+      node.choices[control] = value.get<std::string>();
+    }
   }
 
   void read_children(const Json& json, LayoutNode& node, int depth) {

@@ -75,7 +75,19 @@ void write_settings(const fs::path& path, const Settings& settings) {
   json["recent"] = settings.recent;
   if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));
   prepare_out_folder(path.parent_path(), {}, true);
-  write_text_file(path, json.dump(1) + '\n');
+  // Beside it first, then in its place: on a full disk what was there before stays.
+  fs::path beside = path;
+  beside += ".new";
+  try {
+    write_text_file(beside, json.dump(1) + '\n');
+  } catch (const InputError&) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    throw;
+  }
+  std::error_code failed;
+  fs::rename(beside, path, failed);
+  if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path.string(), failed.message()));
 }
 
 void remember(std::vector<std::string>& recent, const std::string& sequence) {

@@ -12,6 +12,8 @@ namespace {
 
 // Design px.
 constexpr float kGap = 5.0F, kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
+// In smaller tiles than these, controls are small too: the picture matters more.
+constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
 constexpr ImGuiWindowFlags kRootFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -55,8 +57,24 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
                         ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
+  const bool compact = rect.width < kCompactWidth * frame.scale || rect.height < kCompactHeight * frame.scale;
+  if (compact) {
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5.0F * frame.scale, 2.0F * frame.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {5.0F * frame.scale, 3.0F * frame.scale});
+  }
   if (visible) panel.draw(frame, session, wanted);
+  if (compact) {
+    ImGui::PopStyleVar(2);
+    ImGui::PopFont();
+  }
   ImGui::EndChild();
+}
+
+template <typename Visit>
+void for_each_panel(LayoutNode& node, const Visit& visit) {
+  if (node.is_panel()) visit(node);
+  for (LayoutNode& child : node.children) for_each_panel(child, visit);
 }
 
 LayoutRect below_heading(const LayoutRect& rect, float heading) {
@@ -83,7 +101,19 @@ Panel* Workbench::find_panel(const std::string& name) const {
   return it == panels_.end() ? nullptr : it->get();
 }
 
+LayoutNode Workbench::layout() const {
+  LayoutNode layout = layout_;
+  for_each_panel(layout, [this](LayoutNode& tile) {
+    const auto chosen = choices_.find(tile.panel);
+    tile.choices = chosen == choices_.end() ? PanelChoices::Words() : chosen->second.changed();
+  });
+  return layout;
+}
+
 void Workbench::set_layout(LayoutNode layout) {
+  for_each_panel(layout, [this](const LayoutNode& tile) {
+    if (!tile.choices.empty()) choices_[tile.panel].want(tile.choices);
+  });
   for (const std::string& name : panels_of(layout))
     if (find_panel(name) == nullptr) remove_panel(layout, name);
   layout_ = std::move(layout);
@@ -92,22 +122,30 @@ void Workbench::set_layout(LayoutNode layout) {
 
 void Workbench::say(std::string message, bool error) {
   message_ = std::move(message);
-  message_is_error_ = error;
+  message_is_error_ = error_open_ = error;
+  said_s_ = time_s_;
+  log_.add({time_s_, last_shown_, error, message_});
+}
+
+std::optional<LayoutRect> Workbench::tile_of(const std::string& panel) const {
+  const auto found = tiles_.find(panel);
+  if (found == tiles_.end()) return std::nullopt;
+  return found->second;
 }
 
 void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = &frame;
   session_ = session;
-  if (session != nullptr && session->current->index != last_shown_) {
-    const double interval = frame.time_s - last_shown_s_;
-    shown_interval_s_ =
-        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
-    last_shown_ = session->current->index;
-    last_shown_s_ = frame.time_s;
-  }
+  time_s_ = frame.time_s;
+  look_ = frame.wanted_look;
+  follow_session();
+  frame.log = &log_;
+  frame.busy = !opening_.empty() || (session != nullptr && session->busy);
+  if (const auto before = std::exchange(before_frame_, {})) before();
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
+  tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
   const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
@@ -121,14 +159,23 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_status_bar(status);
   ImGui::End();
 
+  draw_opening();
+  draw_error();
   draw_shortcuts();
   draw_palette();
   draw_open_dialog();
+  look_ = frame.wanted_look;
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
   compare_frames_ = false;
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
+}
+
+void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices) {
+  frame.choices = &choices;
+  draw_alone(frame, session, panel);
+  frame.choices = nullptr;
 }
 
 void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel) {
@@ -159,6 +206,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
 }
 
 void Workbench::draw_tiles(const LayoutRect& area) {
+  tiles_.clear();
   if (!maximised_.empty()) {
     draw_tile(maximised_, area);
     return;
@@ -204,11 +252,14 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
       ImGui::IsMouseHoveringRect({rect.x, rect.y}, {rect.x + rect.width, rect.y + rect.height}, false) &&
       ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows);
   if (hovered) hovered_panel_ = name;
+  tiles_[name] = rect;
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, rect, heading);
   PanelActions wanted;
+  frame_->choices = &choices_[name];
   draw_panel_body(*frame_, *session_, *panel, below_heading(rect, heading), wanted);
+  frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
 }

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ui/panels/panel.hpp"
+#include "ui/panels/panel_choices.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
@@ -37,19 +40,37 @@ class Workbench {
 
   /// Draws one panel with a heading of its own over the whole frame.
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel);
+  /// The same with choices for its controls.
+  static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices);
 
-  [[nodiscard]] const LayoutNode& layout() const { return layout_; }
+  /// The tiles, with what is chosen in each panel.
+  [[nodiscard]] LayoutNode layout() const;
   void set_layout(LayoutNode layout);
   [[nodiscard]] const std::string& maximised() const { return maximised_; }
 
-  /// Says something in the status bar until something else is said.
+  /// Says something in the status bar until something else is said, and in the log. An error stands over the
+  /// panels too until it is put away.
   void say(std::string message, bool error = false);
   [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] const EventLog& log() const { return log_; }
+
+  /// A sequence that is being opened, as a notice over what is shown; empty ends it.
+  void set_opening(std::string where) { opening_ = std::move(where); }
+
+  /// Where a panel was drawn last, px; nothing where it is not shown.
+  [[nodiscard]] std::optional<LayoutRect> tile_of(const std::string& panel) const;
+
+  /// A fact about what is shown, by name, for recordings that expect one: "frame", "panels", "theme", …;
+  /// nothing for a name there is not.
+  [[nodiscard]] std::optional<std::string> fact(const std::string& what, const SessionView* session) const;
+  [[nodiscard]] static std::string fact_names();
 
   /// Sequences opened before, newest first, for menu and start page.
   void set_recent(std::vector<std::string> recent) { recent_ = std::move(recent); }
 
   [[nodiscard]] const Actions& actions() const { return actions_; }
+  /// Has something run at the beginning of the next frame drawn, as a key would.
+  void before_next_frame(std::function<void()> run) { before_frame_ = std::move(run); }
   [[nodiscard]] std::vector<std::string> panel_names() const;
   [[nodiscard]] bool palette_open() const { return palette_.open; }
   [[nodiscard]] bool shortcuts_open() const { return shortcuts_open_; }
@@ -76,6 +97,7 @@ class Workbench {
   void go_to(int frame);
   void ask(SessionRequest request);
   void toggle_bookmark();
+  void tell_notice();
   [[nodiscard]] const std::vector<int>& worst();
   void toggle_panel(const std::string& name);
   void scale_by(float factor);
@@ -99,6 +121,9 @@ class Workbench {
   void draw_shortcuts();
   void draw_open_dialog();
   void draw_start_page(const LayoutRect& area);
+  void draw_opening();
+  void draw_error();
+  void follow_session();
   void carry_out(const PanelActions& wanted);
   bool action_button(const char* name);
 
@@ -109,7 +134,13 @@ class Workbench {
   LayoutRect tiles_area_{};
   std::string maximised_, hovered_panel_;
   std::string message_;
-  bool message_is_error_ = false;
+  bool message_is_error_ = false, error_open_ = false;
+  EventLog log_;
+  std::string opening_, last_trouble_;
+  std::map<std::string, PanelChoices> choices_;
+  std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
+  Look look_;
+  double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
   Palette palette_;
   OpenDialog open_dialog_;
@@ -127,12 +158,13 @@ class Workbench {
   std::optional<LaneFigure> worst_by_;
   WorstKey worst_key_;
   std::vector<int> worst_;
+  std::string notice_;  // of the session, told last
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
   const SessionView* session_ = nullptr;
-  bool compare_frames_ = false;        // whether a panel drawn wants the frame before
-  std::function<void()> after_frame_;  // what would change the layout while it is drawn
+  bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
+  std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 
   // How fast frames go by while playing.
   int last_shown_ = -1;

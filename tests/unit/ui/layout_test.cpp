@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
+#include "ui/panels/panel_choices.hpp"
 
 namespace stillpoint {
 namespace {
@@ -133,6 +134,32 @@ TEST(Layout, SaysWhatIsWrongWithAFile) {
   std::string deep = R"({"panel": "a"})";
   for (int i = 0; i < 100; ++i) deep = R"({"rows": [)" + deep + "]}";
   EXPECT_THAT(complaint(deep), HasSubstr("more than 32 times"));
+}
+
+TEST(LayoutJson, ChoicesOfPanelsComeBack) {
+  const std::vector<std::string> known{"a", "b"};
+  const std::string text =
+      R"({"columns": [{"panel": "a", "choices": {"Map points": "off"}}, {"panel": "b"}]})";
+  const LayoutNode layout = parse_layout(text, "f", known);
+  EXPECT_EQ(layout.children[0].choices, (std::map<std::string, std::string>{{"Map points", "off"}}));
+  EXPECT_TRUE(layout.children[1].choices.empty());
+  EXPECT_EQ(parse_layout(to_json(layout), "f", known), layout);
+  EXPECT_THROW((void)parse_layout(R"({"panel": "a", "choices": ["x"]})", "f", known), InputError);
+  EXPECT_THROW((void)parse_layout(R"({"panel": "a", "choices": {"x": 1}})", "f", known), InputError);
+}
+
+TEST(PanelChoices, KeepWhatIsNotAsThePanelHasIt) {
+  PanelChoices choices;
+  EXPECT_FALSE(choices.take("Errors", "on"));
+  choices.note("Errors", "on");
+  EXPECT_TRUE(choices.changed().empty());
+  choices.note("Errors", "off");
+  EXPECT_EQ(choices.changed(), (PanelChoices::Words{{"Errors", "off"}}));
+  // What is wanted is handed out once; until then it is kept.
+  choices.want({{"Errors", "on"}, {"Other", "2"}});
+  EXPECT_EQ(choices.changed().at("Other"), "2");
+  EXPECT_EQ(choices.take("Errors", "off"), "on");
+  EXPECT_FALSE(choices.take("Errors", "on"));
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ TEST(RunDifference, PosesAndFiguresAreCompared) {
   FrameRecord run, ghost;
   run.inliers = 200;
   ghost.inliers = 180;
-  run.world_from_camera.translation() = {1.0, 2.0, 3.0};
-  ghost.world_from_camera.translation() = {1.0, 2.03, 3.04};
+  run.world_from_camera.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
+  ghost.world_from_camera.translation() = Eigen::Vector3d(1.0, 2.03, 3.04);
   ghost.world_from_camera.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const FrameDifference difference = difference_of(run, ghost);
   EXPECT_NEAR(difference.translation_m, 0.05, 1e-12);

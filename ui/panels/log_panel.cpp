@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_series.hpp"
+#include "ui/theme/icons.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// A line of the log.
+struct Line {
+  std::string when, text;
+  int frame = -1;  ///< to go to; -1: none
+  bool bad = false;
+};
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<int>(seconds);
+  return fmt::format("{:02d}:{:02d}", whole / 60, whole % 60);
+}
+
+/// What is worth a line in a record; empty for a frame like any other.
+std::string note_of(const FrameRecord& record) {
+  if (!record.note.empty()) return fmt::format("{}: {}", to_string(record.status), record.note);
+  if (record.status == FrameStatus::tracked) return "";
+  return std::string(to_string(record.status));
+}
+
+/// The run's events, frames one after another with the same note as one.
+std::vector<Line> lines_of_run(const SessionView& session) {
+  std::vector<Line> lines;
+  std::string last;
+  int first = 0, last_frame = -2;
+  for (const FrameRecord& record : session.run->records) {
+    const std::string note = note_of(record);
+    const bool goes_on = note == last && record.index == last_frame + 1;
+    last_frame = record.index;
+    if (note.empty()) {
+      last.clear();
+      continue;
+    }
+    if (goes_on) {
+      lines.back().when = fmt::format("frames {} to {}", first, record.index);
+      continue;
+    }
+    last = note;
+    first = record.index;
+    lines.push_back({fmt::format("frame {}", record.index), note, record.index, is_lost(record)});
+  }
+  return lines;
+}
+
+/// What the interface said, and what the run met with: errors and notices with their time or frame.
+class LogPanel final : public NamedPanel {
+ public:
+  explicit LogPanel(Shared shared) : NamedPanel("log", "Log", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    if (run_ != session.run.get() || records_ != session.run->records.size()) {
+      run_ = session.run.get();
+      records_ = session.run->records.size();
+      of_run_ = lines_of_run(session);
+    }
+    Controls controls(frame);
+    controls.toggle("Errors only", errors_only_, "Lost and unreadable frames, and what could not be done");
+    const auto lost = std::count_if(session.run->records.begin(), session.run->records.end(), is_lost);
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", fmt::format("{} of {} frames without a pose", lost, records_).c_str());
+    ImGui::BeginChild("lines");
+    draw_lines(frame, "Of this run", of_run_, session, actions);
+    if (frame.log != nullptr)
+      draw_lines(frame, "Of the interface, newest first", said(*frame.log), session, actions);
+    ImGui::EndChild();
+  }
+
+ private:
+  static std::vector<Line> said(const EventLog& log) {
+    std::vector<Line> lines;
+    for (auto it = log.entries().rbegin(); it != log.entries().rend(); ++it) {
+      std::string when = clock_text(it->time_s);
+      if (it->frame >= 0) when += fmt::format(", frame {}", it->frame);
+      lines.push_back({when, it->times > 1 ? fmt::format("{} ({} times)", it->text, it->times) : it->text,
+                       it->frame, it->error});
+    }
+    return lines;
+  }
+
+  void draw_lines(const UiFrame& frame, const char* heading, const std::vector<Line>& lines,
+                  const SessionView& session, PanelActions& actions) const {
+    small_heading(frame, heading);
+    const float column = std::min(130.0F * frame.scale, 0.35F * ImGui::GetContentRegionAvail().x);
+    bool any = false;
+    ImGui::PushID(heading);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const Line& line = lines[i];
+      if (errors_only_ && !line.bad) continue;
+      any = true;
+      ImGui::PushID(static_cast<int>(i));
+      draw_line(frame, line, column, session, actions);
+      ImGui::PopID();
+    }
+    ImGui::PopID();
+    if (!any) ImGui::TextDisabled("Nothing%s.", errors_only_ ? " went wrong" : " yet");
+    ImGui::Dummy({1.0F, 4.0F * frame.scale});
+  }
+
+  static void draw_line(const UiFrame& frame, const Line& line, float column, const SessionView& session,
+                        PanelActions& actions) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float left = 20.0F * frame.scale + column;
+    const float wrap = std::max(ImGui::GetContentRegionAvail().x - left, 60.0F * frame.scale);
+    const float height = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap).y;
+    const bool goes = line.frame >= 0 && line.frame < session.frame_count;
+    const bool clicked =
+        ImGui::Selectable("##line", false, goes ? 0 : ImGuiSelectableFlags_Disabled, {0.0F, height});
+    if (goes && ImGui::IsItemHovered()) ImGui::SetTooltip("click to go to frame %d", line.frame);
+    if (goes && clicked) actions.go_to_frame = line.frame;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const Theme& theme = frame.theme;
+    const Rgb colour = line.bad ? role_colour(Role::kWarning, theme.name) : theme.text;
+    list.AddText(frame.fonts.text, frame.fonts.text->FontSize, at, to_u32(line.bad ? colour : theme.text_dim),
+                 line.bad ? icons::kWarning : icons::kInfo);
+    list.AddText({at.x + 20.0F * frame.scale, at.y}, to_u32(theme.text_dim), line.when.c_str());
+    list.AddText(frame.fonts.text, frame.fonts.text->FontSize, {at.x + left, at.y}, to_u32(colour),
+                 line.text.c_str(), nullptr, wrap);
+  }
+
+  bool errors_only_ = false;
+  std::vector<Line> of_run_;
+  const void* run_ = nullptr;
+  std::size_t records_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_log_panel(Shared shared) { return std::make_unique<LogPanel>(std::move(shared)); }
+
+}  // namespace stillpoint

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace stillpoint {
+
+/// What is chosen in one panel's controls, by the words they show: "Map points" is "off". Layouts keep it and
+/// bring it back.
+class PanelChoices {
+ public:
+  using Words = std::map<std::string, std::string>;
+
+  /// Has controls take these values when they are drawn next.
+  void want(Words wanted) { wanted_ = std::move(wanted); }
+
+  /// Told by a control before it is drawn. @returns the value it is to take instead of `now`, if any
+  std::optional<std::string> take(const std::string& control, const std::string& now) {
+    first_.emplace(control, now);
+    const auto wanted = wanted_.find(control);
+    if (wanted == wanted_.end()) return std::nullopt;
+    std::string value = std::move(wanted->second);
+    wanted_.erase(wanted);
+    return value;
+  }
+
+  /// Told by a control after it was drawn.
+  void note(const std::string& control, const std::string& now) { now_[control] = now; }
+
+  /// What is not as the panel itself has it, and what is still wanted.
+  [[nodiscard]] Words changed() const {
+    Words words = wanted_;
+    for (const auto& [control, value] : now_)
+      if (const auto first = first_.find(control); first != first_.end() && first->second != value)
+        words[control] = value;
+    return words;
+  }
+
+ private:
+  Words wanted_, first_, now_;
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,111 @@
+// What the workbench says by itself: a sequence being opened, an error; and what it keeps of the session for
+// it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/theme/icons.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr ImGuiWindowFlags kNoticeFlags =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize;
+constexpr double kErrorShownSeconds = 20.0, kTurnSeconds = 0.12;
+
+/// A card over the panels. @param pivot which point of it lies at `at`, as shares
+bool begin_notice(const UiFrame& frame, const char* name, ImVec2 at, ImVec2 pivot, Rgb edge) {
+  ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {16.0F * frame.scale, 12.0F * frame.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, std::round(frame.scale)));
+  ImGui::PushStyleColor(ImGuiCol_Border, to_vec4(edge));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.panel));
+  const bool visible = ImGui::Begin(name, nullptr, kNoticeFlags);
+  ImGui::PopStyleColor(2);
+  ImGui::PopStyleVar(2);
+  return visible;
+}
+
+}  // namespace
+
+void Workbench::follow_session() {
+  if (session_ == nullptr) {
+    last_shown_ = -1;
+    return;
+  }
+  if (session_->current->index != last_shown_) {
+    const double interval = time_s_ - last_shown_s_;
+    shown_interval_s_ =
+        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
+    last_shown_ = session_->current->index;
+    last_shown_s_ = time_s_;
+  }
+  if (session_->message == last_trouble_) return;
+  last_trouble_ = session_->message;
+  if (!last_trouble_.empty()) say(last_trouble_, true);
+}
+
+void Workbench::draw_opening() {
+  if (opening_.empty()) return;
+  const UiFrame& frame = *frame_;
+  frame_->redraw_after_s = std::min(frame_->redraw_after_s, kTurnSeconds);
+  if (begin_notice(frame, "##opening", {0.5F * frame.size.x, 0.46F * frame.size.y}, {0.5F, 0.5F},
+                   mix(frame.theme.border, frame.theme.accent, 0.6F))) {
+    // A dot goes round while the interface lives.
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float radius = 9.0F * frame.scale, line = ImGui::GetFontSize();
+    const ImVec2 centre{corner.x + radius, corner.y + line};
+    const auto angle = static_cast<float>(std::fmod(frame.time_s / (8.0 * kTurnSeconds), 1.0) * 6.2831853);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddCircle(centre, radius, to_u32(frame.theme.border), 0, 2.0F * frame.scale);
+    list.PathArcTo(centre, radius, angle, angle + 1.6F);
+    list.PathStroke(to_u32(frame.theme.accent), 0, 2.5F * frame.scale);
+    ImGui::Dummy({2.6F * radius, 2.0F * line});
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    ImGui::PushFont(frame.fonts.strong);
+    ImGui::TextUnformatted("Opening…");
+    ImGui::PopFont();
+    ImGui::TextColored(to_vec4(frame.theme.text_dim), "%s", opening_.c_str());
+    ImGui::EndGroup();
+  }
+  ImGui::End();
+}
+
+void Workbench::draw_error() {
+  if (!error_open_) return;
+  const double left_s = said_s_ + kErrorShownSeconds - time_s_;
+  if (left_s <= 0.0) {
+    error_open_ = false;
+    return;
+  }
+  const UiFrame& frame = *frame_;
+  frame_->redraw_after_s = std::min(frame_->redraw_after_s, left_s);
+  const Rgb warning = role_colour(Role::kWarning, frame.theme.name);
+  const float margin = 14.0F * frame.scale,
+              width = std::min(440.0F * frame.scale, frame.size.x - 6.0F * margin);
+  if (begin_notice(frame, "##error", {frame.size.x - margin, frame.size.y - 25.0F * frame.scale - margin},
+                   {1.0F, 1.0F}, warning)) {
+    ImGui::PushFont(frame.fonts.strong);
+    ImGui::TextColored(to_vec4(warning), "%s", icons::kWarning);
+    ImGui::PopFont();
+    ImGui::SameLine();
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width - 60.0F * frame.scale);
+    ImGui::TextUnformatted(message_.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::Button("Put away")) error_open_ = false;
+    if (session_ != nullptr && find_panel("log") != nullptr && !contains(layout_, "log")) {
+      ImGui::SameLine();
+      if (ImGui::Button("Show the log")) {
+        error_open_ = false;
+        actions_.run("panel.log");
+      }
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace stillpoint
