@@ -89,7 +89,6 @@ class FeaturesPanel final : public NamedPanel {
     const double reach = kReach * static_cast<double>(frame.scale) / response.map.scale();
     const auto index = feature_near(record, mouse, reach);
     if (index && !shows(record.features[static_cast<std::size_t>(*index)])) return;
-    shared_->hovered_feature = index;
     if (response.clicked && index) choose_feature(session, *shared_, *index);
     if (response.clicked && !index) shared_->feature.reset();
     if (!index) return;

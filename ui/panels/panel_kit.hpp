@@ -34,7 +34,6 @@ struct PanelsShared {
   std::optional<Eigen::Vector2i> pixel;     ///< of frame t: the scene point the mouse was on last
   std::optional<ImageCursor> cursor;        ///< the same, where it was
   std::optional<FeatureSelection> feature;  ///< the feature chosen
-  std::optional<int> hovered_feature;       ///< of the frame shown, under the mouse
   std::optional<StageInfo> stage;           ///< the stage chosen
 
   /// The geometry of the pair shown, worked out once a frame.
