@@ -17,7 +17,7 @@ using ::testing::IsSupersetOf;
 constexpr int kWidth = 640, kHeight = 420;
 
 // Where things are in the panels at that size, as shares of it.
-constexpr double kRulerY = 0.1, kSecondLaneY = 0.6;
+constexpr double kRulerY = 0.1, kSecondLaneY = 0.52;
 constexpr double kNewY = 0.04, kFirstRowY = 0.12, kCheckX = 0.03, kPreviousHitX = 0.85, kNextHitX = 0.91,
                  kDeleteX = 0.96;
 constexpr double kSecondNoteY = 0.2;
