@@ -1,4 +1,4 @@
-// Going on with another config from the middle of a run.
+// Going on from the middle of a run: with another config, or from a copy that was put by.
 #include "core/odometry/odometry.hpp"
 
 namespace stillpoint {
@@ -29,6 +29,29 @@ std::deque<std::shared_ptr<const MotionFrame>> motion_frames(const std::vector<P
 
 }  // namespace
 
+void Odometry::drop_images() {
+  references_.clear();
+  for (PastView& past : past_views_) past.view.reset();
+  if (memory_) memory_->view.reset();
+}
+
+void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
+  if (compares_by_homography(config_)) {
+    references_.clear();
+    for (int i = next - 1; i >= 0 && static_cast<int>(references_.size()) < config_.motion.reference_gap; --i)
+      if (const Frame frame = read(i); frame.readable())
+        references_.push_front(
+            std::make_shared<const MotionFrame>(prepare_motion_frame(frame.gray, config_.motion)));
+  }
+  for (PastView& past : past_views_) {
+    if (past.view) continue;
+    const Frame frame = read(past.frame_index);
+    past.view = std::make_shared<const RgbdView>(
+        make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+  }
+  if (memory_ && !memory_->view) memory_->view = past_views_.back().view;
+}
+
 std::optional<Odometry> Odometry::continued_with(const Config& config,
                                                  const std::vector<PastFrame>& before) const {
   if (config.features.levels != config_.features.levels ||
@@ -42,6 +65,14 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
       compares_by_homography(config_) && compares_by_homography(config) && config.motion == config_.motion;
   if (!keeps_references) next.references_ = motion_frames(before, config);
 
+  if (config.run.method != config_.run.method || !(config.colour_motion == config_.colour_motion)) {
+    next.colour_.reset();
+    for (const PastFrame& past : before) {
+      if (config.run.method != "stillpoint" || !past.frame.readable()) continue;
+      FrameResult unused;
+      next.detect_in_colour(past.frame, unused);
+    }
+  }
   if (config.run.method == "stillpoint" && same_past_views(config_, config)) return next;
   next.past_views_.clear();
   next.memory_.reset();

@@ -2,21 +2,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <regex>
+#include <thread>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/xvfb.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class RunFolder : public ::testing::Test {
  protected:
@@ -124,6 +127,32 @@ TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
   expect_one_sentence(run_cli({"report", run("none"), "--out", out_.path()}), "is a folder");
   expect_one_sentence(run_cli({"report", run("none"), "--out", out_.path("no/where.html")}),
                       "there is no folder");
+}
+
+TEST_F(RunFolder, AFullDiskIsToldOnce) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to stand for a full disk";
+  fs::create_symlink("/dev/full", page());
+  const CliResult reported = run_cli({"report", run("none"), "--worst", "0", "--out", page(), "--force"});
+  expect_one_sentence(reported, "report.html: cannot be written (No space left on device)");
+  fs::create_directories(out_.path("images"));
+  fs::create_symlink("/dev/full", out_.path("images/000003_input.png"));
+  const CliResult drawn = snapshot({"--frames", "3", "--panels", "input", "--force"});
+  EXPECT_EQ(drawn.exit_code, 1);
+  EXPECT_THAT(drawn.err, HasSubstr("000003_input.png: cannot be written"));
+}
+
+TEST_F(RunFolder, OpensInAWindow) {
+  const testing::Xvfb xvfb;
+  if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
+  ::setenv("XDG_CONFIG_HOME", out_.path("config").c_str(), 1);
+  CliProcess window({"view", run("stillpoint")});
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  window.send(SIGTERM);
+  const CliResult result = window.wait();
+  ::unsetenv("XDG_CONFIG_HOME");
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_FALSE(result.by_signal);
+  EXPECT_THAT(out_.read("config/stillpoint/settings.json"), HasSubstr("runs/stillpoint"));
 }
 
 TEST(Report, ForeignTextIsNoMarkup) {
