@@ -24,7 +24,7 @@ constexpr double kSecondNoteY = 0.19;
 constexpr double kFirstGhostY = 0.174, kPartsX = 0.82, kRemoveX = 0.964;
 constexpr double kWorstHurtY = 0.095;
 constexpr double kFilterY = 0.045, kSliderX = 0.56, kSliderY = 0.288, kResetX = 0.96, kRunFromHereY = 0.245,
-                 kDiscardX = 0.5;
+                 kDiscardX = 0.465;
 
 /// The one request of a kind; fails where there are none or several.
 template <typename Request>
@@ -262,7 +262,8 @@ TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
   stage.click(session, 0.1, kFilterY);
   stage.play(session, typed("border_px"));
   const PanelActions moved = stage.click(session, kSliderX, kSliderY);
-  const auto preview = only<request::Preview>(moved);
+  ASSERT_FALSE(moved.requests.empty());
+  const auto preview = std::get<request::Preview>(moved.requests.back());
   ASSERT_TRUE(preview.config);
   EXPECT_NE(preview.config->motion.border_px, session.config.motion.border_px);
   // A bar with what can be done has come above the rows.
