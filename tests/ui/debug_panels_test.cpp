@@ -17,14 +17,14 @@ using ::testing::IsSupersetOf;
 constexpr int kWidth = 640, kHeight = 420;
 
 // Where things are in the panels at that size, as shares of it.
-constexpr double kRulerY = 0.1, kSecondLaneY = 0.6;
-constexpr double kNewY = 0.04, kFirstRowY = 0.12, kCheckX = 0.03, kPreviousHitX = 0.85, kNextHitX = 0.91,
-                 kDeleteX = 0.96;
-constexpr double kSecondNoteY = 0.2;
-constexpr double kFirstGhostY = 0.15, kPartsX = 0.85, kRemoveX = 0.96;
-constexpr double kWorstHurtY = 0.1;
-constexpr double kFilterY = 0.04, kSliderX = 0.6, kSliderY = 0.3, kResetX = 0.96, kRunFromHereY = 0.2,
-                 kDiscardX = 0.5;
+constexpr double kRulerY = 0.1, kSecondLaneY = 0.47;
+constexpr double kNewY = 0.045, kFirstRowY = 0.115, kCheckX = 0.033, kPreviousHitX = 0.872, kNextHitX = 0.92,
+                 kDeleteX = 0.967;
+constexpr double kSecondNoteY = 0.19;
+constexpr double kFirstGhostY = 0.174, kPartsX = 0.82, kRemoveX = 0.964;
+constexpr double kWorstHurtY = 0.095;
+constexpr double kFilterY = 0.045, kSliderX = 0.56, kSliderY = 0.288, kResetX = 0.96, kRunFromHereY = 0.245,
+                 kDiscardX = 0.465;
 
 /// The one request of a kind; fails where there are none or several.
 template <typename Request>
@@ -262,7 +262,8 @@ TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
   stage.click(session, 0.1, kFilterY);
   stage.play(session, typed("border_px"));
   const PanelActions moved = stage.click(session, kSliderX, kSliderY);
-  const auto preview = only<request::Preview>(moved);
+  ASSERT_FALSE(moved.requests.empty());
+  const auto preview = std::get<request::Preview>(moved.requests.back());
   ASSERT_TRUE(preview.config);
   EXPECT_NE(preview.config->motion.border_px, session.config.motion.border_px);
   // A bar with what can be done has come above the rows.
