@@ -14,6 +14,7 @@ constexpr float kMinIntensitySigma = 2.0F;  // grey levels: no camera is better
 // Log-odds a pixel gets from one reference.
 constexpr float kSeenThrough = 1.2F;  // free space where the surface is now
 constexpr float kStepsBack = 0.5F;    // a surface nearer by little: most likely the same one, moving off
+constexpr float kSteppedBack = 0.1F;  // … less likely the same one, the longer ago
 constexpr float kOtherBrightness = 0.6F;
 constexpr float kSameDepth = -0.25F;     // weak: the middle of a mover agrees with itself
 constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same does stand still
@@ -65,7 +66,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
       if (residual > limit) {
         odds = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residual - limit));
       } else if (residual < -limit) {
-        if (there.z - measured < kStepBackLimit) odds = kStepsBack;
+        if (there.z - measured < kStepBackLimit) odds = reference.old ? kSteppedBack : kStepsBack;
       } else {
         odds = kSameDepth;
         brightness.at<float>(y, x) =

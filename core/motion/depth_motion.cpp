@@ -15,6 +15,7 @@ namespace stillpoint {
 namespace {
 
 constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
+constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
 constexpr int kHole = 8;                               // small px: half of what a mover may have unmeasured
 constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
@@ -50,8 +51,10 @@ cv::Mat evidence_of_patches(const DepthMotionTrace& trace, const DepthMotionConf
   std::vector<float> of_patch(trace.segments.size(), 0.0F);
   for (const ReferenceEvidence& reference : trace.references)
     for (std::size_t i = 0; i < reference.patches.size(); ++i) {
-      of_patch[i] += std::clamp(static_cast<float>(config.patch_share) * reference.patches[i].log_odds,
-                                -kMostStill, kMostMoved);
+      if (reference.patches[i].log_odds == 0.0F) continue;
+      of_patch[i] +=
+          std::clamp(static_cast<float>(config.patch_share) * (reference.patches[i].log_odds - kDoubt),
+                     -kMostStill, kMostMoved);
     }
   cv::Mat image = cv::Mat::zeros(trace.labels.size(), CV_32FC1);
   for (int y = 0; y < image.rows; ++y)
@@ -213,7 +216,8 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
       if (label < 0) continue;
       const Segment& segment = trace.segments[static_cast<std::size_t>(label)];
       float& odds = trace.log_odds.at<float>(y, x);
-      const float joined = 0.5F * (odds + segment.log_odds);
+      const bool agrees = segment.moving && odds > segment.log_odds;
+      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
       odds = std::min(joined, std::max({odds, segment.evidence, limit}));
     }
   return trace;

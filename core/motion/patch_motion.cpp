@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/motion/carrier.hpp"
+#include "core/motion/segments.hpp"
 
 namespace stillpoint {
 namespace {
@@ -33,6 +34,15 @@ struct Measured {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
 };
 
+/// Whether a pixel's four neighbours lie on its own surface. Across an outline the gradient is of two things
+/// that parallax parts.
+bool within_surface(const cv::Mat& depth, int x, int y) {
+  const float* row = depth.ptr<float>(y) + x;
+  const float z = row[0], above = depth.ptr<float>(y - 1)[x], below = depth.ptr<float>(y + 1)[x];
+  const auto same = [z](float other) { return other > 0 && same_surface(z, other); };
+  return same(row[-1]) && same(row[1]) && same(above) && same(below);
+}
+
 std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, const Carrier& carry,
                          const cv::Mat& labels, std::size_t patches) {
   std::vector<Sums> sums(patches);
@@ -42,7 +52,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, con
     const auto *above = current.gray.ptr<float>(y - 1), *row = current.gray.ptr<float>(y),
                *below = current.gray.ptr<float>(y + 1);
     for (int x = 1; x + 1 < labels.cols; ++x) {
-      if (label[x] < 0) continue;
+      if (label[x] < 0 || !within_surface(current.depth, x, y)) continue;
       const Carried there = carry(x, y, depth[x]);
       if (!there.inside) continue;
       const int u = cvRound(there.u), v = cvRound(there.v);
@@ -50,6 +60,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, con
       if (measured <= 0) continue;
       const float step = measured - there.z;
       if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(there.z)) continue;
+      if (!within_surface(reference.depth, u, v)) continue;
       const auto* r = reference.gray.ptr<float>(v) + u;
       const float *r_above = reference.gray.ptr<float>(v - 1) + u,
                   *r_below = reference.gray.ptr<float>(v + 1) + u;
