@@ -54,7 +54,7 @@ void Session::process_one() {
     run_->catch_up_one();
     return;
   }
-  const Frame frame = frames_.read(run_->track().processed());
+  const Frame frame = frames_.read_in_turn(run_->track().processed());
   // The baseline sees the same frame at the same time; neither knows of the other.
   std::future<FrameResult> beside;
   if (baseline_)
