@@ -36,11 +36,12 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
     return std::nullopt;
   Odometry next = *this;
   next.config_ = config;
-  next.extractor_ = OrbExtractor(config.features);
+  next.preparer_ = FramePreparer(camera_, config);
 
   const bool keeps_references =
       compares_by_homography(config_) && compares_by_homography(config) && config.motion == config_.motion;
-  if (!keeps_references) next.references_ = motion_frames(before, config);
+  for (const auto& reference : keeps_references ? preparer_.references() : motion_frames(before, config))
+    next.preparer_.pass(reference);
 
   if (config.run.method == "stillpoint" && same_past_views(config_, config)) return next;
   next.past_views_.clear();
