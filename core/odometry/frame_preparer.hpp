@@ -38,6 +38,9 @@ class FramePreparer {
   /// Takes note of a frame that another preparer prepared; null where the method compares no frames.
   void pass(const std::shared_ptr<const MotionFrame>& motion_frame);
 
+  /// Lets go of all frames taken note of.
+  void forget() { references_.clear(); }
+
   /// The frames the next one can be compared with, newest last.
   [[nodiscard]] const std::deque<std::shared_ptr<const MotionFrame>>& references() const {
     return references_;

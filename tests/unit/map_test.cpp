@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "core/odometry/bundle_adjustment.hpp"
@@ -74,6 +75,30 @@ TEST_F(Wall, PointsAreMadeWhereDepthSaysTheyAre) {
         1e-5);
 }
 
+TEST_F(Wall, FarPointsAreMadeWhereThereAreNoNearerOnes) {
+  // Everything counts as far and none is wanted for being near: each part of the image still has its few.
+  config_.map.far_depth_m = 0.5;
+  config_.map.min_new_points = 0;
+  config_.map.min_cell_points = 2;
+  const int first = add(0.0, std::vector<int>(kPoints, kNone));
+  const int made = create_points(map_, first, kCamera, config_);
+  EXPECT_GT(made, 0);
+  EXPECT_LT(made, kPoints);
+  const Keyframe& keyframe = map_.keyframe(first);
+  std::map<std::pair<int, int>, std::pair<int, int>> parts;  // features and points of each
+  for (int i = 0; i < kPoints; ++i) {
+    const auto f = static_cast<std::size_t>(i);
+    const cv::Point2f pixel = keyframe.features->keypoints[f].pt;
+    auto& [features, points] = parts[{static_cast<int>(pixel.x) / 80, static_cast<int>(pixel.y) / 80}];
+    ++features;
+    points += keyframe.points[f] != kNone;
+  }
+  for (const auto& [part, counts] : parts) EXPECT_EQ(counts.second, std::min(2, counts.first));
+  config_.map.min_cell_points = 0;
+  const int second = add(0.0, std::vector<int>(kPoints, kNone));
+  EXPECT_EQ(create_points(map_, second, kCamera, config_), 0);
+}
+
 TEST_F(Wall, CovisibilityCountsSharedPoints) {
   auto ids = begin();
   std::fill(ids.begin() + 20, ids.end(), kNone);
@@ -93,6 +118,17 @@ TEST_F(Wall, ObservationsComeAndGoOnBothSides) {
   map_.remove_point(ids[4]);
   EXPECT_EQ(map_.keyframe(0).points[4], kNone);
   EXPECT_EQ(map_.keyframe(1).points[4], kNone);
+}
+
+TEST_F(Wall, PointsThatMoveAreRememberedWhenTheyGo) {
+  const auto ids = begin();
+  const Eigen::Vector3d place = map_.point(ids[3]).position;
+  map_.remove_moving_point(ids[3]);
+  map_.remove_point(ids[4]);
+  EXPECT_FALSE(map_.has_point(ids[3]));
+  ASSERT_EQ(map_.moved_points().size(), 1U);
+  EXPECT_EQ(map_.moved_points()[0].id, ids[3]);
+  EXPECT_EQ(map_.moved_points()[0].position, place);
 }
 
 TEST_F(Wall, FusionJoinsTwinsOfNeighbours) {
