@@ -126,7 +126,9 @@ void snapshot(const SnapshotArguments& arguments) {
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
   // The records of a finished run hold all but what these show.
   place.options.catch_up =
-      method == "stillpoint" && (painter.draws("depth_motion") || painter.draws("workbench"));
+      method == "stillpoint" &&
+      (painter.draws("depth_motion") || painter.draws("colour_motion") || painter.draws("stages") ||
+       painter.draws("feature") || painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
@@ -141,6 +143,7 @@ void snapshot(const SnapshotArguments& arguments) {
       }
       for (const int frame : frames) {
         session.go_to(frame, on_frame);
+        if (painter.draws("stages") || painter.draws("workbench")) session.complete();
         const auto view = session.view();
         pictures.add(*view, painter.paint(*view));
         throw_if_interrupted();

@@ -1,15 +1,23 @@
 #include "core/motion/depth_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/depth_evidence.hpp"
+#include "core/motion/patch_motion.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/segments.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
+
+constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
+constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
+constexpr int kHole = 8;                               // small px: half of what a mover may have unmeasured
+constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
 /// The pixels of moving patches.
 cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
@@ -20,6 +28,56 @@ cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments
           label >= 0 && segments[static_cast<std::size_t>(label)].moving)
         mask.at<uchar>(y, x) = 255;
   return mask;
+}
+
+/// Adds what one reference says of each pixel. Where its patch was measured as a whole, that it looks the
+/// same says nothing more: a slow mover's pixels hardly change.
+void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    const auto* says = reference.log_odds.ptr<float>(y);
+    auto* sum = evidence.ptr<float>(y);
+    for (int x = 0; x < labels.cols; ++x) {
+      const bool measured = says[x] < 0 && label[x] >= 0 && !reference.patches.empty() &&
+                            reference.patches[static_cast<std::size_t>(label[x])].log_odds != 0.0F;
+      if (!measured) sum[x] += says[x];
+    }
+  }
+}
+
+/// What patches say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each says
+/// only a part of it.
+cv::Mat evidence_of_patches(const DepthMotionTrace& trace, const DepthMotionConfig& config) {
+  std::vector<float> of_patch(trace.segments.size(), 0.0F);
+  for (const ReferenceEvidence& reference : trace.references)
+    for (std::size_t i = 0; i < reference.patches.size(); ++i) {
+      if (reference.patches[i].log_odds == 0.0F) continue;
+      of_patch[i] +=
+          std::clamp(static_cast<float>(config.patch_share) * (reference.patches[i].log_odds - kDoubt),
+                     -kMostStill, kMostMoved);
+    }
+  cv::Mat image = cv::Mat::zeros(trace.labels.size(), CV_32FC1);
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x)
+      if (const int label = trace.labels.at<int>(y, x); label >= 0)
+        image.at<float>(y, x) = of_patch[static_cast<std::size_t>(label)];
+  return image;
+}
+
+/// Memory and evidence together. What is firmly known to move is let go but slowly: people who stop go on.
+cv::Mat with_memory(const cv::Mat& prior, const cv::Mat& evidence, const DepthMotionConfig& config) {
+  const auto limit = static_cast<float>(config.max_log_odds), firm = static_cast<float>(config.firm_log_odds),
+             release = static_cast<float>(config.release);
+  cv::Mat odds(prior.size(), CV_32FC1);
+  for (int y = 0; y < odds.rows; ++y) {
+    const auto *before = prior.ptr<float>(y), *says = evidence.ptr<float>(y);
+    auto* out = odds.ptr<float>(y);
+    for (int x = 0; x < odds.cols; ++x) {
+      const float share = before[x] > firm && says[x] < 0 ? release : 1.0F;
+      out[x] = std::clamp(before[x] + share * says[x], -kStillLimit, limit);
+    }
+  }
+  return odds;
 }
 
 void drop_small_regions(cv::Mat& mask, double min_area_share) {
@@ -34,35 +92,73 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// The small mask at full size, its outline fitted to the depth image: about an edge a pixel goes with the
-/// small neighbour whose depth is most like its own.
+/// Whether what a pixel without depth lies in moves: by the nearest measured pixels to its four sides.
+bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
+  constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  int moving = 0, still = 0;
+  for (const auto& [dx, dy] : kSides)
+    for (int step = 1; step <= reach; ++step) {
+      const int u = x + step * dx, v = y + step * dy;
+      if (u < 0 || v < 0 || u >= mask.cols || v >= mask.rows) break;
+      if (depth.at<float>(v, u) <= 0) continue;
+      ++(mask.at<uchar>(v, u) != 0 ? moving : still);
+      break;
+    }
+  return moving >= 2 && still == 0;
+}
+
+/// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
+/// sensor's shadow beside a mover is background, and stays out.
+void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
+  std::vector<cv::Point> inside;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
+        inside.emplace_back(x, y);
+  for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
+}
+
+/// The moving of the 3x3 small pixels about one, for a full-size pixel at depth z: that of the pixel with the
+/// depth most like its own.
+uchar like_neighbour(const cv::Mat& small_mask, const cv::Mat& small_depth, int sx, int sy, float z) {
+  uchar value = 0;
+  float best = std::numeric_limits<float>::max();
+  for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
+    for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
+      const float other = small_depth.at<float>(v, u), difference = std::abs(other - z);
+      if (other > 0 && difference < best) best = difference, value = small_mask.at<uchar>(v, u);
+    }
+  return value;
+}
+
+/// The small mask at full size, its outline fitted to the depth image.
 cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
-  cv::Mat edge, low, high;
+  constexpr int kReach = 5;  // px: the ragged rim of an outline is no wider
+  cv::Mat low, high, mask;
   cv::erode(small_mask, low, cv::Mat());
   cv::dilate(small_mask, high, cv::Mat());
-  edge = low != high;
-  cv::Mat mask = cv::Mat::zeros(full_depth.size(), CV_8UC1);
+  const cv::Mat edge = low != high;
+  cv::resize(small_mask, mask, full_depth.size(), 0, 0, cv::INTER_NEAREST);
   const int f = view.factor;
-  for (int y = 0; y < mask.rows; ++y)
-    for (int x = 0; x < mask.cols; ++x) {
-      const int sx = std::min(x / f, small_mask.cols - 1), sy = std::min(y / f, small_mask.rows - 1);
-      uchar value = small_mask.at<uchar>(sy, sx);
-      const float z = full_depth.at<float>(y, x);
-      if (edge.at<uchar>(sy, sx)) {
-        if (z > 0) {
-          float best = std::numeric_limits<float>::max();
-          for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
-            for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
-              const float other = view.depth.at<float>(v, u);
-              const float difference = std::abs(other - z);
-              if (other > 0 && difference < best) best = difference, value = small_mask.at<uchar>(v, u);
-            }
-        } else {
-          value = high.at<uchar>(sy, sx);  // the sensor's shadow beside a mover moves with it
+  std::vector<cv::Point> inside;
+  for (int sy = 0; sy < edge.rows; ++sy)
+    for (int sx = 0; sx < edge.cols; ++sx) {
+      if (edge.at<uchar>(sy, sx) == 0) continue;
+      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
+        for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x) {
+          const float z = full_depth.at<float>(y, x);
+          mask.at<uchar>(y, x) = z > 0 ? like_neighbour(small_mask, view.depth, sx, sy, z) : uchar{0};
         }
-      }
-      mask.at<uchar>(y, x) = value;
     }
+  for (int sy = 0; sy < edge.rows; ++sy)
+    for (int sx = 0; sx < edge.cols; ++sx) {
+      if (edge.at<uchar>(sy, sx) == 0) continue;
+      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
+        for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x)
+          if (full_depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, full_depth, x, y, kReach))
+            inside.emplace_back(x, y);
+    }
+  for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
   return mask;
 }
 
@@ -72,21 +168,34 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
                                      const std::vector<ReferenceView>& references, const MotionMemory* memory,
                                      const Pose& previous_from_current, const DepthMotionConfig& config) {
   DepthMotionTrace trace;
+  Stopwatch watch;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  trace.log_odds = trace.prior.clone();
-  for (const ReferenceView& reference : references) {
-    trace.references.push_back(compare_with_reference(current, reference, config));
-    trace.log_odds += trace.references.back().log_odds;
-  }
-  const double limit = config.max_log_odds;
-  cv::min(trace.log_odds, limit, trace.log_odds);
-  cv::max(trace.log_odds, -limit, trace.log_odds);
-
+  trace.ms.memory = watch.lap();
   trace.segments = segment_surfaces(current, config, trace.labels);
+  const double segments_ms = watch.lap();
+  cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  for (ReferenceView reference : references) {
+    PatchMotions patches;
+    if (reference.old) {
+      patches = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+      reference.reference_from_current = patches.reference_from_current;
+    }
+    trace.references.push_back(compare_with_reference(current, reference, config));
+    trace.references.back().patches = std::move(patches.patches);
+    trace.references.back().reference = reference;
+    add_pixels(trace.references.back(), trace.labels, evidence);
+    trace.references.back().ms = watch.lap();
+  }
+  trace.slow = evidence_of_patches(trace, config);
+  evidence += trace.slow;
+  trace.log_odds = with_memory(trace.prior, evidence, config);
+
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
+  trace.ms.segments = segments_ms + watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);
+  fill_unmeasured(current.depth, kHole, trace.small_mask);
   trace.mask = fit_to_depth(trace.small_mask, current, full_depth);
   if (config.margin_px > 0) {
     const int side = 2 * config.margin_px + 1;
@@ -95,15 +204,21 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   LabelledRegions found = find_regions(trace.mask);
   trace.regions = std::move(found.regions);
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  trace.ms.mask = watch.lap();
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
-  // What a patch was found to be is what its pixels are remembered as.
+  // What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
+  // firm, or memory would creep along every surface a mover touches.
+  const auto limit = static_cast<float>(config.moving_log_odds);
   for (int y = 0; y < trace.labels.rows; ++y)
     for (int x = 0; x < trace.labels.cols; ++x) {
       const int label = trace.labels.at<int>(y, x);
       if (label < 0) continue;
+      const Segment& segment = trace.segments[static_cast<std::size_t>(label)];
       float& odds = trace.log_odds.at<float>(y, x);
-      odds = 0.5F * (odds + trace.segments[static_cast<std::size_t>(label)].log_odds);
+      const bool agrees = segment.moving && odds > segment.log_odds;
+      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
+      odds = std::min(joined, std::max({odds, segment.evidence, limit}));
     }
   return trace;
 }

@@ -21,15 +21,26 @@ namespace stillpoint {
 struct ReferenceView {
   std::shared_ptr<const RgbdView> view;
   Pose reference_from_current = Pose::Identity();
+  bool old = false;  ///< far enough back for slow movers to have gone somewhere
+};
+
+/// How far a patch of surface lies from where the camera's motion alone would have it.
+struct PatchMotion {
+  cv::Vec2f shift;        ///< px, small image of the reference
+  float step = 0.0F;      ///< m, along the reference's optical axis
+  float log_odds = 0.0F;  ///< of moving; 0 = says nothing
 };
 
 /// What comparing with one reference says of each pixel. Small images, CV_32FC1.
 struct ReferenceEvidence {
+  ReferenceView reference;  ///< what was compared with
   cv::Mat
       depth_residual;  ///< standard deviations: measured less expected depth there; NaN = cannot be compared
-  cv::Mat intensity_residual;    ///< grey levels beyond what gradient explains; NaN = cannot be compared
-  cv::Mat log_odds;              ///< of moving; 0 = says nothing
-  double intensity_sigma = 0.0;  ///< grey levels, estimated from this pair
+  cv::Mat intensity_residual;        ///< grey levels beyond what gradient explains; NaN = cannot be compared
+  cv::Mat log_odds;                  ///< of moving; 0 = says nothing
+  double intensity_sigma = 0.0;      ///< grey levels, estimated from this pair
+  std::vector<PatchMotion> patches;  ///< one a segment; empty where the reference is too young for it
+  double ms = 0.0;                   ///< wall time of the comparison; for reading only
 };
 
 /// A patch of one surface, and how likely it moves.
@@ -42,9 +53,17 @@ struct Segment {
   bool moving = false;
 };
 
+/// What each step took, ms of wall time. For reading only: no result depends on it.
+struct DepthMotionTimes {
+  double memory = 0.0;    ///< carrying along what is remembered
+  double segments = 0.0;  ///< patches and their judgement
+  double mask = 0.0;      ///< painting, cleaning and fitting the outline
+};
+
 /// What depth-aware motion detection saw, stage by stage.
 struct DepthMotionTrace {
   std::vector<ReferenceEvidence> references;
+  cv::Mat slow;      ///< CV_32FC1 log-odds that patches say by how far they shifted
   cv::Mat prior;     ///< CV_32FC1 log-odds remembered from the frame before, carried along
   cv::Mat log_odds;  ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
   cv::Mat labels;    ///< CV_32SC1: segment of each pixel, -1 = no depth
@@ -54,6 +73,7 @@ struct DepthMotionTrace {
   std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   std::string note;         ///< why there is no mask; empty when all is well
+  DepthMotionTimes ms;
 };
 
 /// What the next frame needs of this one.

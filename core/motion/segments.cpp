@@ -10,6 +10,7 @@ namespace {
 constexpr int kRounds = 3;            // SLIC has settled by then
 constexpr float kDepthScale = 0.05F;  // share of the distance that weighs as much as a patch's side
 constexpr int kRelaxations = 15;
+constexpr float kMostSay = 2.5F;  // log-odds: the surest patch does not outvote its neighbours
 
 struct Sum {
   double x = 0, y = 0, z = 0;
@@ -110,6 +111,7 @@ void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat
         segments[static_cast<std::size_t>(label)].evidence += log_odds.at<float>(y, x);
   for (Segment& segment : segments) {
     if (segment.pixels > 0) segment.evidence /= static_cast<float>(segment.pixels);
+    segment.evidence = std::clamp(segment.evidence, -kMostSay, kMostSay);
     segment.log_odds = segment.evidence;
   }
 

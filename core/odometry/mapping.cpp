@@ -62,6 +62,33 @@ std::vector<int> points_of(const Keyframe& keyframe) {
   return points;
 }
 
+/// How many map points a keyframe has in each part of the image.
+class PointsByPlace {
+ public:
+  PointsByPlace(const Camera& camera, const Keyframe& keyframe)
+      : keyframe_(keyframe),
+        columns_(camera.width / kCell + 1),
+        rows_(camera.height / kCell + 1),
+        counts_(static_cast<std::size_t>(columns_ * rows_), 0) {
+    for (int i = 0; i < keyframe.features->size(); ++i)
+      if (keyframe.points[static_cast<std::size_t>(i)] != kNone) ++at(i);
+  }
+
+  /// The count of the part in which a feature lies.
+  [[nodiscard]] int& at(int feature) {
+    const cv::Point2f pixel = keyframe_.features->keypoints[static_cast<std::size_t>(feature)].pt;
+    const int column = std::clamp(static_cast<int>(pixel.x) / kCell, 0, columns_ - 1);
+    const int row = std::clamp(static_cast<int>(pixel.y) / kCell, 0, rows_ - 1);
+    return counts_[static_cast<std::size_t>(row * columns_ + column)];
+  }
+
+ private:
+  static constexpr int kCell = 80;  // px
+  const Keyframe& keyframe_;
+  int columns_, rows_;
+  std::vector<int> counts_;
+};
+
 }  // namespace
 
 int create_points(LocalMap& map, int keyframe_id, const Camera& camera, const Config& config) {
@@ -74,11 +101,16 @@ int create_points(LocalMap& map, int keyframe_id, const Camera& camera, const Co
   std::sort(by_depth.begin(), by_depth.end());
 
   const Pose world_from_camera = keyframe.camera_from_world.inverse();
+  PointsByPlace by_place(camera, keyframe);
   int near = 0, created = 0;
   for (const auto& [depth, i] : by_depth) {
-    if (depth > config.map.far_depth_m && near >= config.map.min_new_points) break;
+    // Far points are less exact, but where there are no others they alone tell the room from what stands
+    // before it.
+    const bool wanted = depth <= config.map.far_depth_m || near < config.map.min_new_points;
+    if (!wanted && by_place.at(i) >= config.map.min_cell_points) continue;
     ++near;
     if (keyframe.points[static_cast<std::size_t>(i)] != kNone) continue;
+    ++by_place.at(i);
     const cv::Point2f pixel = features.undistorted[static_cast<std::size_t>(i)];
     const Eigen::Vector3d point = world_from_camera * camera.back_project({pixel.x, pixel.y}, depth);
     const int id = map.add_point(point, keyframe_id, i);

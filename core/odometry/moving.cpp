@@ -12,6 +12,7 @@ namespace stillpoint {
 
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
+  record.prior_pose = predicted;
   view_ = std::make_shared<const RgbdView>(
       make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   cv::Mat mask;
@@ -25,9 +26,23 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
   return mask;
 }
 
+void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
+  if (frame.has_depth()) {
+    colour_.reset();
+    return;
+  }
+  const Stopwatch watch;
+  if (!colour_) colour_.emplace(camera_, config_.colour_motion);
+  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour);
+  result.mask = result.colour_motion.mask;
+  result.record.mask_share = result.colour_motion.mask_share;
+  result.record.ms.motion += watch.milliseconds();
+}
+
 void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
   if (!frame.has_depth()) return;
   const Stopwatch watch;
+  result.record.motion_pose = camera_from_world;
   const Pose previous_from_current = past_views_.empty()
                                          ? Pose::Identity()
                                          : past_views_.back().camera_from_world * camera_from_world.inverse();
@@ -49,7 +64,7 @@ void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
   memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
   past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});
   while (past_views_.size() > 1 &&
-         past_views_[1].frame_index <= frame.index - config_.depth_motion.far_reference)
+         past_views_[1].frame_index <= frame.index - config_.depth_motion.slow_reference)
     past_views_.pop_front();
   view_.reset();
 }
@@ -57,7 +72,9 @@ void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
 std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose& camera_from_world) const {
   std::vector<ReferenceView> references;
   const PastView* taken = nullptr;
-  for (const int gap : {config_.depth_motion.near_reference, config_.depth_motion.far_reference}) {
+  constexpr int kOld = 8;  // frames: from here on slow movers have gone somewhere
+  for (const int gap : {config_.depth_motion.near_reference, config_.depth_motion.far_reference,
+                        config_.depth_motion.slow_reference}) {
     // The youngest that is old enough, else the oldest there is.
     const auto it = std::find_if(past_views_.rbegin(), past_views_.rend(),
                                  [&](const PastView& past) { return past.frame_index <= frame_index - gap; });
@@ -65,14 +82,15 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
     const PastView& past = it != past_views_.rend() ? *it : past_views_.front();
     if (&past == taken) continue;
     taken = &past;
-    references.push_back({past.view, past.camera_from_world * camera_from_world.inverse()});
+    references.push_back({past.view, past.camera_from_world * camera_from_world.inverse(),
+                          frame_index - past.frame_index >= kOld});
   }
   return references;
 }
 
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {
   constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves, not behind it
-  if (mask.empty()) return;
+  if (mask.empty() || config_.map.purge_moving == 0) return;
   for (int& id : last_->points) {
     if (id == kNone || !map_.has_point(id)) continue;
     const Eigen::Vector3d p = camera_from_world * map_.point(id).position;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/odometry/mapping.hpp"
 #include "core/odometry/rolling_shutter.hpp"
@@ -38,7 +39,7 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
     // §1 beside ORB extraction: neither needs the other's result.
     auto features = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
       const Stopwatch watch;
-      OrbFeatures found = extractor_.extract(frame.gray);
+      OrbFeatures found = extractor_.extract(frame.gray, config_.run.threads);
       return std::pair(std::move(found), watch.milliseconds());
     });
     detect(frame, known_mask, result);
@@ -83,7 +84,11 @@ void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
 }
 
 void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
-  if (config_.run.method == "none" || config_.run.method == "stillpoint") return;
+  if (config_.run.method == "none") return;
+  if (config_.run.method == "stillpoint") {
+    detect_in_colour(frame, result);
+    return;
+  }
   if (config_.run.method == "oracle") {
     if (known_mask.size() != frame.gray.size()) return;
     result.mask = known_mask;
@@ -176,7 +181,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
     Current first = remove_moving(frame, found, result.mask, velocity_, record);
     first.camera_from_world = start;
-    first.seek_consensus = finds_movers_by_pose;
+    first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
     if (estimate(first, record)) {
       start = first.camera_from_world;
@@ -186,8 +191,44 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
   }
   Current current = remove_moving(frame, found, result.mask, velocity, record);
   current.camera_from_world = start;
-  track(frame, current, record);
+  std::string why_lost;
+  bool harms = finds_movers_by_pose && leaves_too_little(current);
+  if (!harms) {
+    why_lost = track(frame, current, record);
+    harms = finds_movers_by_pose && !why_lost.empty() && record.features_removed > 0;
+  }
+  if (harms) {
+    // Better a pose disturbed by what moves than none: the frame is tracked by all of its features, and what
+    // is remembered to move, which led here, is forgotten.
+    current = remove_moving(frame, found, {}, velocity, record);
+    current.camera_from_world = start;
+    why_lost = track(frame, current, record);
+    result.mask.release();
+    result.depth_motion.log_odds.setTo(0);
+    record.mask_share = 0.0;
+    record.note += (record.note.empty() ? "" : "; ") +
+                   std::string("too little is left without what moves, so nothing was removed");
+  }
+  if (!why_lost.empty()) mark_lost(record, FrameStatus::lost, why_lost);
   return current;
+}
+
+bool Odometry::leaves_too_little(const Current& current) const {
+  constexpr int kColumns = 8, kRows = 6;
+  constexpr int kLeastParts = 5;  // of those 48 that features must lie in, or they tell no room from a mover
+  if (current.record_of.size() == current.records.size()) return false;
+  std::array<bool, kColumns * kRows> before{}, after{};
+  for (const FeatureRecord& feature : current.records) {
+    const int column =
+        std::clamp(static_cast<int>(feature.pixel.x) * kColumns / camera_.width, 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(feature.pixel.y) * kRows / camera_.height, 0, kRows - 1);
+    const auto part = static_cast<std::size_t>(row * kColumns + column);
+    before[part] = true;
+    after[part] = after[part] || feature.fate != FeatureFate::removed;
+  }
+  const auto had = std::count(before.begin(), before.end(), true);
+  const auto has = std::count(after.begin(), after.end(), true);
+  return has < std::min<std::ptrdiff_t>(kLeastParts, had);
 }
 
 bool Odometry::is_taken_at_once(const Frame& frame) const {
@@ -205,22 +246,16 @@ bool Odometry::estimate(Current& current, FrameRecord& record) const {
   return estimate_by_epnp(current, record);
 }
 
-void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
+std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
   const bool was_lost = lost_frames_ > 0;
-  if (!estimate(current, record)) {
-    mark_lost(record, FrameStatus::lost,
-              fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
-                          record.features_kept, config_.tracking.min_initial_matches));
-    return;
-  }
+  if (!estimate(current, record))
+    return fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
+                       record.features_kept, config_.tracking.min_initial_matches);
   const PoseRefinement refined = track_local_map(current, record);
   count_sightings(current);
   const int needed = inliers_needed();
-  if (refined.inliers < needed) {
-    mark_lost(record, FrameStatus::lost,
-              fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed));
-    return;
-  }
+  if (refined.inliers < needed)
+    return fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed);
   record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
   record.estimated = true;
   const Pose last = last_camera_from_world();
@@ -229,6 +264,7 @@ void Odometry::track(const Frame& frame, Current& current, FrameRecord& record) 
   lost_frames_ = 0;
   if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
   remember(current, record);
+  return {};
 }
 
 bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const {

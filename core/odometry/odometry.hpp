@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/motion/colour_motion.hpp"
 #include "core/motion/depth_motion.hpp"
 #include "core/motion/detect_motion.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
@@ -23,9 +25,10 @@ namespace stillpoint {
 /// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
 struct FrameResult {
   FrameRecord record;
-  MotionTrace motion;             ///< what the method's motion stage saw; without rounds where it has none
-  DepthMotionTrace depth_motion;  ///< the same of method `stillpoint`; without references where it has none
-  cv::Mat mask;                   ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
+  MotionTrace motion;               ///< what the method's motion stage saw; without rounds where it has none
+  DepthMotionTrace depth_motion;    ///< the same of method `stillpoint`; without references where it has none
+  ColourMotionTrace colour_motion;  ///< the same of a frame without depth; without points where it has none
+  cv::Mat mask;                     ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
 /// A frame that was processed before, and where it was found to be.
@@ -50,13 +53,20 @@ class Odometry {
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
 
   /// The same map and the same place, but the next frames are processed with another config. What the new
-  /// method needs of earlier frames is made from `before`, newest last: motion.reference_gap of them for the
-  /// paper's method, depth_motion.far_reference for `stillpoint`. With an equal config it goes on bit for bit
-  /// as it would have.
+  /// method needs of earlier frames is made from `before`, the last frames_wanted(config) of them, newest
+  /// last. With an equal config it goes on bit for bit as it would have.
   /// @returns nothing where the map's features would not fit the new ones (another features.levels or
   /// features.scale_factor)
   [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
                                                        const std::vector<PastFrame>& before) const;
+
+  /// How many earlier frames continued_with() needs; 0 where it has all that the new config asks for.
+  [[nodiscard]] int frames_wanted(const Config& config) const;
+
+  /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
+  void drop_images();
+  /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
+  void restore_images(int next, const std::function<Frame(int)>& read);
 
   /// Lets a pending bundle adjustment enter the map: after the last frame.
   void finish();
@@ -65,6 +75,8 @@ class Odometry {
   [[nodiscard]] const Config& config() const { return config_; }
 
  private:
+  friend class MotionReplay;
+
   /// The frame being tracked.
   struct Current {
     std::shared_ptr<const FeatureSet> features;  // static ones
@@ -102,13 +114,16 @@ class Odometry {
                                       const Vector6d& velocity, FrameRecord& record) const;
   [[nodiscard]] Current track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result);
   [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
+  void detect_in_colour(const Frame& frame, FrameResult& result);
   void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
   void remember_view(const Frame& frame, const FrameResult& result);
   [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index,
                                                            const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
-  void track(const Frame& frame, Current& current, FrameRecord& record);
+  /// @returns why there is no pose; empty when there is one
+  [[nodiscard]] std::string track(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] bool leaves_too_little(const Current& current) const;
   [[nodiscard]] bool estimate(Current& current, FrameRecord& record) const;
   [[nodiscard]] bool estimate_from_last(Current& current, FrameRecord& record) const;
   [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record) const;
@@ -151,9 +166,10 @@ class Odometry {
   std::deque<std::shared_ptr<const MotionFrame>>
       references_;  // newest last, as far back as motion detection looks
   std::optional<PendingBundle> pending_;
-  std::deque<PastView> past_views_;       // newest last: what method `stillpoint` compares with
-  std::optional<MotionMemory> memory_;    // of the newest past view
-  std::shared_ptr<const RgbdView> view_;  // of the frame at hand
+  std::deque<PastView> past_views_;             // newest last: what method `stillpoint` compares with
+  std::optional<MotionMemory> memory_;          // of the newest past view
+  std::shared_ptr<const RgbdView> view_;        // of the frame at hand
+  std::optional<ColourMotionDetector> colour_;  // while frames have no depth
 };
 
 }  // namespace stillpoint

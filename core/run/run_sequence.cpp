@@ -102,6 +102,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.trajectory = trajectory_so_far(odometry.map(), result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
+  result.moved = moved_points(odometry.map());
   return result;
 }
 

@@ -48,6 +48,7 @@ struct RunResult {
   Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
+  std::vector<SavedPoint> moved;  ///< those that left the map because they moved, oldest first
   int frames_in_sequence = 0;
   double orb_unit_ms = 0.0;  ///< the unit of speed, median over the frames; 0 when it was not measured
   bool interrupted = false;  ///< stopped before the last frame

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "core/odometry/bundle_adjustment.hpp"
@@ -72,6 +73,30 @@ TEST_F(Wall, PointsAreMadeWhereDepthSaysTheyAre) {
     EXPECT_LT(
         (map_.point(ids[static_cast<std::size_t>(i)]).position - truth_[static_cast<std::size_t>(i)]).norm(),
         1e-5);
+}
+
+TEST_F(Wall, FarPointsAreMadeWhereThereAreNoNearerOnes) {
+  // Everything counts as far and none is wanted for being near: each part of the image still has its few.
+  config_.map.far_depth_m = 0.5;
+  config_.map.min_new_points = 0;
+  config_.map.min_cell_points = 2;
+  const int first = add(0.0, std::vector<int>(kPoints, kNone));
+  const int made = create_points(map_, first, kCamera, config_);
+  EXPECT_GT(made, 0);
+  EXPECT_LT(made, kPoints);
+  const Keyframe& keyframe = map_.keyframe(first);
+  std::map<std::pair<int, int>, std::pair<int, int>> parts;  // features and points of each
+  for (int i = 0; i < kPoints; ++i) {
+    const auto f = static_cast<std::size_t>(i);
+    const cv::Point2f pixel = keyframe.features->keypoints[f].pt;
+    auto& [features, points] = parts[{static_cast<int>(pixel.x) / 80, static_cast<int>(pixel.y) / 80}];
+    ++features;
+    points += keyframe.points[f] != kNone;
+  }
+  for (const auto& [part, counts] : parts) EXPECT_EQ(counts.second, std::min(2, counts.first));
+  config_.map.min_cell_points = 0;
+  const int second = add(0.0, std::vector<int>(kPoints, kNone));
+  EXPECT_EQ(create_points(map_, second, kCamera, config_), 0);
 }
 
 TEST_F(Wall, CovisibilityCountsSharedPoints) {

@@ -269,6 +269,12 @@ class ParametersPanel final : public NamedPanel {
       ImGui::EndCombo();
       return;
     }
+    if (auto* const* flag = std::get_if<int*>(&parameter.value);
+        flag != nullptr && parameter.min == 0.0 && parameter.max == 1.0) {
+      bool on = **flag != 0;
+      if (ImGui::Checkbox("##value", &on)) **flag = on ? 1 : 0;
+      return;
+    }
     // A wide range is gone through by factors, so that small values can be hit too.
     const bool wide = parameter.max > 200.0 * std::max(parameter.min, 0.5);
     const ImGuiSliderFlags flags =

@@ -79,7 +79,8 @@ WorkbenchHost Desk::host() {
                 // What is opened next is run as this one is.
                 if (const auto* all = std::get_if<request::RunAll>(&wanted)) options_.config = all->config;
                 if (session_) session_->request(std::move(wanted));
-              }};
+              },
+          .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
 }
 
 std::unique_ptr<Session> Desk::make_session(const OpenedPlace& place, const std::string& where) const {

@@ -205,13 +205,22 @@ LayoutNode failures_layout(std::string_view method) {
                tile(0.2, "inspector")})});
 }
 
+/// One frame from within: its stages, and what pixels and features there say.
+LayoutNode stages_layout(std::string_view) {
+  return divide(
+      1.0, kColumns,
+      {tile(0.48, "stages"), divide(0.28, kRows, {tile(0.46, "features_before"), tile(0.54, "feature")}),
+       divide(0.24, kRows, {tile(0.72, "inspector"), tile(0.28, "timeline")})});
+}
+
 }  // namespace
 
 std::vector<NamedLayout> named_layouts() {
   return {{"inspect", "Inspect", default_layout},
           {"motion", "Motion", motion_layout},
           {"compare", "Compare", compare_layout},
-          {"failures", "Failures", failures_layout}};
+          {"failures", "Failures", failures_layout},
+          {"stages", "Stages", stages_layout}};
 }
 
 }  // namespace stillpoint

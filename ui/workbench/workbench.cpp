@@ -145,6 +145,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
+  tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
   const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
@@ -164,6 +165,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_palette();
   draw_open_dialog();
   look_ = frame.wanted_look;
+  if (session != nullptr && host_.compare) host_.compare(compare_frames_);
+  compare_frames_ = false;
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -304,6 +307,7 @@ void Workbench::draw_tile_menu(const std::string& name) {
 void Workbench::carry_out(const PanelActions& wanted) {
   if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  compare_frames_ |= wanted.compare_frames;
   if (host_.request)
     for (const SessionRequest& wish : wanted.requests) host_.request(wish);
   if (wanted.set_parameters.empty() || !host_.configure) return;

@@ -1,0 +1,260 @@
+#include "core/motion/patch_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/carrier.hpp"
+#include "core/motion/segments.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kMinPixels = 12;          // of a patch that meet the reference
+constexpr int kMinPatches = 16;         // fewer cannot tell the camera's motion
+constexpr double kNoiseSpread = 4.0;    // variance a pixel, over what independent pixels would have
+constexpr double kMinNoise = 1.0;       // grey levels: interpolation alone makes as much
+constexpr double kShiftPrior = 3.0;     // px: no patch is shifted farther than the step can follow
+constexpr double kRegistration = 0.09;  // px: what stands still is found within this
+constexpr double kDepthSlack = 0.004;   // m at one metre, growing with the square of the distance
+constexpr double kTypicalShift = 0.8;   // px: how far slow movers go
+constexpr double kTypicalStep = 0.04;   // m
+constexpr double kDepthReach = 5.0;     // standard deviations: beyond, it is another surface
+
+struct Sums {
+  double n = 0, gx = 0, gy = 0, b = 0, gxx = 0, gxy = 0, gyy = 0, gxb = 0, gyb = 0, bb = 0;
+  double depth_n = 0, depth_step = 0;
+};
+
+/// A patch's shift and how well it is known.
+struct Measured {
+  bool valid = false;
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();           // px
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  // of the measurement alone
+  double step = 0.0, step_variance = 1e6;                    // m, m²
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
+};
+
+/// Whether a pixel's four neighbours lie on its own surface. Across an outline the gradient is of two things
+/// that parallax parts.
+bool within_surface(const cv::Mat& depth, int x, int y) {
+  const float* row = depth.ptr<float>(y) + x;
+  const float z = row[0], above = depth.ptr<float>(y - 1)[x], below = depth.ptr<float>(y + 1)[x];
+  const auto same = [z](float other) { return other > 0 && same_surface(z, other); };
+  return same(row[-1]) && same(row[1]) && same(above) && same(below);
+}
+
+std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, const Carrier& carry,
+                         const cv::Mat& labels, std::size_t patches) {
+  std::vector<Sums> sums(patches);
+  for (int y = 1; y + 1 < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    const auto* depth = current.depth.ptr<float>(y);
+    const auto *above = current.gray.ptr<float>(y - 1), *row = current.gray.ptr<float>(y),
+               *below = current.gray.ptr<float>(y + 1);
+    for (int x = 1; x + 1 < labels.cols; ++x) {
+      if (label[x] < 0 || !within_surface(current.depth, x, y)) continue;
+      const Carried there = carry(x, y, depth[x]);
+      if (!there.inside) continue;
+      const int u = cvRound(there.u), v = cvRound(there.v);
+      const float measured = reference.depth.at<float>(v, u);
+      if (measured <= 0) continue;
+      const float step = measured - there.z;
+      if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(there.z)) continue;
+      if (!within_surface(reference.depth, u, v)) continue;
+      const auto* r = reference.gray.ptr<float>(v) + u;
+      const float *r_above = reference.gray.ptr<float>(v - 1) + u,
+                  *r_below = reference.gray.ptr<float>(v + 1) + u;
+      const double gx = 0.25 * (row[x + 1] - row[x - 1] + r[1] - r[-1]);
+      const double gy = 0.25 * (below[x] - above[x] + r_below[0] - r_above[0]);
+      const double b = row[x] - bilinear(reference.gray, there.u, there.v);
+      Sums& s = sums[static_cast<std::size_t>(label[x])];
+      s.n += 1, s.gx += gx, s.gy += gy, s.b += b, s.bb += b * b;
+      s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
+      s.depth_n += 1, s.depth_step += step;
+    }
+  }
+  return sums;
+}
+
+/// Sums about their means.
+Sums centred(Sums s) {
+  s.gxx -= s.gx * s.gx / s.n, s.gxy -= s.gx * s.gy / s.n, s.gyy -= s.gy * s.gy / s.n;
+  s.gxb -= s.gx * s.b / s.n, s.gyb -= s.gy * s.b / s.n, s.bb -= s.b * s.b / s.n;
+  return s;
+}
+
+std::vector<Measured> measure(const RgbdView& current, const std::vector<Segment>& segments,
+                              const std::vector<Sums>& sums, const Pose& reference_from_current) {
+  std::vector<double> spreads;
+  for (const Sums& s : sums)
+    if (s.n >= kMinPixels) spreads.push_back(std::max(0.0, centred(s).bb / s.n));
+  double noise = kMinNoise * kMinNoise;
+  if (!spreads.empty()) {
+    const auto low = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 3);
+    std::nth_element(spreads.begin(), low, spreads.end());
+    noise = std::max(noise, *low);
+  }
+  std::vector<Measured> result(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i].n < kMinPixels) continue;
+    const Sums s = centred(sums[i]);
+    Measured& m = result[i];
+    m.valid = true;
+    Eigen::Matrix2d information;
+    information << s.gxx, s.gxy, s.gxy, s.gyy;
+    information /= kNoiseSpread * noise;
+    information.diagonal().array() += 1.0 / (kShiftPrior * kShiftPrior);
+    m.covariance = information.inverse();
+    m.shift = m.covariance * Eigen::Vector2d(s.gxb, s.gyb) / (kNoiseSpread * noise);
+    const double z = segments[i].depth, sigma = depth_sigma(static_cast<float>(z));
+    m.step = s.depth_step / s.depth_n;
+    m.step_variance = 9.0 * sigma * sigma / s.depth_n + std::pow(kDepthSlack * std::max(1.0, z * z), 2);
+    m.place =
+        reference_from_current * current.camera.back_project({segments[i].centre.x, segments[i].centre.y}, z);
+  }
+  return result;
+}
+
+/// What a twist of the camera (translation first) does to a patch's shift and depth.
+Eigen::Matrix<double, 3, 6> by_twist(const Camera& camera, const Eigen::Vector3d& p) {
+  Eigen::Matrix3d by_point;
+  by_point << camera.fx / p.z(), 0, -camera.fx * p.x() / (p.z() * p.z()), 0, camera.fy / p.z(),
+      -camera.fy * p.y() / (p.z() * p.z()), 0, 0, 1;
+  Eigen::Matrix<double, 3, 6> j;
+  j.leftCols<3>() = by_point;
+  j.rightCols<3>() = -by_point * hat(p);
+  return j;
+}
+
+Eigen::Vector3d residual_of(const Measured& m, const Eigen::Matrix<double, 3, 6>& j, const Vector6d& twist) {
+  return Eigen::Vector3d(m.shift.x(), m.shift.y(), m.step) - j * twist;
+}
+
+Eigen::Matrix3d information_of(const Measured& m) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  const Eigen::Matrix2d covariance =
+      m.covariance + kRegistration * kRegistration * Eigen::Matrix2d::Identity();
+  information.topLeftCorner<2, 2>() = covariance.inverse();
+  information(2, 2) = 1.0 / m.step_variance;
+  return information;
+}
+
+/// The twist most patches share: iteratively reweighted least squares, ever stricter (Cauchy).
+Vector6d common_twist(const Camera& camera, const std::vector<Measured>& measured,
+                      const std::vector<double>& votes) {
+  Vector6d twist = Vector6d::Zero();
+  for (const double strictness : {100.0, 40.0, 16.0, 8.0, 6.0, 6.0}) {
+    Matrix6d h = Matrix6d::Zero();
+    h.diagonal() << 2500, 2500, 2500, 1e4, 1e4, 1e4;  // the pose given is right to centimetres
+    Vector6d g = Vector6d::Zero();
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      const Measured& m = measured[i];
+      if (!m.valid || votes[i] <= 0) continue;
+      const auto j = by_twist(camera, m.place);
+      const Eigen::Matrix3d information = information_of(m);
+      const Eigen::Vector3d r = residual_of(m, j, twist);
+      const double weight = votes[i] / (1.0 + r.dot(information * r) / strictness);
+      h += weight * j.transpose() * information * j;
+      g += weight * j.transpose() * information * Eigen::Vector3d(m.shift.x(), m.shift.y(), m.step);
+    }
+    twist = h.ldlt().solve(g);
+  }
+  return twist;
+}
+
+/// What registration leaves of most patches' shift and step beyond what measuring explains: depth and colour
+/// taken at different moments, rows read one after the other, a pose that is not exact.
+struct Slack {
+  double shift = kRegistration;  // px
+  double step = 0.0;             // m
+};
+
+double middle_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::Vector3d>& residuals,
+               const std::vector<double>& votes) {
+  constexpr double kMedianOfTwo = 1.386, kMedianOfOne = 0.455;  // of chi-square variables
+  std::vector<double> shifts, steps;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i].valid || votes[i] < 1.0 || measured[i].covariance.trace() > 0.1) continue;
+    shifts.push_back(residuals[i].head<2>().squaredNorm() / kMedianOfTwo -
+                     0.5 * measured[i].covariance.trace());
+    steps.push_back(residuals[i].z() * residuals[i].z() / kMedianOfOne - measured[i].step_variance);
+  }
+  Slack slack;
+  if (shifts.size() < kMinPatches) return slack;
+  slack.shift = std::max(kRegistration, std::sqrt(std::max(0.0, middle_of(shifts))));
+  slack.step = std::sqrt(std::max(0.0, middle_of(steps)));
+  return slack;
+}
+
+/// log p(measured | moves) - log p(measured | stands still), both Gaussian.
+double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& slack) {
+  const auto square = [](double s) { return Eigen::Matrix2d(s * s * Eigen::Matrix2d::Identity()); };
+  const Eigen::Matrix2d still = m.covariance + square(slack.shift), moved = still + square(kTypicalShift);
+  const Eigen::Vector2d shift = r.head<2>();
+  const double by_shift = 0.5 * (shift.dot(still.inverse() * shift) - shift.dot(moved.inverse() * shift)) -
+                          0.5 * std::log(moved.determinant() / still.determinant());
+  const double still_z = m.step_variance + slack.step * slack.step,
+               moved_z = still_z + kTypicalStep * kTypicalStep;
+  const double by_step =
+      0.5 * r.z() * r.z() * (1.0 / still_z - 1.0 / moved_z) - 0.5 * std::log(moved_z / still_z);
+  return by_shift + by_step;
+}
+
+void judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
+           const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
+  std::vector<Eigen::Vector3d> residuals(measured.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (measured[i].valid)
+      residuals[i] = residual_of(measured[i], by_twist(camera, measured[i].place), twist);
+  const Slack slack = slack_of(measured, residuals, votes);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i].valid) continue;
+    const Eigen::Vector3d& r = residuals[i];
+    patches[i] = {{static_cast<float>(r.x()), static_cast<float>(r.y())},
+                  static_cast<float>(r.z()),
+                  static_cast<float>(log_odds_of(measured[i], r, slack))};
+  }
+}
+
+}  // namespace
+
+PatchMotions measure_patches(const RgbdView& current, const ReferenceView& reference, const cv::Mat& labels,
+                             const std::vector<Segment>& segments, const cv::Mat& prior,
+                             const DepthMotionConfig& config) {
+  constexpr int kRounds = 3;
+  constexpr double kSettled = 5e-4;  // m and rad: a twentieth of a small pixel
+  PatchMotions result;
+  result.patches.resize(segments.size());
+  result.reference_from_current = reference.reference_from_current;
+  std::vector<double> votes(segments.size(), 1.0);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const int x = std::clamp(cvRound(segments[i].centre.x), 0, prior.cols - 1),
+              y = std::clamp(cvRound(segments[i].centre.y), 0, prior.rows - 1);
+    if (prior.at<float>(y, x) > config.moving_log_odds) votes[i] = 0.05;
+  }
+  std::vector<Measured> measured;
+  for (int round = 0; round < kRounds; ++round) {
+    const Carrier carry(current.camera, result.reference_from_current);
+    measured = measure(current, segments, gather(current, *reference.view, carry, labels, segments.size()),
+                       result.reference_from_current);
+    result.measured = static_cast<int>(std::count_if(measured.begin(), measured.end(), [](const Measured& m) {
+      return m.valid && m.covariance.trace() < 2 * kTypicalShift * kTypicalShift;
+    }));
+    if (result.measured < kMinPatches) return result;
+    const Vector6d twist = common_twist(current.camera, measured, votes);
+    // The last measurement is judged against what is left of the twist.
+    if (twist.norm() < kSettled || round + 1 == kRounds)
+      judge(current.camera, measured, twist, votes, result.patches);
+    result.reference_from_current = se3_exp(twist) * result.reference_from_current;
+    if (twist.norm() < kSettled) break;
+  }
+  return result;
+}
+
+}  // namespace stillpoint
