@@ -140,8 +140,8 @@ struct MapConfig {
 struct BundleConfig {
   int max_keyframes = 8;         ///< local keyframes refined
   int max_fixed_keyframes = 20;  ///< keyframes that share their points, held fixed
-  int iterations = 10;           ///< most Levenberg-Marquardt steps
-  int apply_after_frames = 1;    ///< result enters the map this many frames after the keyframe; 0 = at once
+  int iterations = 5;            ///< most Levenberg-Marquardt steps; the robust ones before are half as many
+  int apply_after_frames = 3;    ///< result enters the map this many frames after the keyframe; 0 = at once
   bool operator==(const BundleConfig&) const = default;
 };
 

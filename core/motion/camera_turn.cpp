@@ -184,7 +184,7 @@ CameraTurn estimate_camera_turn(std::span<const BearingPair> pairs, const Camera
     const Eigen::Matrix3d rotation = best.rotation;
     std::vector<BearingPair> few;
     for (std::size_t i = 0; i < pairs.size(); i += 2) few.push_back(pairs[i]);
-    std::vector<Eigen::Vector3d> starts = sample_directions(pairs, rotation, options);
+    std::vector<Eigen::Vector3d> starts = sample_directions(few, rotation, options);
     if (hint && !hint->turns_only) starts.push_back(hint->direction);
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)

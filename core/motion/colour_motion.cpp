@@ -17,8 +17,11 @@ constexpr int kSmallerBy = 2;  // full-size pixels a side of a small pixel, in w
 constexpr int kFewestPairs = 40;
 constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
 constexpr float kExpectedNoise = 0.3F;  // px, small image: of a followed point
-constexpr float kGreyNoise = 8.0F;      // grey levels, in a window that is followed
-constexpr float kEdge = 0.06F;          // smaller over larger eigenvalue, below which a point lies on an edge
+// A turn of the camera mistaken for its going sideways, as before a plane, looks like places behind infinity,
+// so lying there is no evidence.
+constexpr double kNoTurn = 1e9;
+constexpr float kGreyNoise = 8.0F;  // grey levels, in a window that is followed
+constexpr float kEdge = 0.06F;      // smaller over larger eigenvalue, below which a point lies on an edge
 constexpr float kLeastNoise = 0.1F, kMostNoise = 0.4F;
 
 Eigen::Vector3d bearing(const cv::Point2f& pixel, const Camera& camera) {
@@ -137,7 +140,7 @@ void ColourMotionDetector::judge(ColourReference& reference, const std::vector<c
   std::vector<std::pair<double, double>> noise;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const BearingPair& pair = pairs[k];
-    const Eigen::Vector2d off = unexplained(reference.motion, pair, 2.0 * options.sigma) * small_.fx;
+    const Eigen::Vector2d off = unexplained(reference.motion, pair, kNoTurn) * small_.fx;
     const Eigen::Vector2d shift = parallax(reference.motion, pair) * small_.fx;
     reference.residuals.emplace_back(static_cast<float>(off.x()), static_cast<float>(off.y()));
     reference.shifts.emplace_back(static_cast<float>(-shift.x()), static_cast<float>(-shift.y()));

@@ -104,7 +104,7 @@ bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y,
       ++(mask.at<uchar>(v, u) != 0 ? moving : still);
       break;
     }
-  return moving >= 2 && still == 0;
+  return moving >= 3 && still == 0;
 }
 
 /// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -86,13 +87,17 @@ std::vector<std::uint8_t> find_slips(const std::vector<PointTrack>& tracks,
     }
   std::vector<std::uint8_t> slipped(tracks.size(), 0);
   if (changes.size() <= kNeighbours) return slipped;
-  std::vector<std::pair<float, std::size_t>> nearest(changes.size());
   for (const Change& change : changes) {
+    std::array<std::pair<float, std::size_t>, kNeighbours + 1> nearest;
+    nearest.fill({std::numeric_limits<float>::max(), 0});
     for (std::size_t j = 0; j < changes.size(); ++j) {
       const cv::Point2f apart = changes[j].at - change.at;
-      nearest[j] = {apart.dot(apart), j};
+      const float distance = apart.dot(apart);
+      if (distance >= nearest.back().first) continue;
+      std::size_t place = kNeighbours;
+      for (; place > 0 && nearest[place - 1].first > distance; --place) nearest[place] = nearest[place - 1];
+      nearest[place] = {distance, j};
     }
-    std::nth_element(nearest.begin(), nearest.begin() + kNeighbours, nearest.end());
     std::array<float, kNeighbours + 1> dx{}, dy{};  // its own among them
     for (std::size_t k = 0; k <= kNeighbours; ++k) {
       dx[k] = changes[nearest[k].second].velocity.x;

@@ -285,21 +285,29 @@ BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Confi
   }
 
   const std::vector<double> scales = octave_scales(config.features);
+  std::vector<BundleProblem::Edge> seen;
   for (const int id : points) {
-    const int index = static_cast<int>(problem.points.size());
     const MapPoint& point = map.point(id);
-    problem.points.push_back({id, point.position});
+    const int index = static_cast<int>(problem.points.size());
+    seen.clear();
     for (const Observation& o : point.observations) {
       const auto view = view_of.find(o.keyframe);
       if (view == view_of.end()) continue;
       const FeatureSet& features = *map.keyframe(o.keyframe).features;
       const auto f = static_cast<std::size_t>(o.feature);
-      problem.edges.push_back({view->second,
-                               index,
-                               {features.undistorted[f].x, features.undistorted[f].y},
-                               features.depth[f],
-                               scales[static_cast<std::size_t>(features.keypoints[f].octave)]});
+      seen.push_back({view->second,
+                      index,
+                      {features.undistorted[f].x, features.undistorted[f].y},
+                      features.depth[f],
+                      scales[static_cast<std::size_t>(features.keypoints[f].octave)]});
     }
+    if (seen.size() == 1) {  // says nothing of any pose, and goes where its view goes
+      const Pose& camera_from_world = problem.views[static_cast<std::size_t>(seen[0].view)].camera_from_world;
+      problem.carried.push_back({id, seen[0].view, camera_from_world * point.position});
+      continue;
+    }
+    problem.points.push_back({id, point.position});
+    problem.edges.insert(problem.edges.end(), seen.begin(), seen.end());
   }
   return problem;
 }
@@ -341,6 +349,11 @@ void apply_bundle(const BundleSolution& solution, LocalMap& map) {
       map.keyframe(view.keyframe).camera_from_world = view.camera_from_world;
   for (const auto& point : problem.points)
     if (map.has_point(point.point)) map.point(point.point).position = point.position;
+  for (const auto& carried : problem.carried) {
+    const auto& view = problem.views[static_cast<std::size_t>(carried.view)];
+    if (!view.fixed && map.has_point(carried.point))
+      map.point(carried.point).position = view.camera_from_world.inverse() * carried.position_in_camera;
+  }
   for (std::size_t i = 0; i < problem.edges.size(); ++i) {
     if (!solution.outlier[i]) continue;
     const int point = problem.points[static_cast<std::size_t>(problem.edges[i].point)].point;

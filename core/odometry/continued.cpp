@@ -35,18 +35,20 @@ std::deque<std::shared_ptr<const MotionFrame>> motion_frames(const std::vector<P
 }  // namespace
 
 void Odometry::drop_images() {
-  references_.clear();
+  preparer_.forget();
   for (PastView& past : past_views_) past.view.reset();
   if (memory_) memory_->view.reset();
 }
 
 void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
   if (compares_by_homography(config_)) {
-    references_.clear();
-    for (int i = next - 1; i >= 0 && static_cast<int>(references_.size()) < config_.motion.reference_gap; --i)
+    std::deque<std::shared_ptr<const MotionFrame>> references;
+    for (int i = next - 1; i >= 0 && static_cast<int>(references.size()) < config_.motion.reference_gap; --i)
       if (const Frame frame = read(i); frame.readable())
-        references_.push_front(
+        references.push_front(
             std::make_shared<const MotionFrame>(prepare_motion_frame(frame.gray, config_.motion)));
+    preparer_.forget();
+    for (const auto& reference : references) preparer_.pass(reference);
   }
   for (PastView& past : past_views_) {
     if (past.view) continue;
@@ -73,9 +75,11 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
     return std::nullopt;
   Odometry next = *this;
   next.config_ = config;
-  next.extractor_ = OrbExtractor(config.features);
+  next.preparer_ = FramePreparer(camera_, config);
 
-  if (!same_references(config_, config)) next.references_ = motion_frames(before, config);
+  const bool keeps_references = same_references(config_, config);
+  for (const auto& reference : keeps_references ? preparer_.references() : motion_frames(before, config))
+    next.preparer_.pass(reference);
 
   if (config.run.method != config_.run.method || !(config.colour_motion == config_.colour_motion)) {
     next.colour_.reset();

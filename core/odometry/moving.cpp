@@ -13,8 +13,6 @@ namespace stillpoint {
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
   record.prior_pose = predicted;
-  view_ = std::make_shared<const RgbdView>(
-      make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   cv::Mat mask;
   if (memory_ && !past_views_.empty()) {
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
@@ -57,9 +55,6 @@ void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world,
 
 void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
   if (!result.record.estimated || !frame.has_depth()) return;
-  if (!view_)
-    view_ = std::make_shared<const RgbdView>(
-        make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   const cv::Mat& log_odds = result.depth_motion.log_odds;
   memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
   past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});

@@ -11,12 +11,11 @@
 #include "core/geometry/camera.hpp"
 #include "core/motion/colour_motion.hpp"
 #include "core/motion/depth_motion.hpp"
-#include "core/motion/detect_motion.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/frame_preparer.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/matching.hpp"
-#include "core/odometry/orb_extractor.hpp"
 #include "core/odometry/pose_solver.hpp"
 #include "core/sequence/frame.hpp"
 
@@ -51,6 +50,11 @@ class Odometry {
   /// @param known_mask what truly moves, CV_8UC1; empty where it is not known. Method `oracle` alone goes by
   /// it; to the others it serves for RemovalCheck.
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
+
+  /// The same of a frame that a FramePreparer of the same camera and config prepared, frame by frame in
+  /// order.
+  [[nodiscard]] FrameResult process_prepared(const Frame& frame, PreparedFrame prepared,
+                                             const cv::Mat& known_mask = {});
 
   /// The same map and the same place, but the next frames are processed with another config. What the new
   /// method needs of earlier frames is made from `before`, the last frames_wanted(config) of them, newest
@@ -109,10 +113,11 @@ class Odometry {
   };
 
   void apply_due_bundle(FrameRecord& record, bool now);
-  void detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
-  [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
+  [[nodiscard]] FrameResult run_frame(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask);
+  void take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask, FrameResult& result);
+  [[nodiscard]] Current remove_moving(const Frame& frame, const PreparedFrame& prepared, const cv::Mat& mask,
                                       const Vector6d& velocity, FrameRecord& record) const;
-  [[nodiscard]] Current track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] Current track_frame(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
   void detect_in_colour(const Frame& frame, FrameResult& result);
   void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
@@ -120,7 +125,7 @@ class Odometry {
   [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index,
                                                            const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
-  [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] Current initialise(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   /// @returns why there is no pose; empty when there is one
   [[nodiscard]] std::string track(const Frame& frame, Current& current, FrameRecord& record);
   [[nodiscard]] bool leaves_too_little(const Current& current) const;
@@ -133,9 +138,9 @@ class Odometry {
                                       FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
   void count_sightings(const Current& current);
-  [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const OrbFeatures& found,
+  [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const PreparedFrame& prepared,
                                            const cv::Mat& known_mask) const;
-  [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const OrbFeatures& found,
+  [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const PreparedFrame& prepared,
                                                     const cv::Mat& mask) const;
   [[nodiscard]] bool is_taken_at_once(const Frame& frame) const;
   [[nodiscard]] int inliers_needed() const;
@@ -153,7 +158,7 @@ class Odometry {
 
   Camera camera_;
   Config config_;
-  OrbExtractor extractor_;
+  FramePreparer preparer_;
   std::vector<double> scales_;
   LocalMap map_;
   std::optional<Last> last_;  // empty until the map has begun
@@ -163,8 +168,6 @@ class Odometry {
   double now_ = 0.0;             // s, of the frame at hand
   int lost_frames_ = 0;          // in a row
   int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
-  std::deque<std::shared_ptr<const MotionFrame>>
-      references_;  // newest last, as far back as motion detection looks
   std::optional<PendingBundle> pending_;
   std::deque<PastView> past_views_;             // newest last: what method `stillpoint` compares with
   std::optional<MotionMemory> memory_;          // of the newest past view

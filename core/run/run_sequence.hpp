@@ -61,9 +61,9 @@ struct RunOptions {
   int first = 0;                            ///< frame to begin with
   int count = 0;                            ///< frames to process; 0 = to the end
   const std::atomic<bool>* stop = nullptr;  ///< when it turns true the run ends after the frame at hand
-  bool keep_features = false;  ///< leave each record its features: 25 kB a frame, for who shows them
-  bool measure_orb_unit =
-      false;  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
+  bool keep_features = false;     ///< leave each record its features: 25 kB a frame, for who shows them
+  bool measure_orb_unit = false;  ///< also time one cv::ORB::detectAndCompute every few frames
+                                  ///< (EVALUATION.md, "Speed"), and read no frames beside tracking
   std::function<void(const FrameResult&)> on_frame{};  ///< called after each frame, from the calling thread
 };
 

@@ -202,50 +202,21 @@ TEST(Panels, TheTrajectoryIsZoomedTurnedAndClicked) {
   EXPECT_FALSE(stage.click(session, (room.x + room.width - 3.0) / before.cols, (room.y + 3.0) / before.rows)
                    .go_to_frame);
 
-  stage.send(MouseMoved{-1e5F, -1e5F});
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
   EXPECT_TRUE(images_agree(stage.render(session), before, kSceneTolerance));
   const auto middle_x = static_cast<float>(room.x + room.width / 2),
              middle_y = static_cast<float>(room.y + room.height / 2);
-  stage.send(MouseMoved{middle_x, middle_y});
-  stage.send(MouseWheel{0.0F, 3.0F, {}});
-  stage.send(MouseMoved{-1e5F, -1e5F});
+  stage.play(session, {MouseMoved{middle_x, middle_y}});
+  stage.play(session, {MouseWheel{0.0F, 3.0F, {}}});
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
   const cv::Mat nearer = stage.render(session);
   EXPECT_FALSE(images_agree(nearer, before, {2, 1000.0, 0.0}));
-  stage.send(MouseMoved{middle_x, middle_y});
-  stage.send(MouseButton{0, true, {}});
-  stage.send(MouseMoved{middle_x + 60.0F, middle_y + 20.0F});
-  stage.send(MouseButton{0, false, {}});
-  stage.send(MouseMoved{-1e5F, -1e5F});
+  stage.play(session, {MouseMoved{middle_x, middle_y}});
+  stage.play(session, {MouseButton{0, true, {}}});
+  stage.play(session, {MouseMoved{middle_x + 60.0F, middle_y + 20.0F}});
+  stage.play(session, {MouseButton{0, false, {}}});
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
   EXPECT_FALSE(images_agree(stage.render(session), nearer, {2, 1000.0, 0.0}));
-}
-
-TEST(Panels, PlotsAreZoomedPannedAndPutBack) {
-  const SessionView session = handmade_example();
-  PanelStage stage("errors", {});
-  const cv::Mat before = stage.render(session);
-  const cv::Rect room = ground_of(before);
-  ASSERT_GT(room.area(), 200 * 100);
-  const auto x = static_cast<float>(room.x + room.width / 2),
-             y = static_cast<float>(room.y + room.height / 2);
-  const MouseMoved away{-1e5F, -1e5F};
-  stage.send(MouseMoved{x, y});
-  stage.send(MouseWheel{0.0F, 4.0F, {}});
-  stage.send(away);
-  const cv::Mat zoomed = stage.render(session);
-  EXPECT_FALSE(images_agree(zoomed, before, {2, 300.0, 0.0}));
-  stage.send(MouseMoved{x, y});
-  stage.send(MouseButton{1, true, {}});
-  stage.send(MouseMoved{x + 40.0F, y});
-  stage.send(MouseButton{1, false, {}});
-  stage.send(away);
-  EXPECT_FALSE(images_agree(stage.render(session), zoomed, {2, 100.0, 0.0}));
-  stage.send(MouseMoved{x, y});
-  for (int i = 0; i < 2; ++i) {
-    stage.send(MouseButton{0, true, {}});
-    stage.send(MouseButton{0, false, {}});
-  }
-  stage.send(away);
-  EXPECT_TRUE(images_agree(stage.render(session), before, {2, 10.0, 0.0}));
 }
 
 TEST(Panels, PointsThatLeftTheMapBecauseTheyMovedAreRemovedOnes) {

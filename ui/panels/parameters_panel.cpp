@@ -21,9 +21,11 @@ class ParametersPanel final : public NamedPanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     follow(session);
-    Config defaults, run = session.config, wanted = wanted_;
+    Config defaults, run = session.config;
     const std::vector<Parameter> usual = parameters(defaults), now = parameters(run);
     draw_head(frame, session, actions);
+    // The head's buttons may have discarded or reset what the sliders say, so it is read after them.
+    Config wanted = wanted_;
     ImGui::BeginChild("list");
     const std::vector<Parameter> shown = parameters(wanted);
     std::string section;

@@ -107,7 +107,7 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
   }
   for (std::size_t i = 0; i < trace.references.size(); ++i) {
     const ReferenceEvidence& reference = trace.references[i];
-    const char* which = i == 0 ? "near" : "far";
+    const char* which = i == 0 ? "near" : i == 1 ? "far" : "farthest";
     if (const auto residual = value_at<float>(reference.depth_residual, small))
       story.margins.push_back(
           {fmt::format("Depth, {} reference", which), *residual, limits.depth_sigmas, "σ"});

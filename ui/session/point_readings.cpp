@@ -166,7 +166,10 @@ ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionC
   auto& readings = group.readings;
   for (std::size_t i = 0; i < trace.references.size(); ++i) {
     const ReferenceEvidence& reference = trace.references[i];
-    const char* which = trace.references.size() == 1 ? "" : i == 0 ? ", near" : ", far";
+    const char* which = trace.references.size() == 1 ? ""
+                        : i == 0                     ? ", near"
+                        : i == 1                     ? ", far"
+                                                     : ", farthest";
     readings.push_back(signed_value(fmt::format("Depth residual{}", which), reference.depth_residual, small,
                                     "σ", config.depth_sigmas));
     readings.push_back(signed_value(fmt::format("Brightness residual{}", which), reference.intensity_residual,

@@ -165,7 +165,10 @@ double share_known(const cv::Mat& values) {
 
 void add_reference_stages(const ReferenceEvidence& evidence, int index, std::size_t count,
                           const DepthMotionConfig& config, std::vector<StageInfo>& stages) {
-  const std::string group = count == 1 ? "Reference" : index == 0 ? "Near reference" : "Far reference";
+  const std::string group = count == 1   ? "Reference"
+                            : index == 0 ? "Near reference"
+                            : index == 1 ? "Far reference"
+                                         : "Farthest reference";
   const auto add = [&](StageKind kind, const char* name, const char* what) -> StageInfo& {
     StageInfo& stage = add_stage(stages, kind, group, name, what);
     stage.reference = index;
