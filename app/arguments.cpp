@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/geometry/camera.hpp"
+#include "core/sequence/generated/generated_sequence.hpp"
 
 namespace stillpoint {
 
@@ -44,6 +45,17 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   return source;
+}
+
+std::vector<std::string> expanded_sequences(const std::vector<std::string>& sequences) {
+  std::vector<std::string> all;
+  for (const std::string& sequence : sequences) {
+    if (sequence == "generated:all")
+      for (const std::string& kind : generated_kinds()) all.push_back("generated:" + kind);
+    else
+      all.push_back(sequence);
+  }
+  return all;
 }
 
 }  // namespace stillpoint

@@ -39,4 +39,7 @@ struct SequenceArguments {
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config) const;
 };
 
+/// The sequences named, with every kind in place of `generated:all`.
+[[nodiscard]] std::vector<std::string> expanded_sequences(const std::vector<std::string>& sequences);
+
 }  // namespace stillpoint

@@ -14,7 +14,6 @@
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
-#include "core/sequence/generated/generated_sequence.hpp"
 
 namespace stillpoint {
 namespace {
@@ -26,18 +25,6 @@ struct BenchmarkArguments {
   ConfigArguments config;
   SequenceArguments frames;
 };
-
-/// `generated:all` stands for every kind.
-std::vector<std::string> expanded(const std::vector<std::string>& sequences) {
-  std::vector<std::string> all;
-  for (const std::string& sequence : sequences) {
-    if (sequence == "generated:all")
-      for (const std::string& kind : generated_kinds()) all.push_back("generated:" + kind);
-    else
-      all.push_back(sequence);
-  }
-  return all;
-}
 
 std::string cell(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
@@ -113,7 +100,7 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
     if (!methods.insert(method).second) throw InputError(fmt::format("--methods names {} twice", method));
   }
   std::vector<std::unique_ptr<FrameSource>> sources;
-  for (const std::string& sequence : expanded(arguments.sequences))
+  for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(open_with_depth(sequence, arguments, config));
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
@@ -151,7 +138,7 @@ void benchmark(const BenchmarkArguments& arguments) {
   std::vector<BenchmarkRow> rows;
   std::vector<RunReport> reports;
   std::set<std::string> taken;
-  const std::vector<std::string> places = expanded(arguments.sequences);
+  const std::vector<std::string> places = expanded_sequences(arguments.sequences);
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const auto& source = sources[i];
     std::optional<SequenceOrigin> origin;

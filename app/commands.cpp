@@ -6,6 +6,7 @@ void add_commands(CLI::App& app) {
   add_run_command(app);
   add_evaluate_command(app);
   add_benchmark_command(app);
+  add_ablate_command(app);
   add_generate_command(app);
   add_motion_command(app);
   add_snapshot_command(app);

@@ -26,6 +26,7 @@ constexpr const char* kList = "figures.txt";
 struct FiguresArguments {
   PlaceArguments place;
   std::string out, frame, theme = "light";
+  double scale = 1.0;
   bool force = false;
 };
 
@@ -33,7 +34,9 @@ struct FiguresArguments {
 class Figures {
  public:
   Figures(const FiguresArguments& arguments, const std::string& method)
-      : folder_(arguments.out), painter_({.look = {parse_theme(arguments.theme)}, .method = method}) {}
+      : folder_(arguments.out),
+        scale_(arguments.scale),
+        painter_({.look = {parse_theme(arguments.theme)}, .method = method}) {}
 
   void write_figure_1(const SessionView& view) {
     const std::vector<FigureCell> cells = figure_1_cells(view);
@@ -48,7 +51,7 @@ class Figures {
       write_image(folder_ / fmt::format("figure1{}.png", cell.letter), cell.picture);
     }
     FigureSheet sheet(fmt::format("Figure 1   Motion mask by the paper's method: {}", where), cells, 3);
-    write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size()),
+    write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size(scale_)),
           fmt::format("frames, compensated frame, forward, backward and union mask of {}; figure1a.png to "
                       "figure1f.png are its pictures alone",
                       where));
@@ -77,6 +80,7 @@ class Figures {
   }
 
   fs::path folder_;
+  double scale_;
   Painter painter_;
   std::string list_;
 };
@@ -84,7 +88,7 @@ class Figures {
 void figures(const FiguresArguments& arguments) {
   OpenedPlace place = open_place(arguments.place);
   if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
-  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.source->size());
+  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames);
   if (frames.size() != 1)
     throw InputError(
         fmt::format("--frame {}: names {} frames, and figures are of one", arguments.frame, frames.size()));
@@ -98,7 +102,7 @@ void figures(const FiguresArguments& arguments) {
   Session session(place.source, place.config, place.options);
   {
     // Errors are drawn over the whole sequence.
-    const int last = has_depth && has_truth ? place.source->size() - 1 : frame;
+    const int last = has_depth && has_truth ? place.frames - 1 : frame;
     Progress progress(fmt::format("{} ({})", place.source->name(), method), last + 1);
     session.go_to(last, [&](const FrameRecord& record) {
       progress.advance(std::string(to_string(record.status)));
@@ -141,6 +145,9 @@ void add_figures_command(CLI::App& app) {
       ->required();
   command->add_option("--out", arguments->out, "Folder for the figures; made if missing")->required();
   command->add_option("--theme", arguments->theme, "light or dark")->capture_default_str();
+  command->add_option("--scale", arguments->scale, "Of the pictures in figure 1; 1 keeps their pixels")
+      ->check(CLI::Range(0.1, 4.0))
+      ->capture_default_str();
   command->add_flag("--force", arguments->force, "Overwrite earlier figures");
   arguments->place.source.add_to(*command);
   arguments->place.add_to(*command);

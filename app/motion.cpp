@@ -13,11 +13,13 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/motion_colour.hpp"
 #include "app/motion_figures.hpp"
 #include "app/motion_pictures.hpp"
 #include "app/progress.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/motion/colour_motion.hpp"
 #include "core/motion/detect_motion.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
@@ -34,6 +36,7 @@ struct MotionOptions {
   std::string out;
   ConfigArguments config;
   std::string frames;  ///< A:B:STEP
+  std::string method = "paper";
   bool all_rounds = false;
   bool force = false;
 };
@@ -82,6 +85,7 @@ bool is_number_from(const std::string& text, std::size_t first) {
 /// then.
 void clear_earlier(const fs::path& folder) {
   remove_round_pictures(folder);
+  remove_colour_motion_pictures(folder);
   std::vector<fs::path> below;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
@@ -232,6 +236,45 @@ void run_sequence(const MotionOptions& options, const Config& config) {
   throw_if_interrupted();
 }
 
+/// Method `stillpoint`: judged over several frames, so all from the first on are seen, and those chosen
+/// written.
+void run_colour_sequence(const MotionOptions& options, const Config& config) {
+  OpenOptions open;
+  open.seed = static_cast<unsigned>(config.run.seed);
+  const std::unique_ptr<FrameSource> source = open_sequence(options.first, open);
+  const FrameRange range = parse_range(options.frames, source->size());
+  const fs::path folder = options.out;
+  prepare_out_folder(folder, {"motion.csv", "motion.json"}, options.force);
+  if (fs::exists(folder / "motion.csv")) clear_earlier(folder);
+  std::string rows = colour_motion_csv_heading() + '\n';
+  nlohmann::json frames = nlohmann::json::array();
+  ColourMotionDetector detector(source->camera(), config.colour_motion);
+  for (int index = 0; index < range.end && !stop_requested(); ++index) {
+    const Frame frame = source->read(index);
+    ColourMotionTrace trace;
+    if (frame.readable())
+      trace = detector.next(frame.colour.empty() ? frame.gray : frame.colour);
+    else
+      trace.note = "no mask: " + frame.problem;
+    if (index < range.begin || (index - range.begin) % range.step != 0) continue;
+    rows += colour_motion_csv_row(index, trace, config.colour_motion) + '\n';
+    frames.push_back(colour_motion_json(index, trace, config.colour_motion));
+    if (frame.readable()) {
+      const fs::path pictures = folder / fmt::format("{:06d}", index);
+      prepare_out_folder(pictures, {}, true);
+      write_colour_motion_pictures(pictures, trace, picture_of(frame), config.colour_motion);
+    }
+    std::printf("%d: %.1f %% moves, %zu regions%s%s\n", index, 100.0 * trace.mask_share, trace.regions.size(),
+                trace.note.empty() ? "" : "; ", trace.note.c_str());
+  }
+  write_text_file(folder / "motion.csv", rows);
+  write_text_file(folder / "motion.json",
+                  nlohmann::json{{"method", "stillpoint"}, {"frames", frames}}.dump(1) + '\n');
+  write_text_file(folder / "config.toml", to_toml(config));
+  std::printf("%zu frames; figures in %s\n", frames.size(), (folder / "motion.csv").c_str());
+  throw_if_interrupted();
+}
+
 }  // namespace
 
 void add_motion_command(CLI::App& app) {
@@ -249,11 +292,22 @@ void add_motion_command(CLI::App& app) {
       "--frames", options->frames,
       "Target frames A:B:STEP of a sequence, B not among them; references lie motion.reference_gap "
       "frames back");
+  command
+      ->add_option(
+          "--method", options->method,
+          "paper: a pair of frames after the other; stillpoint: from colour over tenths of a second, "
+          "for sequences")
+      ->check(CLI::IsMember({"paper", "stillpoint"}))
+      ->capture_default_str();
   command->add_flag("--all-rounds", options->all_rounds, "Pictures of every round, not of the last alone");
   command->add_flag("--force", options->force, "Overwrite earlier results");
   command->callback([options] {
     const Config config = options->config.config();
-    if (options->second.empty()) {
+    if (options->method == "stillpoint") {
+      if (!options->second.empty())
+        throw InputError("--method stillpoint follows points over several frames: give it a sequence");
+      run_colour_sequence(*options, config);
+    } else if (options->second.empty()) {
       run_sequence(*options, config);
     } else {
       run_pair(*options, config);

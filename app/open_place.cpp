@@ -45,6 +45,7 @@ OpenedPlace open_finished_run(const PlaceArguments& arguments) {
     throw InputError(fmt::format("{}: is a run without frames", arguments.place));
   OpenedPlace opened;
   opened.source = run.source;
+  opened.frames = static_cast<int>(run.recorded->run.records.size());
   opened.config = run.recorded->run.config;
   if (arguments.config.threads > 0) opened.config.run.threads = arguments.config.threads;
   opened.options.recorded = run.recorded;
@@ -57,6 +58,7 @@ OpenedPlace open_sequence_at(const std::string& where, const SequenceArguments& 
   OpenedPlace opened;
   opened.config = std::move(config);
   opened.source = source.open(where, opened.config);
+  opened.frames = opened.source->size();
   if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
   return opened;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 #include "core/error.hpp"
 #include "ui/session/frame_ranges.hpp"
@@ -90,11 +91,28 @@ std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
   return pictures;
 }
 
+void ImageWriter::write(const std::filesystem::path& path, const cv::Mat& image) {
+  while (writing_.size() >= std::max(2U, std::thread::hardware_concurrency())) {
+    std::future<void> first = std::move(writing_.front());
+    writing_.pop_front();
+    first.get();
+  }
+  writing_.push_back(std::async(std::launch::async, [path, image] { write_image(path, image); }));
+}
+
+void ImageWriter::finish() {
+  while (!writing_.empty()) {
+    std::future<void> first = std::move(writing_.front());
+    writing_.pop_front();
+    first.get();
+  }
+}
+
 void write_image(const std::filesystem::path& path, const cv::Mat& image) {
-  // Fast rather than small: packing would take longer than drawing.
+  // Fast rather than small, as OpenCV packs by itself: packing well would take longer than drawing.
   bool written = false;
   try {
-    written = cv::imwrite(path.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 3});
+    written = cv::imwrite(path.string(), image);
   } catch (const cv::Exception&) {
   }
   std::error_code error;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -64,6 +66,19 @@ class Painter {
   Workbench workbench_;
   bool workbench_chosen_ = false;
   std::vector<Panel*> panels_chosen_;
+};
+
+/// Writes images beside who draws them: packing takes as long as drawing.
+class ImageWriter {
+ public:
+  /// Begins to write, once fewer than there are processors are being written.
+  /// @throws InputError when an earlier one could not be
+  void write(const std::filesystem::path& path, const cv::Mat& image);
+  /// Waits for all. @throws InputError when one could not be written
+  void finish();
+
+ private:
+  std::deque<std::future<void>> writing_;
 };
 
 /// Writes an image by its name's ending.

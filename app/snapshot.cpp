@@ -59,7 +59,7 @@ class Pictures {
     for (const auto& [name, image] : pictures) {
       if (video_) video_->add(image);
       if (folder_.empty()) continue;
-      write_image(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
+      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
       ++files_;
     }
     list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
@@ -70,6 +70,7 @@ class Pictures {
   /// Ends what was begun. @returns what was written, in a sentence
   [[nodiscard]] std::string finish(const std::string& video_name) {
     std::string told;
+    writer_.finish();
     if (!folder_.empty()) {
       // What was drawn, and the sign that this folder is ours.
       write_text_file(folder_ / "snapshots.txt", "# frame, timestamp in s, status\n" + list_);
@@ -87,6 +88,7 @@ class Pictures {
   std::optional<VideoFile> video_;
   std::string list_;
   int files_ = 0, frames_ = 0;
+  ImageWriter writer_;
 };
 
 std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
@@ -124,7 +126,9 @@ void snapshot(const SnapshotArguments& arguments) {
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
   // The records of a finished run hold all but what these show.
   place.options.catch_up =
-      method == "stillpoint" && (painter.draws("depth_motion") || painter.draws("workbench"));
+      method == "stillpoint" &&
+      (painter.draws("depth_motion") || painter.draws("colour_motion") || painter.draws("stages") ||
+       painter.draws("feature") || painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
@@ -139,6 +143,7 @@ void snapshot(const SnapshotArguments& arguments) {
       }
       for (const int frame : frames) {
         session.go_to(frame, on_frame);
+        if (painter.draws("stages") || painter.draws("workbench")) session.complete();
         const auto view = session.view();
         pictures.add(*view, painter.paint(*view));
         throw_if_interrupted();

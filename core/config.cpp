@@ -123,6 +123,9 @@ std::vector<Parameter> parameters(Config& c) {
   DepthMotionConfig& d = c.depth_motion;
   number("depth_motion.factor", &d.factor, 1, 16, "px",
          "side of the block of pixels in which motion is judged");
+  number("depth_motion.use_depth", &d.use_depth, 0, 1, "", "1 takes depth residuals for evidence");
+  number("depth_motion.use_brightness", &d.use_brightness, 0, 1, "",
+         "1 takes brightness residuals for evidence");
   number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames",
          "how far back the nearer reference lies");
   number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames",
@@ -151,6 +154,45 @@ std::vector<Parameter> parameters(Config& c) {
   number("depth_motion.min_area_share", &d.min_area_share, 0, 0.5, "",
          "share of the image below which a region is noise");
   number("depth_motion.margin_px", &d.margin_px, 0, 50, "px", "added about the mask at the end");
+
+  ColourMotionConfig& u = c.colour_motion;
+  number("colour_motion.cell_px", &u.cell_px, 4, 64, "small px",
+         "a cell of this side holds one followed point");
+  number("colour_motion.flow_window_px", &u.flow_window_px, 5, 51, "small px",
+         "side of the Lucas-Kanade window");
+  number("colour_motion.corner_response", &u.corner_response, 1e-6, 1, "",
+         "least eigenvalue of the gradient matrix that makes a point");
+  number("colour_motion.near_reference", &u.near_reference, 1, 30, "frames",
+         "how far back the nearest of three references lies");
+  number("colour_motion.far_reference", &u.far_reference, 1, 60, "frames",
+         "how far back the farthest reference lies");
+  number("colour_motion.sigmas", &u.sigmas, 0.5, 20, "sigma", "residual at which evidence changes sign");
+  number("colour_motion.evidence_a_sigma", &u.evidence_a_sigma, 0.01, 10, "",
+         "evidence for every standard deviation beyond that");
+  number("colour_motion.memory", &u.memory, 0, 1, "",
+         "share of a point's evidence carried to the next frame");
+  number("colour_motion.max_evidence", &u.max_evidence, 0.5, 100, "", "where evidence saturates");
+  number("colour_motion.max_static_evidence", &u.max_static_evidence, 0, 100, "",
+         "where evidence of standing still saturates");
+  number("colour_motion.close_px", &u.close_px, 0, 50, "quarter px",
+         "gaps in the mask up to twice this are closed");
+  number("colour_motion.shave_px", &u.shave_px, 0, 20, "quarter px",
+         "taken off the mask's outline at the end");
+  number("colour_motion.min_age", &u.min_age, 1, 60, "frames",
+         "so long a point is followed before it has a say");
+  number("colour_motion.same_motion_px", &u.same_motion_px, 0.05, 20, "small px",
+         "difference of two points' paths that sets them apart");
+  number("colour_motion.sharing", &u.sharing, 0, 100, "",
+         "weight of a neighbour that moves alike against a point's own evidence");
+  number("colour_motion.colour_price", &u.colour_price, 0, 10, "quarter px",
+         "what a grey level of change costs evidence on its way");
+  number("colour_motion.longest_way", &u.longest_way, 1, 1000, "quarter px", "way over which evidence ends");
+  number("colour_motion.moving_evidence", &u.moving_evidence, 0.01, 10, "",
+         "evidence above which a pixel moves");
+  number("colour_motion.min_area_share", &u.min_area_share, 0, 0.5, "",
+         "share of the image below which a region is noise");
+  number("colour_motion.min_points", &u.min_points, 1, 1000, "points",
+         "a region with fewer moving points is noise");
 
   FeatureConfig& f = c.features;
   number("features.count", &f.count, 50, 20000, "features", "ORB features wanted a frame");
@@ -183,6 +225,8 @@ std::vector<Parameter> parameters(Config& c) {
          "1 carries features to where their frame's middle row would show them");
   number("tracking.correct_depth_lag", &t.correct_depth_lag, 0, 1, "",
          "1 carries depth taken at another time than colour to colour's time");
+  number("tracking.seek_consensus", &t.seek_consensus, 0, 1, "",
+         "1 takes method stillpoint's first pose from where most samples agree");
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
          "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 
@@ -207,6 +251,8 @@ std::vector<Parameter> parameters(Config& c) {
          "a young point found in less than this share of its sightings is culled");
   number("map.max_local_keyframes", &k.max_local_keyframes, 1, 500, "keyframes",
          "covisible keyframes in the local map");
+  number("map.purge_moving", &k.purge_moving, 0, 1, "",
+         "1 takes points on what method stillpoint finds moving out of the map");
   number("map.max_keyframes", &k.max_keyframes, 2, 10000, "keyframes", "beyond them the oldest retires");
 
   BundleConfig& b = c.bundle;

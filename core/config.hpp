@@ -35,6 +35,8 @@ struct MotionConfig {
 /// Method `stillpoint`: what moves where there is depth.
 struct DepthMotionConfig {
   int factor = 4;             ///< full-size pixels a side of a pixel in which motion is judged
+  int use_depth = 1;          ///< 1: depth residuals are evidence
+  int use_brightness = 1;     ///< 1: brightness residuals are evidence
   int near_reference = 2;     ///< frames back to the nearer reference
   int far_reference = 10;     ///< frames back to the farther one
   int slow_reference = 24;    ///< frames back to the farthest one: for slow movers
@@ -53,6 +55,33 @@ struct DepthMotionConfig {
   double min_area_share = 0.0015;  ///< smaller regions are noise, share of the image
   int margin_px = 0;               ///< added about the mask at the end
   bool operator==(const DepthMotionConfig&) const = default;
+};
+
+/// Method `stillpoint`: what moves where there is colour alone. Small pixels are two full-size ones a side.
+struct ColourMotionConfig {
+  int cell_px = 8;                ///< each cell of the small image holds one followed point at most, small px
+  int flow_window_px = 9;         ///< side of the Lucas-Kanade window, small px
+  double corner_response = 1e-4;  ///< least eigenvalue of the gradient matrix that makes a point
+  int near_reference = 3;         ///< frames back to the nearest of three references
+  int far_reference = 12;         ///< frames back to the farthest one; the third lies half as far
+  double sigmas = 1.5;            ///< residual at which a point's evidence changes sign, standard deviations
+  double evidence_a_sigma = 0.4;  ///< evidence for every standard deviation beyond that
+  double memory = 0.92;           ///< share of a point's evidence carried to the next frame
+  double max_evidence = 3.0;      ///< evidence of moving saturates here
+  double max_static_evidence =
+      0.5;          ///< … and of standing still here: a step along its epipolar line looks still
+  int min_age = 2;  ///< frames a point is followed before it has a say
+  double same_motion_px = 0.5;   ///< difference of two points' paths that sets them apart, small px
+  double sharing = 2.0;          ///< weight of a neighbour that moves alike against a point's own evidence
+  double colour_price = 0.15;    ///< what a grey level of change costs evidence on its way, quarter-size px
+  double longest_way = 8.0;      ///< way after which evidence ends, quarter-size px
+  double moving_evidence = 0.3;  ///< above it a pixel moves
+  int close_px = 8;              ///< gaps in the mask up to twice this are closed, quarter-size px
+  int shave_px = 3;  ///< taken off the outline, which windows that see both sides push out, quarter-size px
+  double min_area_share = 0.008;  ///< smaller regions are noise, share of the image
+  int min_points = 8;             ///< regions with fewer moving points are noise
+
+  bool operator==(const ColourMotionConfig&) const = default;
 };
 
 /// ORB features spread over the image.
@@ -81,6 +110,7 @@ struct TrackingConfig {
   int correct_rolling_shutter =
       1;                      ///< 1: features are carried to where their frame's middle row would show them
   int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
+  int seek_consensus = 1;     ///< 1: method `stillpoint` takes its first pose from where most samples agree
   double depth_weight =
       1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
   bool operator==(const TrackingConfig&) const = default;
@@ -101,6 +131,7 @@ struct MapConfig {
       0.9;  ///< a keyframe is culled when this share of its points is seen by three others
   double min_found_ratio = 0.25;  ///< a young point found in less than this share of its sightings is culled
   int max_local_keyframes = 20;   ///< covisible keyframes in the local map
+  int purge_moving = 1;           ///< 1: method `stillpoint` takes points on what moves out of the map
   int max_keyframes = 100;        ///< beyond them the oldest retires: what keeps memory flat
   bool operator==(const MapConfig&) const = default;
 };
@@ -109,8 +140,8 @@ struct MapConfig {
 struct BundleConfig {
   int max_keyframes = 8;         ///< local keyframes refined
   int max_fixed_keyframes = 20;  ///< keyframes that share their points, held fixed
-  int iterations = 10;           ///< most Levenberg-Marquardt steps
-  int apply_after_frames = 1;    ///< result enters the map this many frames after the keyframe; 0 = at once
+  int iterations = 5;            ///< most Levenberg-Marquardt steps; the robust ones before are half as many
+  int apply_after_frames = 3;    ///< result enters the map this many frames after the keyframe; 0 = at once
   bool operator==(const BundleConfig&) const = default;
 };
 
@@ -127,6 +158,7 @@ struct Config {
   RunConfig run;
   MotionConfig motion;
   DepthMotionConfig depth_motion;
+  ColourMotionConfig colour_motion;
   FeatureConfig features;
   TrackingConfig tracking;
   MapConfig map;

@@ -23,9 +23,9 @@ nav { margin: 12px 0 0; }
 nav a { margin-right: 16px; }
 a { color: #00639c; }
 .scroll { overflow-x: auto; margin: 10px 0 14px; }
-table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; }
-th, td { padding: 5px 11px; border-bottom: 1px solid #e4e7eb; text-align: left; vertical-align: top; }
-th { background: #f4f6f8; font-weight: 600; white-space: nowrap; }
+table { border-collapse: collapse; font-size: 13.5px; line-height: 1.35; font-variant-numeric: tabular-nums; }
+th, td { padding: 5px 10px; border-bottom: 1px solid #e4e7eb; text-align: left; vertical-align: top; }
+th { background: #f4f6f8; font-weight: 600; vertical-align: bottom; }
 td.number { text-align: right; white-space: nowrap; }
 td.best { font-weight: 700; background: #eaf6f1; }
 figure { margin: 10px 0; }

@@ -8,6 +8,7 @@
 #include "app/report/html.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/session/session.hpp"
@@ -33,35 +34,41 @@ std::unique_ptr<Session> session_of(const ReportGroup& group, const ReportRun& r
 struct Curve {
   std::string name;
   Series series;
-  Rgb colour;
-  bool dashed = false;
+  RunLook look;
 };
 
-/// Colours that keep to the roles of panels where a method has one.
-Rgb colour_of_run(const ReportRun& run, std::size_t place) {
-  constexpr std::array kOthers = {okabe_ito::kGreen, okabe_ito::kPurple, okabe_ito::kVermillion,
-                                  okabe_ito::kSkyBlue, okabe_ito::kBlack};
-  if (run.report.method == "none") return role_colour(Role::kBaseline, ThemeName::kLight);
-  if (run.report.method == "stillpoint") return role_colour(Role::kEstimate, ThemeName::kLight);
-  return kOthers[place % kOthers.size()];
+/// How a run looks in every plot: as in the panels where its method has a role there, else as a ghost does.
+RunLook look_of_run(const ReportRun& run, std::size_t place) {
+  const ThemeName theme = ThemeName::kLight;
+  if (run.report.method == "none") return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
+  if (run.report.method == "stillpoint") return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
+  return ghost_look(place, theme);
 }
 
 std::vector<Curve> error_curves(const ReportGroup& group, RelativePoseError TrajectoryEvaluation::*error) {
   std::vector<Curve> curves;
-  std::size_t place = 0;
-  for (const ReportRun& run : group.runs) {
-    const bool named = run.report.method == "none" || run.report.method == "stillpoint";
+  for (std::size_t i = 0; i < group.runs.size(); ++i) {
+    const ReportRun& run = group.runs[i];
     if (!run.report.evaluation) continue;
     const double start = run.result().records.front().timestamp;
-    Curve curve{run.label, error_series((*run.report.evaluation).*error, start, false),
-                colour_of_run(run, named ? 0 : place), run.report.method == "none"};
-    if (!named) ++place;
-    if (!curve.series.x.empty()) curves.push_back(std::move(curve));
+    Series series = error_series((*run.report.evaluation).*error, start, false);
+    if (!series.x.empty()) curves.push_back({run.label, std::move(series), look_of_run(run, i)});
   }
   return curves;
 }
 
-cv::Mat plot_picture(Painter& painter, const std::vector<Curve>& curves, const std::string& label) {
+/// From the first frame to the last, over all runs.
+AxisRange time_of(const ReportGroup& group) {
+  AxisRange range{0.0, 1e-3};
+  for (const ReportRun& run : group.runs) {
+    const std::vector<FrameRecord>& records = run.result().records;
+    range.high = std::max(range.high, records.back().timestamp - records.front().timestamp);
+  }
+  return range;
+}
+
+cv::Mat plot_picture(Painter& painter, const std::vector<Curve>& curves, const AxisRange& time,
+                     const std::string& label) {
   PlotView view;
   return painter.paint_frame(
       [&](UiFrame& frame) {
@@ -70,9 +77,10 @@ cv::Mat plot_picture(Painter& painter, const std::vector<Curve>& curves, const s
         ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.panel));
         ImGui::Begin("##plot", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
         Plot plot{.x_label = "time", .x_unit = "s", .y_label = label, .y_unit = "mm"};
+        plot.x_limits = time;
         for (const Curve& curve : curves)
-          plot.series.push_back({curve.name, curve.series.x, curve.series.y, curve.colour,
-                                 curve.dashed ? SeriesStyle::kDashed : SeriesStyle::kLine, 1.8F});
+          plot.series.push_back(
+              {curve.name, curve.series.x, curve.series.y, curve.look.colour, curve.look.line, 1.8F});
         (void)draw_plot(frame, "plot", plot, view);
         ImGui::End();
         ImGui::PopStyleColor();
@@ -94,7 +102,7 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run)
   if (method == "paper")
     return {before, {"difference", "Difference after compensation"}, {"union_mask", "Motion mask"}, after};
   if (method == "stillpoint")
-    return {before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
+    return {{"input", "Input"}, before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
   return {before, after};
 }
 
@@ -107,10 +115,10 @@ std::string error_plots(Painter& painter, const ReportGroup& group) {
     return "<p class=\"dim\">The sequence has no ground truth to measure errors against.</p>\n";
   std::string html;
   if (!over_second.empty())
-    html += figure_html(plot_picture(painter, over_second, "RPE over 1 s"),
+    html += figure_html(plot_picture(painter, over_second, time_of(group), "RPE over 1 s"),
                         "Translational error of relative motion over one second, at the end of each");
   if (!over_frame.empty())
-    html += figure_html(plot_picture(painter, over_frame, "RPE per frame"),
+    html += figure_html(plot_picture(painter, over_frame, time_of(group), "RPE per frame"),
                         "Translational error of relative motion from one frame to the next");
   return html;
 }

@@ -127,27 +127,26 @@ std::string summary_table(const ReportGroup& group) {
                       value && best && *value == *best && r.method != "oracle"};
     };
     const auto plain = [](std::string text) { return HtmlCell{std::move(text), true, false}; };
-    const std::string removed =
-        r.scores.known && r.method != "none"
-            ? fmt::format("{} / {}", r.scores.removal.removed_rightly, r.scores.removal.removed_wrongly)
-            : "–";
-    rows.push_back({{run.label},
-                    plain(fmt::format("{:.1f} % of {}", 100.0 * r.coverage, r.frames)),
-                    cell(f.rpe_m, 1000.0, 1, best_rpe),
-                    plain(gain_text(run, group.baseline())),
-                    cell(f.rpe_deg, 1.0, 3, best_deg),
-                    cell(f.ate_m, 1000.0, 1, best_ate),
-                    cell(f.rpe_frame_m, 1000.0, 2, best_frame),
-                    cell(f.precision, 100.0, 1, {}),
-                    cell(f.recall, 100.0, 1, {}),
-                    plain(removed),
-                    cell(f.median_ms, 1.0, 1, best_ms),
-                    plain(fmt::format("{:.1f}", r.speed.p99_ms)),
-                    plain(fmt::format("{}", r.keyframes))});
+    const bool masks = r.scores.known && r.method != "none";
+    rows.push_back(
+        {{run.label},
+         plain(fmt::format("{:.1f} % of {}", 100.0 * r.coverage, r.frames)),
+         cell(f.rpe_m, 1000.0, 1, best_rpe),
+         plain(gain_text(run, group.baseline())),
+         cell(f.rpe_deg, 1.0, 3, best_deg),
+         cell(f.ate_m, 1000.0, 1, best_ate),
+         cell(f.rpe_frame_m, 1000.0, 2, best_frame),
+         plain(masks ? fmt::format("{} / {}", text_of(f.precision, 100.0, 1), text_of(f.recall, 100.0, 1))
+                     : "–"),
+         plain(masks ? fmt::format("{} / {}", r.scores.removal.removed_rightly,
+                                   r.scores.removal.removed_wrongly)
+                     : "–"),
+         cell(f.median_ms, 1.0, 1, best_ms),
+         plain(fmt::format("{:.1f}", r.speed.p99_ms))});
   }
   std::string html = table_html(
-      {"Run", "Tracked", "RPE 1 s, mm", "Gain", "RPE 1 s, °", "ATE, mm", "RPE frame, mm", "Mask precision, %",
-       "recall, %", "Removed rightly / wrongly", "Median ms", "99th ms", "Keyframes"},
+      {"Run", "Tracked", "RPE 1 s, mm", "Gain", "RPE 1 s, °", "ATE, mm", "RPE frame, mm",
+       "Mask precision / recall, %", "Features removed rightly / wrongly", "Median, ms", "99th, ms"},
       rows);
   for (const ReportRun& run : group.runs)
     if (run.result().interrupted)

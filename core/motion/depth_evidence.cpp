@@ -84,6 +84,7 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
                                          const DepthMotionConfig& config) {
   ReferenceEvidence evidence;
   const cv::Mat brightness = compare_depth(current, reference, config, evidence);
+  if (config.use_depth == 0) evidence.log_odds.setTo(0.0F);
 
   // Exposure may have changed between the two: the median difference is taken off; what spreads about it is
   // noise.
@@ -106,6 +107,7 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
       const float gradient = current.gradient.at<float>(y, x);
       const float residual = std::max(0.0F, std::abs(b - shift) - share * gradient);
       evidence.intensity_residual.at<float>(y, x) = residual;
+      if (config.use_brightness == 0) continue;
       float& odds = evidence.log_odds.at<float>(y, x);
       if (residual > limit)
         odds += kOtherBrightness * std::min(2.0F, residual / limit);

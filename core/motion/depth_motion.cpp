@@ -9,6 +9,7 @@
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/segments.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -167,9 +168,12 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
                                      const std::vector<ReferenceView>& references, const MotionMemory* memory,
                                      const Pose& previous_from_current, const DepthMotionConfig& config) {
   DepthMotionTrace trace;
+  Stopwatch watch;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  trace.ms.memory = watch.lap();
   trace.segments = segment_surfaces(current, config, trace.labels);
+  const double segments_ms = watch.lap();
   cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
   for (ReferenceView reference : references) {
     PatchMotions patches;
@@ -179,13 +183,16 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
     }
     trace.references.push_back(compare_with_reference(current, reference, config));
     trace.references.back().patches = std::move(patches.patches);
+    trace.references.back().reference = reference;
     add_pixels(trace.references.back(), trace.labels, evidence);
+    trace.references.back().ms = watch.lap();
   }
   trace.slow = evidence_of_patches(trace, config);
   evidence += trace.slow;
   trace.log_odds = with_memory(trace.prior, evidence, config);
 
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
+  trace.ms.segments = segments_ms + watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);
   fill_unmeasured(current.depth, kHole, trace.small_mask);
@@ -197,6 +204,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   LabelledRegions found = find_regions(trace.mask);
   trace.regions = std::move(found.regions);
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  trace.ms.mask = watch.lap();
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
   // What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing

@@ -33,12 +33,14 @@ struct PatchMotion {
 
 /// What comparing with one reference says of each pixel. Small images, CV_32FC1.
 struct ReferenceEvidence {
+  ReferenceView reference;  ///< what was compared with
   cv::Mat
       depth_residual;  ///< standard deviations: measured less expected depth there; NaN = cannot be compared
   cv::Mat intensity_residual;        ///< grey levels beyond what gradient explains; NaN = cannot be compared
   cv::Mat log_odds;                  ///< of moving; 0 = says nothing
   double intensity_sigma = 0.0;      ///< grey levels, estimated from this pair
   std::vector<PatchMotion> patches;  ///< one a segment; empty where the reference is too young for it
+  double ms = 0.0;                   ///< wall time of the comparison; for reading only
 };
 
 /// A patch of one surface, and how likely it moves.
@@ -49,6 +51,13 @@ struct Segment {
   float evidence = 0.0F;  ///< mean log-odds of its pixels
   float log_odds = 0.0F;  ///< after listening to the neighbours on the same surface
   bool moving = false;
+};
+
+/// What each step took, ms of wall time. For reading only: no result depends on it.
+struct DepthMotionTimes {
+  double memory = 0.0;    ///< carrying along what is remembered
+  double segments = 0.0;  ///< patches and their judgement
+  double mask = 0.0;      ///< painting, cleaning and fitting the outline
 };
 
 /// What depth-aware motion detection saw, stage by stage.
@@ -64,6 +73,7 @@ struct DepthMotionTrace {
   std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   std::string note;         ///< why there is no mask; empty when all is well
+  DepthMotionTimes ms;
 };
 
 /// What the next frame needs of this one.

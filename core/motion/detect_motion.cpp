@@ -12,6 +12,7 @@
 #include "core/motion/difference.hpp"
 #include "core/motion/homography.hpp"
 #include "core/motion/regions.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -53,16 +54,22 @@ DirectionTrace look_one_way(std::vector<Track> tracks, const cv::Mat& source, co
                             const std::optional<cv::Matx33d>& last, const MotionConfig& config) {
   DirectionTrace seen;
   seen.tracks = std::move(tracks);
+  Stopwatch watch;
   seen.homography = estimate_homography(seen.tracks, source.size(), config,
                                         last.value_or(cv::Matx33d::eye()));  // eqs. (3), (4)
+  seen.ms.homography = watch.lap();
   if (!seen.homography.valid && !last) return seen;
   CompensatedFrame carried = compensate(source, seen.homography.matrix, config.border_px);
   seen.compensated = carried.image;
   seen.valid = carried.valid;
+  seen.ms.compensation = watch.lap();
   seen.difference = frame_difference(destination, seen.compensated, seen.valid);  // eq. (1)
+  seen.ms.difference = watch.lap();
   seen.threshold = otsu_threshold(histogram(seen.difference, seen.valid));
   seen.raw_mask = binarise(seen.difference, seen.threshold);  // eq. (2)
+  seen.ms.threshold = watch.lap();
   seen.mask = clean_mask(seen.raw_mask, seen.valid, config);
+  seen.ms.cleanup = watch.lap();
   return seen;
 }
 
@@ -97,15 +104,6 @@ std::optional<cv::Matx33d> last_homography(const std::vector<MotionRound>& round
                                            DirectionTrace MotionRound::*direction) {
   if (rounds.empty() || (rounds.back().*direction).mask.empty()) return std::nullopt;
   return (rounds.back().*direction).homography.matrix;
-}
-
-/// How far the image corners move from one homography to the next, px; the furthest counts.
-double corner_shift_px(const cv::Matx33d& before, const cv::Matx33d& after, const cv::Size& size) {
-  const double right = size.width - 1, bottom = size.height - 1;
-  double furthest = 0.0;
-  for (const cv::Point2d corner : {cv::Point2d(0, 0), {right, 0}, {0, bottom}, {right, bottom}})
-    furthest = std::max(furthest, cv::norm(carry(before, corner) - carry(after, corner)));
-  return furthest;
 }
 
 bool homographies_settled(const MotionRound& before, const MotionRound& now, const MotionConfig& config) {
@@ -162,9 +160,11 @@ MotionTrace detect_motion(const MotionFrame& reference, const MotionFrame& targe
     return trace;
   }
   std::vector<Track> forward_tracks, backward_tracks;
+  Stopwatch watch;
   run_both(
       threads, [&] { forward_tracks = follow_corners(reference, target, config); },
       [&] { backward_tracks = follow_corners(target, reference, config); });
+  trace.tracks_ms = watch.milliseconds();
 
   for (int i = 0; i < config.max_rounds; ++i) {  // fig. 2
     MotionRound round;
@@ -178,14 +178,19 @@ MotionTrace detect_motion(const MotionFrame& reference, const MotionFrame& targe
         [&] {
           round.backward = look_one_way(backward_tracks, target.gray, reference.gray, last_backward, config);
         });
+    watch.lap();
     unite_directions(round);
+    round.union_ms = watch.lap();
     trace.rounds.push_back(std::move(round));
 
     const cv::Mat& mask = trace.rounds.back().mask;
     const bool settled =
         i > 0 && homographies_settled(trace.rounds[trace.rounds.size() - 2], trace.rounds.back(), config);
+    watch.lap();
     const int changed = remove_moving_tracks(forward_tracks, TrackEnd::kTo, mask) +
                         remove_moving_tracks(backward_tracks, TrackEnd::kFrom, mask);
+    trace.rounds.back().removal_ms = watch.lap();
+    trace.rounds.back().changed_tracks = changed;
     trace.converged = settled || changed == 0;
     if (trace.converged) break;
   }

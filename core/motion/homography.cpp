@@ -77,6 +77,14 @@ void mark_inliers(std::vector<Track>& tracks, const cv::Matx33d& homography, dou
 
 }  // namespace
 
+double corner_shift_px(const cv::Matx33d& before, const cv::Matx33d& after, const cv::Size& size) {
+  const double right = size.width - 1, bottom = size.height - 1;
+  double furthest = 0.0;
+  for (const cv::Point2d corner : {cv::Point2d(0, 0), {right, 0}, {0, bottom}, {right, bottom}})
+    furthest = std::max(furthest, cv::norm(carry(before, corner) - carry(after, corner)));
+  return furthest;
+}
+
 double reprojection_error_px(const cv::Matx33d& homography, const std::vector<Track>& tracks) {
   if (tracks.empty()) return 0.0;
   double sum = 0.0;

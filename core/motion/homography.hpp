@@ -15,6 +15,10 @@ namespace stillpoint {
   return {moved[0] / moved[2], moved[1] / moved[2]};
 }
 
+/// How far the image's corners move from one homography to the other, px; the furthest counts.
+[[nodiscard]] double corner_shift_px(const cv::Matx33d& before, const cv::Matx33d& after,
+                                     const cv::Size& size);
+
 /// ε of eq. (4) as a root mean square, px: how far H carries each `from` off its `to`. 0 without tracks.
 [[nodiscard]] double reprojection_error_px(const cv::Matx33d& homography, const std::vector<Track>& tracks);
 

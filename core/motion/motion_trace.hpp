@@ -25,6 +25,11 @@ struct HomographyEstimate {
   int refine_iterations = 0;
 };
 
+/// What each step of one direction took, ms of wall time. For reading only: no result depends on it.
+struct DirectionTimes {
+  double homography = 0.0, compensation = 0.0, difference = 0.0, threshold = 0.0, cleanup = 0.0;
+};
+
 /// Everything one direction of one round saw. Images have the frames' size and are in the destination's
 /// camera: frame t for the forward direction, frame t-1 for the backward one.
 struct DirectionTrace {
@@ -36,6 +41,7 @@ struct DirectionTrace {
   double threshold = 0;  ///< grey levels, Otsu's over the valid pixels; eq. (2)
   cv::Mat raw_mask;      ///< CV_8UC1, 0 or 255: difference above threshold
   cv::Mat mask;          ///< raw_mask after erosion and dilation, 0 where not valid
+  DirectionTimes ms;
 };
 
 /// A connected region of the union mask.
@@ -54,6 +60,9 @@ struct MotionRound {
   cv::Mat labels;                   ///< CV_32SC1: 0 or 1 + index into `regions`
   std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
+  int changed_tracks = 0;   ///< tracks of both directions that this mask removes or gives back
+  double union_ms = 0.0;    ///< wall time of carrying, uniting and finding regions
+  double removal_ms = 0.0;  ///< wall time of taking tracks out for the next round
 };
 
 /// What motion detection saw of a pair of frames, round by round; the last round's mask is the result.
@@ -61,6 +70,7 @@ struct MotionTrace {
   std::vector<MotionRound> rounds;
   bool converged = false;  ///< the rounds ended because nothing changed any more
   std::string note;        ///< why there is no mask, or why it is to be doubted; empty when all is well
+  double tracks_ms = 0.0;  ///< wall time of following the corners, both directions
 
   /// The mask of what moves in the target, CV_8UC1; empty when there is none.
   [[nodiscard]] cv::Mat mask() const { return rounds.empty() ? cv::Mat() : rounds.back().mask; }

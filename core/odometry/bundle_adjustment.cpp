@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 
 #include "core/odometry/matching.hpp"
@@ -11,6 +12,8 @@
 
 namespace stillpoint {
 namespace {
+
+constexpr double kChi2Depth = 3.841;  // 95 % bound with one degree of freedom
 
 using PoseBlock = std::array<double, 7>;  // unit quaternion x y z w, then translation: camera_from_world
 
@@ -61,47 +64,76 @@ class PoseManifold : public ceres::Manifold {
   }
 };
 
-/// An observation's residual: pixel, and where measured depth as disparity, each over its standard deviation.
-template <int kResiduals>
-class ReprojectionCost : public ceres::SizedCostFunction<kResiduals, 7, 3> {
+/// One half of an observation's residual, each over its standard deviation: the pixel, or the measured depth
+/// as disparity. Both halves have two rows, the second of depth's being zero: Ceres' eliminator knows blocks
+/// of one size at compile time, and takes half as long with them. An outlier counts nothing.
+class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
  public:
-  ReprojectionCost(const Camera& camera, const BundleProblem::Edge& edge, double depth_weight)
-      : camera_(camera), edge_(edge), depth_weight_(depth_weight) {}
+  enum class Half : std::uint8_t { pixel, depth };
+
+  ObservationCost(Half half, const Camera& camera, const BundleProblem::Edge& edge, double depth_weight,
+                  const std::uint8_t& outlier)
+      : half_(half), camera_(camera), edge_(edge), depth_weight_(depth_weight), outlier_(outlier) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Map<const Eigen::Quaterniond> q(parameters[0]);
+    using Jacobian = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
+    Eigen::Map<Eigen::Vector2d> residual(residuals);
+    Jacobian by_camera_point = Jacobian::Zero();
+    const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Quaterniond>(parameters[0]).toRotationMatrix();
     const Eigen::Map<const Eigen::Vector3d> t(parameters[0] + 4), point(parameters[1]);
-    const Eigen::Matrix3d rotation = q.toRotationMatrix();
     const Eigen::Vector3d p = rotation * point + t;
     constexpr double kNearest = 0.05;  // m: nearer or behind, the step is refused
-    if (p.z() < kNearest) return false;
-    const double weight = 1.0 / edge_.sigma_px, iz = 1.0 / p.z(), bf = kDepthBaseline * camera_.fx;
-    residuals[0] = weight * (camera_.fx * p.x() * iz + camera_.cx - edge_.pixel.x());
-    residuals[1] = weight * (camera_.fy * p.y() * iz + camera_.cy - edge_.pixel.y());
-    if constexpr (kResiduals == 3) residuals[2] = weight * depth_weight_ * bf * (1.0 / edge_.depth - iz);
+    if (outlier_ != 0) {
+      residual.setZero();
+    } else if (p.z() < kNearest) {
+      return false;
+    } else {
+      const double weight = 1.0 / edge_.sigma_px, iz = 1.0 / p.z();
+      if (half_ == Half::pixel) {
+        residual.x() = weight * (camera_.fx * p.x() * iz + camera_.cx - edge_.pixel.x());
+        residual.y() = weight * (camera_.fy * p.y() * iz + camera_.cy - edge_.pixel.y());
+        by_camera_point.row(0) << weight * camera_.fx * iz, 0, -weight * camera_.fx * p.x() * iz * iz;
+        by_camera_point.row(1) << 0, weight * camera_.fy * iz, -weight * camera_.fy * p.y() * iz * iz;
+      } else {
+        const double bf = weight * depth_weight_ * kDepthBaseline * camera_.fx;
+        residual << bf * (1.0 / edge_.depth - iz), 0.0;
+        by_camera_point(0, 2) = bf * iz * iz;
+      }
+    }
     if (!jacobians) return true;
-
-    Eigen::Matrix<double, kResiduals, 3> by_camera_point;
-    by_camera_point.row(0) << weight * camera_.fx * iz, 0, -weight * camera_.fx * p.x() * iz * iz;
-    by_camera_point.row(1) << 0, weight * camera_.fy * iz, -weight * camera_.fy * p.y() * iz * iz;
-    if constexpr (kResiduals == 3) by_camera_point.row(2) << 0, 0, weight * depth_weight_ * bf * iz * iz;
     if (jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, kResiduals, 7, Eigen::RowMajor>> j(jacobians[0]);
-      j.template leftCols<3>() = by_camera_point;
-      j.template middleCols<3>(3) = -by_camera_point * hat(p);
-      j.template rightCols<1>().setZero();
+      Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> j(jacobians[0]);
+      j.leftCols<3>() = by_camera_point;
+      j.middleCols<3>(3) = -by_camera_point * hat(p);
+      j.rightCols<1>().setZero();
     }
     if (jacobians[1]) {
-      Eigen::Map<Eigen::Matrix<double, kResiduals, 3, Eigen::RowMajor>> j(jacobians[1]);
+      Eigen::Map<Jacobian> j(jacobians[1]);
       j = by_camera_point * rotation;
     }
     return true;
   }
 
  private:
+  Half half_;
   const Camera& camera_;
   const BundleProblem::Edge& edge_;
   double depth_weight_;
+  const std::uint8_t& outlier_;
+};
+
+/// Huber's loss while it is switched on, plain squares afterwards.
+class SwitchedHuber : public ceres::LossFunction {
+ public:
+  SwitchedHuber(double bound, const bool& robust) : huber_(bound), robust_(robust) {}
+  void Evaluate(double squared, double out[3]) const override {
+    if (robust_) return huber_.Evaluate(squared, out);
+    out[0] = squared, out[1] = 1.0, out[2] = 0.0;
+  }
+
+ private:
+  ceres::HuberLoss huber_;
+  const bool& robust_;
 };
 
 PoseBlock to_block(const Pose& pose) {
@@ -140,56 +172,83 @@ double rms(const BundleProblem& problem, const std::vector<std::uint8_t>& outlie
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// One Levenberg-Marquardt run over the edges that are no outliers; moves views and points. False if it
-/// failed.
-bool solve_once(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
-                double depth_weight, bool robust, int max_iterations, int& iterations) {
-  std::vector<PoseBlock> poses;
-  for (const auto& view : problem.views) poses.push_back(to_block(view.camera_from_world));
+/// The problem as Ceres holds it; solved once robustly and once more without the outliers found meanwhile.
+class BundleSolver {
+ public:
+  BundleSolver(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
+               double depth_weight)
+      : problem_(problem), ceres_problem_(ownership()) {
+    poses_.reserve(problem.views.size());
+    for (const auto& view : problem.views) poses_.push_back(to_block(view.camera_from_world));
+    ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      ceres_problem_.AddParameterBlock(poses_[i].data(), 7, &manifold_);
+      if (problem.views[i].fixed) ceres_problem_.SetParameterBlockConstant(poses_[i].data());
+      ordering_->AddElementToGroup(poses_[i].data(), 1);
+    }
+    for (auto& point : problem.points) {
+      ceres_problem_.AddParameterBlock(point.position.data(), 3);
+      ordering_->AddElementToGroup(point.position.data(), 0);
+    }
+    using Half = ObservationCost::Half;
+    for (std::size_t i = 0; i < problem.edges.size(); ++i) {
+      const auto& edge = problem.edges[i];
+      add(Half::pixel, camera, edge, depth_weight, outlier[i]);
+      if (edge.depth > 0 && depth_weight > 0) add(Half::depth, camera, edge, depth_weight, outlier[i]);
+    }
+  }
+  BundleSolver(const BundleSolver&) = delete;
+  BundleSolver& operator=(const BundleSolver&) = delete;
 
-  ceres::Problem::Options ownership;
-  ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ownership.enable_fast_removal = false;
-  PoseManifold manifold;
-  ceres::HuberLoss pixel_loss(std::sqrt(kChi2Pixel)), depth_loss(std::sqrt(kChi2PixelDepth));
-  ceres::Problem ceres_problem(ownership);
-  ceres::Solver::Options options;
-  options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    ceres_problem.AddParameterBlock(poses[i].data(), 7, &manifold);
-    if (problem.views[i].fixed) ceres_problem.SetParameterBlockConstant(poses[i].data());
-    options.linear_solver_ordering->AddElementToGroup(poses[i].data(), 1);
-  }
-  for (auto& point : problem.points) {
-    ceres_problem.AddParameterBlock(point.position.data(), 3);
-    options.linear_solver_ordering->AddElementToGroup(point.position.data(), 0);
-  }
-  for (std::size_t i = 0; i < problem.edges.size(); ++i) {
-    if (outlier[i]) continue;
-    const auto& edge = problem.edges[i];
-    const bool depth = edge.depth > 0 && depth_weight > 0;
-    ceres::CostFunction* cost =
-        depth ? static_cast<ceres::CostFunction*>(new ReprojectionCost<3>(camera, edge, depth_weight))
-              : new ReprojectionCost<2>(camera, edge, depth_weight);
-    ceres_problem.AddResidualBlock(cost, robust ? (depth ? &depth_loss : &pixel_loss) : nullptr,
-                                   poses[static_cast<std::size_t>(edge.view)].data(),
-                                   problem.points[static_cast<std::size_t>(edge.point)].position.data());
+  /// One Levenberg-Marquardt run over the edges that are no outliers; moves views and points. False if it
+  /// failed.
+  bool solve(bool robust, int max_iterations, int& iterations) {
+    robust_ = robust;
+    ceres::Solver::Options options;
+    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>(*ordering_);
+    options.linear_solver_type = ceres::DENSE_SCHUR;
+    options.max_num_iterations = max_iterations;
+    options.num_threads = 1;  // sums in one order: the same bytes on any machine load
+    options.function_tolerance = 1e-4;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &ceres_problem_, &summary);
+    if (!summary.IsSolutionUsable()) return false;
+    iterations += summary.num_successful_steps;
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+      if (!problem_.views[i].fixed)
+        problem_.views[i].camera_from_world = PoseManifold::pose(poses_[i].data());
+    return true;
   }
 
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.max_num_iterations = max_iterations;
-  options.num_threads = 1;  // sums in one order: the same bytes on any machine load
-  options.function_tolerance = 1e-4;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &ceres_problem, &summary);
-  if (!summary.IsSolutionUsable()) return false;
-  iterations += summary.num_successful_steps;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (!problem.views[i].fixed) problem.views[i].camera_from_world = PoseManifold::pose(poses[i].data());
-  return true;
-}
+ private:
+  static ceres::Problem::Options ownership() {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;  // blocks are distinct by construction
+    return options;
+  }
+
+  void add(ObservationCost::Half half, const Camera& camera, const BundleProblem::Edge& edge,
+           double depth_weight, const std::uint8_t& outlier) {
+    costs_.emplace_back(half, camera, edge, depth_weight, outlier);
+    ceres_problem_.AddResidualBlock(&costs_.back(),
+                                    half == ObservationCost::Half::pixel ? &pixel_loss_ : &depth_loss_,
+                                    poses_[static_cast<std::size_t>(edge.view)].data(),
+                                    problem_.points[static_cast<std::size_t>(edge.point)].position.data());
+  }
+
+  BundleProblem& problem_;
+  bool robust_ = true;
+  PoseManifold manifold_;
+  SwitchedHuber pixel_loss_{std::sqrt(kChi2Pixel), robust_}, depth_loss_{std::sqrt(kChi2Depth), robust_};
+  std::vector<PoseBlock> poses_;
+  std::deque<ObservationCost> costs_;  // never moved: Ceres points into it
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
+  ceres::Problem ceres_problem_;  // last: it points into all of the above
+};
 
 }  // namespace
 
@@ -226,21 +285,29 @@ BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Confi
   }
 
   const std::vector<double> scales = octave_scales(config.features);
+  std::vector<BundleProblem::Edge> seen;
   for (const int id : points) {
-    const int index = static_cast<int>(problem.points.size());
     const MapPoint& point = map.point(id);
-    problem.points.push_back({id, point.position});
+    const int index = static_cast<int>(problem.points.size());
+    seen.clear();
     for (const Observation& o : point.observations) {
       const auto view = view_of.find(o.keyframe);
       if (view == view_of.end()) continue;
       const FeatureSet& features = *map.keyframe(o.keyframe).features;
       const auto f = static_cast<std::size_t>(o.feature);
-      problem.edges.push_back({view->second,
-                               index,
-                               {features.undistorted[f].x, features.undistorted[f].y},
-                               features.depth[f],
-                               scales[static_cast<std::size_t>(features.keypoints[f].octave)]});
+      seen.push_back({view->second,
+                      index,
+                      {features.undistorted[f].x, features.undistorted[f].y},
+                      features.depth[f],
+                      scales[static_cast<std::size_t>(features.keypoints[f].octave)]});
     }
+    if (seen.size() == 1) {  // says nothing of any pose, and goes where its view goes
+      const Pose& camera_from_world = problem.views[static_cast<std::size_t>(seen[0].view)].camera_from_world;
+      problem.carried.push_back({id, seen[0].view, camera_from_world * point.position});
+      continue;
+    }
+    problem.points.push_back({id, point.position});
+    problem.edges.insert(problem.edges.end(), seen.begin(), seen.end());
   }
   return problem;
 }
@@ -264,12 +331,10 @@ BundleSolution solve_bundle(BundleProblem problem, const Camera& camera, const B
     }
   };
   const int half = std::max(1, config.iterations / 2);
-  if (!solve_once(moved, solution.outlier, camera, depth_weight, true, half, solution.iterations))
-    return solution;
+  BundleSolver solver(moved, solution.outlier, camera, depth_weight);
+  if (!solver.solve(true, half, solution.iterations)) return solution;
   mark_outliers();
-  if (!solve_once(moved, solution.outlier, camera, depth_weight, false, config.iterations,
-                  solution.iterations))
-    return solution;
+  if (!solver.solve(false, config.iterations, solution.iterations)) return solution;
   mark_outliers();
   solution.rms_px = rms(moved, solution.outlier, camera);
   solution.usable = true;
@@ -284,6 +349,11 @@ void apply_bundle(const BundleSolution& solution, LocalMap& map) {
       map.keyframe(view.keyframe).camera_from_world = view.camera_from_world;
   for (const auto& point : problem.points)
     if (map.has_point(point.point)) map.point(point.point).position = point.position;
+  for (const auto& carried : problem.carried) {
+    const auto& view = problem.views[static_cast<std::size_t>(carried.view)];
+    if (!view.fixed && map.has_point(carried.point))
+      map.point(carried.point).position = view.camera_from_world.inverse() * carried.position_in_camera;
+  }
   for (std::size_t i = 0; i < problem.edges.size(); ++i) {
     if (!solution.outlier[i]) continue;
     const int point = problem.points[static_cast<std::size_t>(problem.edges[i].point)].point;

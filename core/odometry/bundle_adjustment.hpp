@@ -26,8 +26,13 @@ struct BundleProblem {
     double depth = 0.0;                               ///< m; 0 = none
     double sigma_px = 1.0;
   };
+  struct Carried {
+    int point = kNone, view = 0;
+    Eigen::Vector3d position_in_camera = Eigen::Vector3d::Zero();  ///< m
+  };
   std::vector<View> views;
-  std::vector<Point> points;
+  std::vector<Point> points;     ///< seen by two views or more
+  std::vector<Carried> carried;  ///< seen by one alone: they hold nothing, and go along with it
   std::vector<Edge> edges;
 };
 

@@ -1,16 +1,9 @@
 #include "core/odometry/feature_set.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace stillpoint {
-
-int descriptor_distance(const Descriptor& a, const Descriptor& b) {
-  int distance = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) distance += std::popcount(a[i] ^ b[i]);
-  return distance;
-}
 
 void FeatureSet::build_index(int width, int height) {
   columns_ = width / kCell + 1;

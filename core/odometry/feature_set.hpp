@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -14,7 +15,10 @@ namespace stillpoint {
 using Descriptor = std::array<std::uint64_t, 4>;
 
 /// The number of differing bits, 0 to 256.
-[[nodiscard]] int descriptor_distance(const Descriptor& a, const Descriptor& b);
+[[nodiscard]] inline int descriptor_distance(const Descriptor& a, const Descriptor& b) {
+  return std::popcount(a[0] ^ b[0]) + std::popcount(a[1] ^ b[1]) + std::popcount(a[2] ^ b[2]) +
+         std::popcount(a[3] ^ b[3]);
+}
 
 /// The features of one frame, and an index to find them by place. Immutable once built.
 struct FeatureSet {

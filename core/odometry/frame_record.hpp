@@ -46,13 +46,19 @@ enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp };
 
 /// What each stage took, in milliseconds of wall time. For reading only: no result depends on it.
 struct StageTimes {
-  double motion = 0.0;    ///< METHOD.md §1, beside feature extraction where threads allow
+  double motion = 0.0;    ///< finding what moves, beside feature extraction where threads allow
   double features = 0.0;  ///< ORB
   double matching = 0.0;  ///< both searches against the map
-  double pose = 0.0;      ///< EPnP and refinement
+  double pose = 0.0;      ///< EPnP, consensus and refinement
   double mapping = 0.0;   ///< keyframe, new points, fusion, culling
   double bundle = 0.0;    ///< waiting for and applying bundle adjustment
-  double total = 0.0;     ///< the whole frame
+  /// The whole frame. In a run of a whole sequence the next frame's features, and what needs no pose of its
+  /// motion, are found while this one is tracked; of them total has what was waited for.
+  double total = 0.0;
+  // Parts of `pose`.
+  double epnp = 0.0;       ///< EPnP in RANSAC
+  double consensus = 0.0;  ///< the pose most of the image agrees on
+  double refine = 0.0;     ///< eq. (5)
 };
 
 /// The frame's pose as it would have been with other features taken out, solved from the same map and the
@@ -92,6 +98,9 @@ struct FrameRecord {
          bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
   int bundle_iterations = 0;
 
+  std::optional<Pose>
+      prior_pose;  ///< camera_from_world under which method `stillpoint` remembered what moves
+  std::optional<Pose> motion_pose;  ///< … and under which it then found it
   RemovalCheck removal_check;
   StageTimes ms;
   std::vector<FeatureRecord> features;

@@ -12,8 +12,7 @@ namespace stillpoint {
 
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
-  view_ = std::make_shared<const RgbdView>(
-      make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+  record.prior_pose = predicted;
   cv::Mat mask;
   if (memory_ && !past_views_.empty()) {
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
@@ -25,9 +24,23 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
   return mask;
 }
 
+void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
+  if (frame.has_depth()) {
+    colour_.reset();
+    return;
+  }
+  const Stopwatch watch;
+  if (!colour_) colour_.emplace(camera_, config_.colour_motion);
+  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour);
+  result.mask = result.colour_motion.mask;
+  result.record.mask_share = result.colour_motion.mask_share;
+  result.record.ms.motion += watch.milliseconds();
+}
+
 void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result) {
   if (!frame.has_depth()) return;
   const Stopwatch watch;
+  result.record.motion_pose = camera_from_world;
   const Pose previous_from_current = past_views_.empty()
                                          ? Pose::Identity()
                                          : past_views_.back().camera_from_world * camera_from_world.inverse();
@@ -42,9 +55,6 @@ void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world,
 
 void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
   if (!result.record.estimated || !frame.has_depth()) return;
-  if (!view_)
-    view_ = std::make_shared<const RgbdView>(
-        make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   const cv::Mat& log_odds = result.depth_motion.log_odds;
   memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
   past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});
@@ -75,7 +85,7 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
 
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {
   constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves, not behind it
-  if (mask.empty()) return;
+  if (mask.empty() || config_.map.purge_moving == 0) return;
   for (int& id : last_->points) {
     if (id == kNone || !map_.has_point(id)) continue;
     const Eigen::Vector3d p = camera_from_world * map_.point(id).position;

@@ -17,12 +17,25 @@ constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to tr
 }  // namespace
 
 Odometry::Odometry(const Camera& camera, const Config& config)
-    : camera_(camera),
-      config_(config),
-      extractor_(config.features),
-      scales_(octave_scales(config.features)) {}
+    : camera_(camera), config_(config), preparer_(camera, config), scales_(octave_scales(config.features)) {}
 
 FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
+  const Stopwatch watch;
+  PreparedFrame prepared;
+  if (frame.readable()) prepared = preparer_.prepare(frame);
+  const double preparation_ms = watch.milliseconds();
+  FrameResult result = run_frame(frame, prepared, known_mask);
+  result.record.ms.total += preparation_ms;
+  return result;
+}
+
+FrameResult Odometry::process_prepared(const Frame& frame, PreparedFrame prepared,
+                                       const cv::Mat& known_mask) {
+  preparer_.pass(prepared.motion_frame);
+  return run_frame(frame, prepared, known_mask);
+}
+
+FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask) {
   FrameResult result;
   FrameRecord& record = result.record;
   record.index = frame.index;
@@ -36,22 +49,16 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   if (!frame.readable()) {
     mark_lost(record, FrameStatus::unreadable, "the image could not be read");
   } else {
-    // §1 beside ORB extraction: neither needs the other's result.
-    auto features = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
-      const Stopwatch watch;
-      OrbFeatures found = extractor_.extract(frame.gray);
-      return std::pair(std::move(found), watch.milliseconds());
-    });
-    detect(frame, known_mask, result);
-    const auto [found, feature_ms] = features.get();
-    record.ms.features = feature_ms;
-
+    record.ms.features = prepared.features_ms;
+    record.ms.motion = prepared.motion_ms;
+    view_ = prepared.view;
+    take_mask(frame, prepared, known_mask, result);
     if (config_.run.check_removal != 0 && last_) {
       const Stopwatch beside;
-      record.removal_check = check_removal(frame, found, known_mask);
+      record.removal_check = check_removal(frame, prepared, known_mask);
       check_ms = beside.milliseconds();
     }
-    Current current = last_ ? track_frame(frame, found, result) : initialise(frame, found, result);
+    Current current = last_ ? track_frame(frame, prepared, result) : initialise(frame, prepared, result);
     record.features = std::move(current.records);
     if (config_.run.method == "stillpoint") remember_view(frame, result);
   }
@@ -83,43 +90,41 @@ void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
   record.ms.bundle += watch.milliseconds();
 }
 
-void Odometry::detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result) {
-  if (config_.run.method == "none" || config_.run.method == "stillpoint") return;
+void Odometry::take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask,
+                         FrameResult& result) {
+  if (config_.run.method == "stillpoint") {
+    detect_in_colour(frame, result);
+    return;
+  }
   if (config_.run.method == "oracle") {
     if (known_mask.size() != frame.gray.size()) return;
     result.mask = known_mask;
     result.record.mask_share =
         static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
-    return;
+  } else if (!prepared.motion.rounds.empty()) {
+    result.motion = std::move(prepared.motion);
+    const MotionRound& round = result.motion.rounds.back();
+    result.record.mask_share = round.mask_share;
+    result.record.motion_rounds = static_cast<int>(result.motion.rounds.size());
+    result.record.homography_rms_px = round.forward.homography.refined_error_px;
+    result.record.static_tracks = static_cast<int>(std::count_if(
+        round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
+    result.mask = result.motion.mask();
+  } else {
+    result.motion = std::move(prepared.motion);
   }
-  const Stopwatch watch;
-  const auto target = std::make_shared<const MotionFrame>(prepare_motion_frame(frame.gray, config_.motion));
-  if (!references_.empty()) {
-    result.motion = detect_motion(*references_.front(), *target, config_.motion, config_.run.threads);
-    if (!result.motion.rounds.empty()) {
-      const MotionRound& round = result.motion.rounds.back();
-      result.record.mask_share = round.mask_share;
-      result.record.motion_rounds = static_cast<int>(result.motion.rounds.size());
-      result.record.homography_rms_px = round.forward.homography.refined_error_px;
-      result.record.static_tracks = static_cast<int>(std::count_if(
-          round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
-    }
-  }
-  references_.push_back(target);
-  while (static_cast<int>(references_.size()) > config_.motion.reference_gap) references_.pop_front();
-  result.record.ms.motion = watch.milliseconds();
-  result.mask = result.motion.mask();
 }
 
-Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
-                                          const Vector6d& velocity, FrameRecord& record) const {
+Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFrame& prepared,
+                                          const cv::Mat& mask, const Vector6d& velocity,
+                                          FrameRecord& record) const {
+  const OrbFeatures& found = prepared.found;
+  const std::vector<cv::Point2f>& pixels = prepared.pixels;
   Current current;
   FeatureSet all;
   all.keypoints = found.keypoints;
   all.descriptors = found.descriptors;
-  std::vector<cv::Point2f> pixels;
-  cv::KeyPoint::convert(found.keypoints, pixels);
-  all.undistorted = camera_.undistort(pixels);
+  all.undistorted = prepared.undistorted;
   const double lag = depth_lag(frame);
   all.depth = lag == 0.0 ? depth_at(pixels, frame.depth)
                          : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity * lag));
@@ -148,9 +153,10 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const OrbFeatures&
   return current;
 }
 
-Odometry::Current Odometry::initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
+Odometry::Current Odometry::initialise(const Frame& frame, const PreparedFrame& prepared,
+                                       FrameResult& result) {
   FrameRecord& record = result.record;
-  Current current = remove_moving(frame, found, result.mask, velocity_, record);
+  Current current = remove_moving(frame, prepared, result.mask, velocity_, record);
   const auto& depth = current.features->depth;
   const auto with_depth = std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; });
   if (with_depth < kMinFeaturesToBegin) {
@@ -166,7 +172,8 @@ Odometry::Current Odometry::initialise(const Frame& frame, const OrbFeatures& fo
   return current;
 }
 
-Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result) {
+Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame& prepared,
+                                        FrameResult& result) {
   FrameRecord& record = result.record;
   const bool finds_movers_by_pose = config_.run.method == "stillpoint";
   Pose start = predicted_camera_from_world();
@@ -175,9 +182,9 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
     // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only
     // then.
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
-    Current first = remove_moving(frame, found, result.mask, velocity_, record);
+    Current first = remove_moving(frame, prepared, result.mask, velocity_, record);
     first.camera_from_world = start;
-    first.seek_consensus = finds_movers_by_pose;
+    first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
     if (estimate(first, record)) {
       start = first.camera_from_world;
@@ -185,7 +192,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
       if (finds_movers_by_pose) detect_by_pose(frame, start, result);
     }
   }
-  Current current = remove_moving(frame, found, result.mask, velocity, record);
+  Current current = remove_moving(frame, prepared, result.mask, velocity, record);
   current.camera_from_world = start;
   std::string why_lost;
   bool harms = finds_movers_by_pose && leaves_too_little(current);
@@ -196,7 +203,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const OrbFeatures& f
   if (harms) {
     // Better a pose disturbed by what moves than none: the frame is tracked by all of its features, and what
     // is remembered to move, which led here, is forgotten.
-    current = remove_moving(frame, found, {}, velocity, record);
+    current = remove_moving(frame, prepared, {}, velocity, record);
     current.camera_from_world = start;
     why_lost = track(frame, current, record);
     result.mask.release();
@@ -264,7 +271,8 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
 }
 
 bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const {
-  if (!frame.has_depth()) return false;
+  // One adjustment at a time: a keyframe before the last one's is done would have to wait for it.
+  if (!frame.has_depth() || pending_) return false;
   const FeatureSet& features = *current.features;
   int near_tracked = 0, near_new = 0;
   for (std::size_t i = 0; i < current.points.size(); ++i) {

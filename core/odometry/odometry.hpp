@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -8,13 +9,13 @@
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/motion/colour_motion.hpp"
 #include "core/motion/depth_motion.hpp"
-#include "core/motion/detect_motion.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/frame_preparer.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/matching.hpp"
-#include "core/odometry/orb_extractor.hpp"
 #include "core/odometry/pose_solver.hpp"
 #include "core/sequence/frame.hpp"
 
@@ -23,9 +24,10 @@ namespace stillpoint {
 /// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
 struct FrameResult {
   FrameRecord record;
-  MotionTrace motion;             ///< what the method's motion stage saw; without rounds where it has none
-  DepthMotionTrace depth_motion;  ///< the same of method `stillpoint`; without references where it has none
-  cv::Mat mask;                   ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
+  MotionTrace motion;               ///< what the method's motion stage saw; without rounds where it has none
+  DepthMotionTrace depth_motion;    ///< the same of method `stillpoint`; without references where it has none
+  ColourMotionTrace colour_motion;  ///< the same of a frame without depth; without points where it has none
+  cv::Mat mask;                     ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
 };
 
 /// A frame that was processed before, and where it was found to be.
@@ -49,14 +51,26 @@ class Odometry {
   /// it; to the others it serves for RemovalCheck.
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
 
+  /// The same of a frame that a FramePreparer of the same camera and config prepared, frame by frame in
+  /// order.
+  [[nodiscard]] FrameResult process_prepared(const Frame& frame, PreparedFrame prepared,
+                                             const cv::Mat& known_mask = {});
+
   /// The same map and the same place, but the next frames are processed with another config. What the new
-  /// method needs of earlier frames is made from `before`, newest last: motion.reference_gap of them for the
-  /// paper's method, depth_motion.far_reference for `stillpoint`. With an equal config it goes on bit for bit
-  /// as it would have.
+  /// method needs of earlier frames is made from `before`, the last frames_wanted(config) of them, newest
+  /// last. With an equal config it goes on bit for bit as it would have.
   /// @returns nothing where the map's features would not fit the new ones (another features.levels or
   /// features.scale_factor)
   [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
                                                        const std::vector<PastFrame>& before) const;
+
+  /// How many earlier frames continued_with() needs; 0 where it has all that the new config asks for.
+  [[nodiscard]] int frames_wanted(const Config& config) const;
+
+  /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
+  void drop_images();
+  /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
+  void restore_images(int next, const std::function<Frame(int)>& read);
 
   /// Lets a pending bundle adjustment enter the map: after the last frame.
   void finish();
@@ -65,6 +79,8 @@ class Odometry {
   [[nodiscard]] const Config& config() const { return config_; }
 
  private:
+  friend class MotionReplay;
+
   /// The frame being tracked.
   struct Current {
     std::shared_ptr<const FeatureSet> features;  // static ones
@@ -97,17 +113,19 @@ class Odometry {
   };
 
   void apply_due_bundle(FrameRecord& record, bool now);
-  void detect(const Frame& frame, const cv::Mat& known_mask, FrameResult& result);
-  [[nodiscard]] Current remove_moving(const Frame& frame, const OrbFeatures& found, const cv::Mat& mask,
+  [[nodiscard]] FrameResult run_frame(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask);
+  void take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask, FrameResult& result);
+  [[nodiscard]] Current remove_moving(const Frame& frame, const PreparedFrame& prepared, const cv::Mat& mask,
                                       const Vector6d& velocity, FrameRecord& record) const;
-  [[nodiscard]] Current track_frame(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] Current track_frame(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
+  void detect_in_colour(const Frame& frame, FrameResult& result);
   void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
   void remember_view(const Frame& frame, const FrameResult& result);
   [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index,
                                                            const Pose& camera_from_world) const;
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
-  [[nodiscard]] Current initialise(const Frame& frame, const OrbFeatures& found, FrameResult& result);
+  [[nodiscard]] Current initialise(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   /// @returns why there is no pose; empty when there is one
   [[nodiscard]] std::string track(const Frame& frame, Current& current, FrameRecord& record);
   [[nodiscard]] bool leaves_too_little(const Current& current) const;
@@ -120,9 +138,9 @@ class Odometry {
                                       FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
   void count_sightings(const Current& current);
-  [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const OrbFeatures& found,
+  [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const PreparedFrame& prepared,
                                            const cv::Mat& known_mask) const;
-  [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const OrbFeatures& found,
+  [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const PreparedFrame& prepared,
                                                     const cv::Mat& mask) const;
   [[nodiscard]] bool is_taken_at_once(const Frame& frame) const;
   [[nodiscard]] int inliers_needed() const;
@@ -140,7 +158,7 @@ class Odometry {
 
   Camera camera_;
   Config config_;
-  OrbExtractor extractor_;
+  FramePreparer preparer_;
   std::vector<double> scales_;
   LocalMap map_;
   std::optional<Last> last_;  // empty until the map has begun
@@ -150,12 +168,11 @@ class Odometry {
   double now_ = 0.0;             // s, of the frame at hand
   int lost_frames_ = 0;          // in a row
   int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
-  std::deque<std::shared_ptr<const MotionFrame>>
-      references_;  // newest last, as far back as motion detection looks
   std::optional<PendingBundle> pending_;
-  std::deque<PastView> past_views_;       // newest last: what method `stillpoint` compares with
-  std::optional<MotionMemory> memory_;    // of the newest past view
-  std::shared_ptr<const RgbdView> view_;  // of the frame at hand
+  std::deque<PastView> past_views_;             // newest last: what method `stillpoint` compares with
+  std::optional<MotionMemory> memory_;          // of the newest past view
+  std::shared_ptr<const RgbdView> view_;        // of the frame at hand
+  std::optional<ColourMotionDetector> colour_;  // while frames have no depth
 };
 
 }  // namespace stillpoint

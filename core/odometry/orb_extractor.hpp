@@ -22,10 +22,13 @@ class OrbExtractor {
   explicit OrbExtractor(const FeatureConfig& config);
 
   /// Features of a grey image, CV_8UC1. Images too small for a level simply have none there.
-  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray) const;
+  /// @param threads above 1, the levels are shared between two; the result is the same
+  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray, int threads = 1) const;
 
  private:
   [[nodiscard]] std::vector<cv::KeyPoint> corners(const cv::Mat& level_image, int wanted) const;
+  [[nodiscard]] OrbFeatures extract_level(const cv::Mat& level_image, int level, const cv::Size& full) const;
+  [[nodiscard]] std::vector<cv::Mat> pyramid(const cv::Mat& gray) const;
 
   FeatureConfig config_;
   std::vector<int> wanted_;      // corners a level

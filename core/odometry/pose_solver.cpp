@@ -1,5 +1,7 @@
 #include "core/odometry/pose_solver.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
@@ -7,64 +9,9 @@
 namespace stillpoint {
 namespace {
 
-/// One observation's residual (px; pixel twice, then depth as disparity) and its Jacobian by a left
-/// perturbation.
-struct Linearised {
-  Eigen::Vector3d residual;
-  Eigen::Matrix<double, 3, 6> jacobian;
-  bool in_front = false;
-};
-
-class PoseProblem {
- public:
-  PoseProblem(const Camera& camera, const std::vector<PoseObservation>& observations, double depth_weight)
-      : camera_(camera), observations_(observations), depth_weight_(depth_weight) {}
-
-  [[nodiscard]] bool uses_depth(const PoseObservation& o) const { return depth_weight_ > 0 && o.depth > 0; }
-
-  /// Weighted by 1/σ, so that squared norms are χ².
-  [[nodiscard]] Linearised linearise(const PoseObservation& o, const Pose& camera_from_world,
-                                     bool with_jacobian) const {
-    Linearised result;
-    const Eigen::Vector3d p = camera_from_world * o.point_in_world;
-    result.in_front = p.z() > 0.05;
-    if (!result.in_front) return result;
-    const double weight = 1.0 / o.sigma_px, iz = 1.0 / p.z();
-    const bool depth = uses_depth(o);
-    const double bf = kDepthBaseline * camera_.fx, depth_weight = weight * depth_weight_;
-    const Eigen::Vector2d projected = camera_.project(p);
-    result.residual.head<2>() = weight * (projected - o.pixel);
-    result.residual.z() = depth ? depth_weight * bf * (1.0 / o.depth - iz) : 0.0;
-    if (!with_jacobian) return result;
-
-    Eigen::Matrix3d by_point;  // d residual / d p
-    by_point.row(0) << weight * camera_.fx * iz, 0, -weight * camera_.fx * p.x() * iz * iz;
-    by_point.row(1) << 0, weight * camera_.fy * iz, -weight * camera_.fy * p.y() * iz * iz;
-    by_point.row(2) << 0, 0, depth ? depth_weight * bf * iz * iz : 0.0;
-    result.jacobian.leftCols<3>() = by_point;
-    result.jacobian.rightCols<3>() = -by_point * hat(p);
-    return result;
-  }
-
-  [[nodiscard]] double chi2(const PoseObservation& o, const Pose& pose) const {
-    const Linearised l = linearise(o, pose, false);
-    return l.in_front ? l.residual.squaredNorm() : std::numeric_limits<double>::infinity();
-  }
-
-  [[nodiscard]] double bound(const PoseObservation& o) const {
-    return uses_depth(o) ? kChi2PixelDepth : kChi2Pixel;
-  }
-
- private:
-  const Camera& camera_;
-  const std::vector<PoseObservation>& observations_;
-  double depth_weight_;
-};
-
-/// Huber's cost of a χ² value, with the bound squared as given.
-double huber(double chi2, double bound) {
-  return chi2 <= bound ? chi2 : 2.0 * std::sqrt(chi2 * bound) - bound;
-}
+/// Four observations side by side: the same arithmetic on each, in one order on every processor.
+constexpr std::size_t kLanes = 4;
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 struct NormalEquations {
   Matrix6d h = Matrix6d::Zero();
@@ -72,28 +19,143 @@ struct NormalEquations {
   double cost = 0.0;
 };
 
-NormalEquations normal_equations(const PoseProblem& problem, const std::vector<PoseObservation>& observations,
-                                 const std::vector<std::uint8_t>& inlier, const Pose& pose, bool robust) {
-  NormalEquations n;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (!inlier[i]) continue;
-    const Linearised l = problem.linearise(observations[i], pose, true);
-    if (!l.in_front) continue;
-    const double chi2 = l.residual.squaredNorm(), bound = problem.bound(observations[i]);
-    const double weight = robust && chi2 > bound ? std::sqrt(bound / chi2) : 1.0;
-    n.h.noalias() += weight * l.jacobian.transpose() * l.jacobian;
-    n.g.noalias() += weight * l.jacobian.transpose() * l.residual;
-    n.cost += robust ? huber(chi2, bound) : chi2;
+/// The observations as the sums over them want them: four in a block, the last filled up with ones that count
+/// nothing.
+class PoseProblem {
+ public:
+  PoseProblem(const Camera& camera, const std::vector<PoseObservation>& observations, double depth_weight)
+      : camera_(camera), count_(observations.size()), blocks_((count_ + kLanes - 1) / kLanes) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PoseObservation& o = observations[i];
+      Block& block = blocks_[i / kLanes];
+      const std::size_t k = i % kLanes;
+      for (int axis = 0; axis < 3; ++axis)
+        block.point[static_cast<std::size_t>(axis)][k] = o.point_in_world[axis];
+      block.u[k] = o.pixel.x(), block.v[k] = o.pixel.y();
+      block.weight[k] = 1.0 / o.sigma_px;
+      const bool depth = depth_weight > 0 && o.depth > 0;
+      block.inverse_depth[k] = depth ? 1.0 / o.depth : 0.0;
+      block.depth_weight[k] = depth ? depth_weight * kDepthBaseline * camera.fx / o.sigma_px : 0.0;
+      block.bound[k] = depth ? kChi2PixelDepth : kChi2Pixel;
+      block.used[k] = 1.0;
+    }
   }
-  return n;
-}
+
+  /// Which observations the sums go over.
+  void use(const std::vector<std::uint8_t>& inlier) {
+    for (std::size_t i = 0; i < count_; ++i) blocks_[i / kLanes].used[i % kLanes] = inlier[i];
+  }
+
+  /// Marks the observations whose χ² is within its bound; returns how many.
+  int mark_inliers(const Pose& camera_from_world, std::vector<std::uint8_t>& inlier) const {
+    int inliers = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Residual r = residual(blocks_[b], camera_from_world);
+      for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k) {
+        const bool within = r.in_front[k] > 0 && r.chi2[k] <= blocks_[b].bound[k];
+        inlier[b * kLanes + k] = within;
+        inliers += within;
+      }
+    }
+    return inliers;
+  }
+
+  /// Gauss-Newton's equations by a left perturbation, translation first. With `robust`, Huber's weights.
+  [[nodiscard]] NormalEquations normal_equations(const Pose& camera_from_world, bool robust) const {
+    std::array<Lanes, 27> sums{};  // upper triangle of h row by row, then g
+    Lanes costs{};
+    for (const Block& block : blocks_) {
+      const Residual r = residual(block, camera_from_world);
+      Lanes weight = r.in_front * block.used, cost = r.chi2;
+      if (robust)
+        for (std::size_t k = 0; k < kLanes; ++k)
+          if (r.chi2[k] > block.bound[k]) {
+            const double share = std::sqrt(block.bound[k] / r.chi2[k]);
+            cost[k] = 2.0 * share * r.chi2[k] - block.bound[k];
+            weight[k] *= share;
+          }
+      costs += r.in_front * block.used * cost;
+      add(block, r, weight, sums);
+    }
+    NormalEquations n;
+    const auto total = [](const Lanes& l) { return (l[0] + l[1]) + (l[2] + l[3]); };
+    std::size_t entry = 0;
+    for (int row = 0; row < 6; ++row)
+      for (int column = row; column < 6; ++column) n.h(row, column) = n.h(column, row) = total(sums[entry++]);
+    for (int row = 0; row < 6; ++row) n.g[row] = total(sums[entry++]);
+    n.cost = total(costs);
+    return n;
+  }
+
+ private:
+  struct Block {
+    std::array<Lanes, 3> point{};  // m, world
+    Lanes u{}, v{}, inverse_depth{};
+    Lanes weight{};        // 1/σ, so that squared norms are χ²
+    Lanes depth_weight{};  // of the third residual, depth as disparity; 0 without depth
+    Lanes bound{}, used{};
+  };
+  /// Residuals by weight, and where the points lie in the camera.
+  struct Residual {
+    Lanes x, y, z, inverse_z;
+    Lanes by_u, by_v, by_depth, chi2;
+    Lanes in_front;  // 1 or 0
+  };
+
+  [[nodiscard]] Residual residual(const Block& block, const Pose& pose) const {
+    constexpr double kNearest = 0.05;  // m
+    const auto& m = pose.matrix();
+    const auto& p = block.point;
+    Residual r;
+    r.x = m(0, 0) * p[0] + m(0, 1) * p[1] + m(0, 2) * p[2] + m(0, 3);
+    r.y = m(1, 0) * p[0] + m(1, 1) * p[1] + m(1, 2) * p[2] + m(1, 3);
+    r.z = m(2, 0) * p[0] + m(2, 1) * p[1] + m(2, 2) * p[2] + m(2, 3);
+    for (std::size_t k = 0; k < kLanes; ++k) r.in_front[k] = r.z[k] > kNearest ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < kLanes; ++k) r.inverse_z[k] = 1.0 / std::max(r.z[k], kNearest);
+    r.by_u = block.weight * (camera_.fx * r.x * r.inverse_z + camera_.cx - block.u);
+    r.by_v = block.weight * (camera_.fy * r.y * r.inverse_z + camera_.cy - block.v);
+    r.by_depth = block.depth_weight * (block.inverse_depth - r.inverse_z);
+    r.chi2 = r.by_u * r.by_u + r.by_v * r.by_v + r.by_depth * r.by_depth;
+    return r;
+  }
+
+  /// Adds J^T w J and J^T w r. The rows of J are (a 0 c | cy az-cx -ay), (0 b d | dy-bz -dx bx) and
+  /// (0 0 e | ey -ex 0).
+  void add(const Block& block, const Residual& r, const Lanes& weight, std::array<Lanes, 27>& sums) const {
+    const Lanes a = block.weight * camera_.fx * r.inverse_z, b = block.weight * camera_.fy * r.inverse_z;
+    const Lanes c = -a * r.x * r.inverse_z, d = -b * r.y * r.inverse_z;
+    const Lanes e = block.depth_weight * r.inverse_z * r.inverse_z;
+    const Lanes u3 = c * r.y, u4 = a * r.z - c * r.x, u5 = -a * r.y;
+    const Lanes v3 = d * r.y - b * r.z, v4 = -d * r.x, v5 = b * r.x;
+    const Lanes d3 = e * r.y, d4 = -e * r.x;
+    const Lanes wa = weight * a, wc = weight * c, wu3 = weight * u3, wu4 = weight * u4, wu5 = weight * u5;
+    const Lanes wb = weight * b, wd = weight * d, wv3 = weight * v3, wv4 = weight * v4, wv5 = weight * v5;
+    const Lanes we = weight * e, wd3 = weight * d3, wd4 = weight * d4;
+    sums[0] += wa * a, sums[2] += wa * c, sums[3] += wa * u3, sums[4] += wa * u4, sums[5] += wa * u5;
+    sums[6] += wb * b, sums[7] += wb * d, sums[8] += wb * v3, sums[9] += wb * v4, sums[10] += wb * v5;
+    sums[11] += wc * c + wd * d + we * e, sums[12] += wc * u3 + wd * v3 + we * d3;
+    sums[13] += wc * u4 + wd * v4 + we * d4, sums[14] += wc * u5 + wd * v5;
+    sums[15] += wu3 * u3 + wv3 * v3 + wd3 * d3, sums[16] += wu3 * u4 + wv3 * v4 + wd3 * d4;
+    sums[17] += wu3 * u5 + wv3 * v5;
+    sums[18] += wu4 * u4 + wv4 * v4 + wd4 * d4, sums[19] += wu4 * u5 + wv4 * v5;
+    sums[20] += wu5 * u5 + wv5 * v5;
+    sums[21] += wa * r.by_u, sums[22] += wb * r.by_v;
+    sums[23] += wc * r.by_u + wd * r.by_v + we * r.by_depth;
+    sums[24] += wu3 * r.by_u + wv3 * r.by_v + wd3 * r.by_depth;
+    sums[25] += wu4 * r.by_u + wv4 * r.by_v + wd4 * r.by_depth;
+    sums[26] += wu5 * r.by_u + wv5 * r.by_v;
+  }
+
+  const Camera& camera_;
+  std::size_t count_;
+  std::vector<Block> blocks_;
+};
 
 /// Levenberg-Marquardt over the inliers; returns the number of steps taken.
-int levenberg_marquardt(const PoseProblem& problem, const std::vector<PoseObservation>& observations,
-                        const std::vector<std::uint8_t>& inlier, bool robust, int max_steps, Pose& pose) {
+int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, Pose& pose) {
   constexpr double kConverged = 1e-7;  // m and rad: far below what pixels can tell
   double lambda = 1e-4;
-  NormalEquations current = normal_equations(problem, observations, inlier, pose, robust);
+  NormalEquations current = problem.normal_equations(pose, robust);
   int steps = 0;
   while (steps < max_steps) {
     ++steps;
@@ -102,7 +164,7 @@ int levenberg_marquardt(const PoseProblem& problem, const std::vector<PoseObserv
     const Vector6d step = -damped.ldlt().solve(current.g);
     if (!step.allFinite()) break;
     const Pose candidate = se3_exp(step) * pose;
-    const NormalEquations next = normal_equations(problem, observations, inlier, candidate, robust);
+    const NormalEquations next = problem.normal_equations(candidate, robust);
     if (next.cost < current.cost) {
       pose = candidate;
       current = next;
@@ -128,19 +190,15 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     result.inlier.assign(observations.size(), 0);
     return result;
   }
-  const PoseProblem problem(camera, observations, config.depth_weight);
+  PoseProblem problem(camera, observations, config.depth_weight);
   for (int round = 0; round < config.refine_rounds; ++round) {
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.
     const bool robust = round < 2;
     Pose pose = result.camera_from_world;
-    result.iterations +=
-        levenberg_marquardt(problem, observations, result.inlier, robust, config.refine_iterations, pose);
+    result.iterations += levenberg_marquardt(problem, robust, config.refine_iterations, pose);
     result.camera_from_world = pose;
-    result.inliers = 0;
-    for (std::size_t i = 0; i < observations.size(); ++i) {
-      result.inlier[i] = problem.chi2(observations[i], pose) <= problem.bound(observations[i]);
-      result.inliers += result.inlier[i];
-    }
+    result.inliers = problem.mark_inliers(pose, result.inlier);
+    problem.use(result.inlier);
     if (result.inliers < 6) break;
   }
 
@@ -158,8 +216,7 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     result.rms_px = std::sqrt(after / result.inliers);
     result.rms_before_px = std::sqrt(before / result.inliers);
   }
-  result.information =
-      normal_equations(problem, observations, result.inlier, result.camera_from_world, false).h;
+  result.information = problem.normal_equations(result.camera_from_world, false).h;
   result.camera_from_world = normalised(result.camera_from_world);
   return result;
 }

@@ -34,7 +34,9 @@ PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matc
   PoseRefinement refined =
       refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking);
   record.refine_iterations += refined.iterations;
-  record.ms.pose += watch.milliseconds();
+  const double took = watch.milliseconds();
+  record.ms.refine += took;
+  record.ms.pose += took;
   return refined;
 }
 
@@ -72,12 +74,15 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
     PoseRefinement refined = refine(current, matches, record);
     if (refined.inliers < kMinModelInliers) continue;
     if (current.seek_consensus) {
+      watch.lap();
       const Consensus agreed =
           consensus_pose(camera_, observations_of(current, matches), {predicted, refined.camera_from_world},
                          kConsensusSamples, current.seed);
       refined.camera_from_world = agreed.camera_from_world;
       refined.inlier = agreed.inlier;
-      record.ms.pose += watch.lap();
+      const double took = watch.milliseconds();
+      record.ms.consensus += took;
+      record.ms.pose += took;
     }
     current.camera_from_world = refined.camera_from_world;
     for (std::size_t i = 0; i < matches.size(); ++i)
@@ -106,7 +111,9 @@ bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) const {
   record.matches = static_cast<int>(matches.size());
 
   const auto initial = initial_pose(camera_, observations_of(current, matches), config_.tracking);
-  record.ms.pose += watch.lap();
+  const double took = watch.milliseconds();
+  record.ms.epnp += took;
+  record.ms.pose += took;
   if (!initial) return false;
   std::vector<Match> agreeing;
   for (const int i : initial->inliers) agreeing.push_back(matches[static_cast<std::size_t>(i)]);

@@ -19,6 +19,18 @@ void transfer_stamped(Archive& archive, Stamped& stamped) {
   transfer_pose(archive, stamped.world_from_camera);
 }
 
+void transfer_optional_pose(ByteWriter& to, const std::optional<Pose>& pose) {
+  to(pose.has_value());
+  if (pose) transfer_pose(to, *pose);
+}
+
+void transfer_optional_pose(ByteReader& from, std::optional<Pose>& pose) {
+  bool known = false;
+  from(known);
+  pose.reset();
+  if (known) transfer_pose(from, pose.emplace(Pose::Identity()));
+}
+
 template <typename Archive, typename Record>
 void transfer_fields(Archive& archive, Record& r) {
   archive(r.index);
@@ -40,6 +52,9 @@ void transfer_fields(Archive& archive, Record& r) {
         &r.ms.motion, &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
     archive(*figure);
   archive(r.keyframe);
+  for (auto* pose :
+       {&r.prior_pose, &r.motion_pose, &r.removal_check.nothing_removed, &r.removal_check.truth_removed})
+    transfer_optional_pose(archive, *pose);
 }
 
 /// Field by field over all features: what is alike lies together, which packs better.
@@ -77,6 +92,7 @@ void transfer_point(Archive& archive, SavedPointType& point) {
   archive(point.id);
   for (int i = 0; i < 3; ++i) archive(point.position[i]);
   archive(point.observations);
+  archive(point.moved);
 }
 
 constexpr std::size_t kFeatureBytes = 22;
@@ -165,7 +181,8 @@ FrameRecord read_record(ByteReader& from) {
 void write_end(ByteWriter& to, const RunEnd& end) {
   write_all(to, end.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
   write_all(to, end.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
-  write_all(to, end.points, [](auto& a, auto& p) { transfer_point(a, p); });
+  for (const auto* points : {&end.points, &end.moved})
+    write_all(to, *points, [](auto& a, auto& p) { transfer_point(a, p); });
   write_all(to, end.trajectory, [](auto& a, auto& p) { transfer_stamped(a, p); });
   write_all(to, end.ground_truth, [](auto& a, auto& p) { transfer_stamped(a, p); });
   to(end.orb_unit_ms);
@@ -176,7 +193,8 @@ RunEnd read_end(ByteReader& from) {
   RunEnd end;
   end.scores = read_all<FrameScores>(from, [](auto& a, auto& s) { transfer_scores(a, s); });
   end.keyframes = read_all<SavedKeyframe>(from, [](auto& a, auto& k) { transfer_keyframe(a, k); });
-  end.points = read_all<SavedPoint>(from, [](auto& a, auto& p) { transfer_point(a, p); });
+  for (auto* points : {&end.points, &end.moved})
+    *points = read_all<SavedPoint>(from, [](auto& a, auto& p) { transfer_point(a, p); });
   end.trajectory = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
   end.ground_truth = read_all<StampedPose>(from, [](auto& a, auto& p) { transfer_stamped(a, p); });
   from(end.orb_unit_ms);

@@ -32,7 +32,7 @@ void write_record(ByteWriter& to, const FrameRecord& record);
 struct RunEnd {
   std::vector<FrameScores> scores;  ///< one a record
   std::vector<SavedKeyframe> keyframes;
-  std::vector<SavedPoint> points;
+  std::vector<SavedPoint> points, moved;
   Trajectory trajectory;    ///< as trajectory.txt holds it, unrounded
   Trajectory ground_truth;  ///< the sequence's
   double orb_unit_ms = 0.0;

@@ -100,6 +100,7 @@ void read_tail(const std::vector<std::uint8_t>& content, RecordedRun& recorded) 
   run.scores = std::move(end.scores);
   run.keyframes = std::move(end.keyframes);
   run.points = std::move(end.points);
+  run.moved = std::move(end.moved);
   run.trajectory = std::move(end.trajectory);
   run.orb_unit_ms = end.orb_unit_ms;
   run.interrupted = end.interrupted;
@@ -133,8 +134,8 @@ void RecordsWriter::add(const FrameResult& frame) {
 }
 
 void RecordsWriter::finish(const RunResult& run, const Trajectory& ground_truth) {
-  write_end(content_, {run.scores, run.keyframes, run.points, run.trajectory, ground_truth, run.orb_unit_ms,
-                       run.interrupted});
+  write_end(content_, {run.scores, run.keyframes, run.points, run.moved, run.trajectory, ground_truth,
+                       run.orb_unit_ms, run.interrupted});
   content_(run_hash(run.records));
   put_chunk(kEnd);
   errno = 0;

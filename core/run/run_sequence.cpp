@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <future>
+#include <memory>
 #include <opencv2/features2d.hpp>
+#include <optional>
 
 #include "core/sequence/prefetch.hpp"
 #include "core/stopwatch.hpp"
@@ -20,6 +22,54 @@ double orb_unit_ms(const cv::Mat& gray) {
   orb->detectAndCompute(gray, cv::noArray(), keypoints, descriptors);
   return watch.milliseconds();
 }
+
+/// Frames between two measurements of the unit: often enough to follow a machine whose speed drifts, seldom
+/// enough not to be most of the time.
+constexpr int kUnitEvery = 8;
+
+/// Frames in order: read ahead on other threads, or, where time is measured, each when it is asked for, so
+/// that nothing is decoded beside.
+class ReadAhead {
+ public:
+  ReadAhead(const FrameSource& source, const RunOptions& options, int end, int threads) : source_(source) {
+    if (!options.measure_orb_unit)
+      prefetcher_ = std::make_unique<Prefetcher>(source, options.first, end, std::max(1, threads));
+  }
+  [[nodiscard]] Frame read(int index) const {
+    return prefetcher_ ? prefetcher_->next() : source_.read(index);
+  }
+
+ private:
+  const FrameSource& source_;
+  std::unique_ptr<Prefetcher> prefetcher_;
+};
+
+/// A frame that is prepared while the one before it is tracked.
+class PreparedNext {
+ public:
+  PreparedNext(Frame frame, FramePreparer& preparer, int threads) : frame_(std::move(frame)) {
+    prepared_ = std::async(
+        threads > 1 ? std::launch::async : std::launch::deferred,
+        [frame = frame_, &preparer] { return frame.readable() ? preparer.prepare(frame) : PreparedFrame{}; });
+  }
+  void wait() {
+    const Stopwatch watch;
+    prepared_.wait();
+    waited_ms_ += watch.milliseconds();
+  }
+  [[nodiscard]] PreparedFrame get() {
+    wait();
+    return prepared_.get();
+  }
+  [[nodiscard]] const Frame& frame() const { return frame_; }
+  /// What waiting for it took, reading excluded.
+  [[nodiscard]] double waited_ms() const { return waited_ms_; }
+
+ private:
+  Frame frame_;
+  std::future<PreparedFrame> prepared_;
+  double waited_ms_ = 0.0;
+};
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -74,9 +124,15 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   const int end = options.count > 0 ? std::min(source.size(), options.first + options.count) : source.size();
   const bool told = config.run.method == "oracle" || config.run.check_removal != 0;
 
+  const ReadAhead reader(source, options, end, config.run.threads);
   Odometry odometry(source.camera(), config);
-  Prefetcher prefetcher(source, options.first, end, std::max(1, config.run.threads));
+  FramePreparer preparer(source.camera(), config);
+  const auto begin = [&](int index) {
+    return PreparedNext(reader.read(index), preparer, config.run.threads);
+  };
   std::vector<double> units;
+  std::optional<PreparedNext> next;
+  if (options.first < end) next.emplace(begin(options.first));
   for (int index = options.first; index < end; ++index) {
     if (options.stop && *options.stop) {
       result.interrupted = true;
@@ -86,11 +142,19 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     auto truth = std::async(told ? std::launch::deferred : std::launch::async, [&source, index] {
       return source.has_masks() ? source.truth(index).moving : cv::Mat();
     });
-    const Frame frame = prefetcher.next();
     const cv::Mat known = told ? truth.get() : cv::Mat();
-    FrameResult processed = odometry.process(frame, known);
+    PreparedFrame prepared = next->get();
+    const double waited_ms = next->waited_ms();
+    const Frame frame = next->frame();
+    next.reset();
+    if (index + 1 < end) next.emplace(begin(index + 1));
+    FrameResult processed = odometry.process_prepared(frame, std::move(prepared), known);
+    processed.record.ms.total += waited_ms;
     result.scores.push_back(score_frame(processed, told ? known : truth.get()));
-    if (options.measure_orb_unit && frame.readable()) units.push_back(orb_unit_ms(frame.gray));
+    if (options.measure_orb_unit && frame.readable() && index % kUnitEvery == 0) {
+      if (next) next->wait();  // nothing may run beside, and what the wait takes is the next frame's
+      units.push_back(orb_unit_ms(frame.gray));
+    }
     if (options.on_frame) options.on_frame(processed);
     if (!options.keep_features) processed.record.features = {};
     result.records.push_back(std::move(processed.record));
@@ -102,6 +166,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.trajectory = trajectory_so_far(odometry.map(), result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
+  result.moved = moved_points(odometry.map());
   return result;
 }
 

@@ -48,6 +48,7 @@ struct RunResult {
   Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
+  std::vector<SavedPoint> moved;  ///< those that left the map because they moved, oldest first
   int frames_in_sequence = 0;
   double orb_unit_ms = 0.0;  ///< the unit of speed, median over the frames; 0 when it was not measured
   bool interrupted = false;  ///< stopped before the last frame
@@ -60,9 +61,9 @@ struct RunOptions {
   int first = 0;                            ///< frame to begin with
   int count = 0;                            ///< frames to process; 0 = to the end
   const std::atomic<bool>* stop = nullptr;  ///< when it turns true the run ends after the frame at hand
-  bool keep_features = false;  ///< leave each record its features: 25 kB a frame, for who shows them
-  bool measure_orb_unit =
-      false;  ///< also time one cv::ORB::detectAndCompute a frame (EVALUATION.md, "Speed")
+  bool keep_features = false;     ///< leave each record its features: 25 kB a frame, for who shows them
+  bool measure_orb_unit = false;  ///< also time one cv::ORB::detectAndCompute every few frames
+                                  ///< (EVALUATION.md, "Speed"), and read no frames beside tracking
   std::function<void(const FrameResult&)> on_frame{};  ///< called after each frame, from the calling thread
 };
 

@@ -32,7 +32,8 @@ Frame Excerpt::read(int index) const {
 
 ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& frames,
                              const std::filesystem::path& folder, bool force,
-                             const std::function<void(int done, int total)>& progress) {
+                             const std::function<void(int done, int total)>& progress,
+                             const std::atomic<bool>* stop) {
   ExportedFrames exported;
   std::vector<int> readable;
   for (const int frame : frames)
@@ -40,8 +41,8 @@ ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& 
   if (readable.empty())
     throw InputError(
         fmt::format("{}: none of the {} frames to export can be read", source.name(), frames.size()));
-  write_sequence(Excerpt(source, readable), folder, {.force = force, .threads = 2, .progress = progress});
-  exported.written = static_cast<int>(readable.size());
+  exported.written = write_sequence(Excerpt(source, readable), folder,
+                                    {.force = force, .threads = 2, .progress = progress, .stop = stop});
   return exported;
 }
 

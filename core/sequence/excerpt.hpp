@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -44,9 +45,11 @@ struct ExportedFrames {
 
 /// Writes some frames of a sequence as a TUM RGB-D folder (write_sequence) that shows a method the same
 /// images at the same times.
+/// @param stop when it turns true, it ends with the frames at hand
 /// @throws InputError as write_sequence does, and where none of the frames can be read
 ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& frames,
                              const std::filesystem::path& folder, bool force,
-                             const std::function<void(int done, int total)>& progress = {});
+                             const std::function<void(int done, int total)>& progress = {},
+                             const std::atomic<bool>* stop = nullptr);
 
 }  // namespace stillpoint

@@ -39,7 +39,9 @@ void measure(const std::string& where, const std::string& method, int frames) {
   fmt::print("{}, {} of {} frames, method {}\n", source->name(), count, source->size(), method);
 
   const Stopwatch batch;
-  const RunResult run = run_sequence(*source, config, {.count = count});
+  RunOptions options;
+  options.count = count;
+  const RunResult run = run_sequence(*source, config, options);
   const double batch_ms = batch.milliseconds() / count;
   malloc_trim(0);
   const double before = resident_mb();

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/cli/run_cli.hpp"
@@ -103,6 +105,60 @@ TEST_F(MotionCommand, EarlierResultsAreKeptWithoutForce) {
   EXPECT_EQ(folder_.read("out/motion.csv"), before);
   EXPECT_EQ(pair("b.png", "a.png", {"--force"}).exit_code, 0);
   EXPECT_NE(folder_.read("out/motion.csv"), before);
+}
+
+TEST_F(MotionCommand, ForcedResultsReplaceEarlierOnesWhole) {
+  write_sequence(6);
+  const auto forced = [this](std::vector<std::string> more) {
+    more.insert(more.begin(), {folder_.path("frames"), "--out", folder_.path("out"), "--force"});
+    return motion(more).exit_code;
+  };
+  ASSERT_EQ(forced({"--frames", "1:6", "--all-rounds"}), 0);
+  ASSERT_TRUE(fs::exists(folder_.path("out/000004/round_1/overlay.png")));
+  folder_.write("out/000004/notes.txt", std::string("mine"));
+  folder_.write("out/figures/overlay.png", std::string("mine too"));
+  ASSERT_EQ(forced({"--frames", "1:3"}), 0);
+  EXPECT_TRUE(fs::exists(folder_.path("out/000002/overlay.png")));
+  EXPECT_FALSE(fs::exists(folder_.path("out/000002/round_1")));
+  EXPECT_FALSE(fs::exists(folder_.path("out/000003")));
+  // What is not ours stays.
+  EXPECT_EQ(folder_.read("out/000004/notes.txt"), "mine");
+  EXPECT_FALSE(fs::exists(folder_.path("out/000004/round_1")));
+  EXPECT_EQ(folder_.read("out/figures/overlay.png"), "mine too");
+}
+
+/// Sends the signal once the file `sign` is there, and waits for the end.
+CliResult stopped(const std::vector<std::string>& arguments, const fs::path& sign) {
+  CliProcess process(arguments);
+  for (int i = 0; i < 1200 && !fs::exists(sign); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  process.send(SIGINT);
+  return process.wait();
+}
+
+TEST_F(MotionCommand, CtrlCKeepsWhatWasDone) {
+  const CliResult result = stopped({"motion", "generated:room", "--out", folder_.path("out")},
+                                   folder_.path("out/000002/overlay.png"));
+  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
+  EXPECT_FALSE(result.by_signal);
+  const auto figures = nlohmann::json::parse(folder_.read("out/motion.json"));
+  EXPECT_GE(figures["pairs"].size(), 2U);
+  EXPECT_LT(figures["pairs"].size(), 299U);
+  EXPECT_EQ(lines_of(folder_.read("out/motion.csv")), 1 + static_cast<int>(figures["pairs"].size()));
+}
+
+TEST(GenerateCommand, CtrlCLeavesAShorterSequence) {
+  const TemporaryFolder folder("film");
+  const CliResult result = stopped({"generate", "room", "--frames", "500", "--out", folder.path()},
+                                   folder.path("rgb/1000.033333.png"));
+  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
+  EXPECT_FALSE(result.by_signal);
+  const CliResult ran = run_cli({"motion", folder.path(), "--frames", "1:2", "--out", folder.path("motion")});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  std::size_t images = 0;
+  for ([[maybe_unused]] const auto& image : fs::directory_iterator(folder.path("rgb"))) ++images;
+  EXPECT_LT(images, 500U);
+  EXPECT_EQ(static_cast<std::size_t>(lines_of(folder.read("rgb.txt"))), images + 2);  // and two of comment
 }
 
 TEST_F(MotionCommand, BadInputIsToldInOneSentence) {

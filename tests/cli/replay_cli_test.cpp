@@ -22,7 +22,7 @@ class ReplayCli : public ::testing::Test {
  protected:
   /// A recording of the small sequence. @returns its path
   [[nodiscard]] std::string recording(const std::string& happenings, int frames = 6) const {
-    const std::string name = fs::path(sequence_.path()).filename().string();
+    const std::string name = "sequence";
     sequence_.folder.write("recording.txt",
                            fmt::format("stillpoint recording 1\nsequence {} {}\nopened {}\nsize 800 600\n"
                                        "look light 1\nlayout {{\"columns\": [{{\"panel\": \"input\"}}, "

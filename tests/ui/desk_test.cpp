@@ -149,7 +149,7 @@ TEST_F(DeskInAWindow, PlaysTheDemoTakesKeysMouseAndADrop) {
 
 TEST_F(DeskInAWindow, ShowsWhatTheOffscreenImageHolds) {
   const Recording recording = parse_recording(
-      "stillpoint recording 1\nidle\nframe 5\npoint input 0.5 0.5\nwheel 0 2\nwait 0.1\nmove -100000 "
+      "stillpoint recording 1\nidle\nframe 5\npoint union_mask 0.5 0.5\nwheel 0 2\nwait 0.1\nmove -100000 "
       "-100000\n"
       "screenshot shown.png\n",
       "r.txt");

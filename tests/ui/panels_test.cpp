@@ -1,12 +1,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/panels/scene_of_session.hpp"
+#include "ui/scene/scene_view.hpp"
 #include "ui/shell/offscreen.hpp"
 
 namespace stillpoint::testing {
@@ -162,6 +166,69 @@ TEST(Panels, TheInspectorReadsThePixelUnderTheMouse) {
   const cv::Mat after = offscreen.render(draw);
   const cv::Rect inspector(450, 0, 450, 200);
   EXPECT_FALSE(images_agree(before(inspector), after(inspector), {2, 500.0, 0.0}));
+}
+
+/// Where a picture shows the ground of plots and of the trajectory view.
+cv::Rect ground_of(const cv::Mat& image) {
+  const Rgb ground = theme(ThemeName::kDark).plot;
+  cv::Mat same;
+  cv::inRange(image, cv::Scalar(ground.b, ground.g, ground.r), cv::Scalar(ground.b, ground.g, ground.r),
+              same);
+  return cv::boundingRect(same);
+}
+
+TEST(Panels, TheTrajectoryIsZoomedTurnedAndClicked) {
+  const SessionView session = handmade_example();
+  PanelStage stage("trajectory", {});
+  const cv::Mat before = stage.render(session);
+  const cv::Rect room = ground_of(before);
+  ASSERT_GT(room.area(), 200 * 150);
+
+  // Where the panel shows a pose, computed here from the same scene.
+  const SessionScene scene = scene_of_session(session, {});
+  const Viewport viewport{static_cast<double>(room.width), static_cast<double>(room.height)};
+  SceneView view;
+  look_from(view, ViewPreset::kOblique, scene.data.up);
+  fit(view, viewport, sight_of(scene.data));
+  constexpr std::size_t kPose = 10;
+  const auto at = project(view, viewport, scene.data.paths.back().positions[kPose].cast<double>());
+  ASSERT_TRUE(at);
+  const double x = (room.x + at->x()) / before.cols, y = (room.y + at->y()) / before.rows;
+  const auto frame = stage.click(session, x, y).go_to_frame;
+  ASSERT_TRUE(frame);
+  EXPECT_NEAR(*frame, static_cast<int>(kPose), 2);
+  // The pose is told under the mouse, and nothing is where nothing lies.
+  EXPECT_FALSE(images_agree(stage.render(session), before, {2, 300.0, 0.0}));
+  EXPECT_FALSE(stage.click(session, (room.x + room.width - 3.0) / before.cols, (room.y + 3.0) / before.rows)
+                   .go_to_frame);
+
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
+  EXPECT_TRUE(images_agree(stage.render(session), before, kSceneTolerance));
+  const auto middle_x = static_cast<float>(room.x + room.width / 2),
+             middle_y = static_cast<float>(room.y + room.height / 2);
+  stage.play(session, {MouseMoved{middle_x, middle_y}});
+  stage.play(session, {MouseWheel{0.0F, 3.0F, {}}});
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
+  const cv::Mat nearer = stage.render(session);
+  EXPECT_FALSE(images_agree(nearer, before, {2, 1000.0, 0.0}));
+  stage.play(session, {MouseMoved{middle_x, middle_y}});
+  stage.play(session, {MouseButton{0, true, {}}});
+  stage.play(session, {MouseMoved{middle_x + 60.0F, middle_y + 20.0F}});
+  stage.play(session, {MouseButton{0, false, {}}});
+  stage.play(session, {MouseMoved{-1e5F, -1e5F}});
+  EXPECT_FALSE(images_agree(stage.render(session), nearer, {2, 1000.0, 0.0}));
+}
+
+TEST(Panels, PointsThatLeftTheMapBecauseTheyMovedAreRemovedOnes) {
+  SessionView session = handmade_example();
+  const auto removed = [&] {
+    const SessionScene scene = scene_of_session(session, {});
+    return std::count_if(scene.data.points.begin(), scene.data.points.end(),
+                         [](const ScenePoint& point) { return point.removed; });
+  };
+  const auto before = removed();
+  session.map_points.push_back({.id = 9000, .position = {0.1, 0.2, 0.3}, .observations = 0, .moved = true});
+  EXPECT_EQ(removed(), before + 1);
 }
 
 TEST(Panels, WhatIsMissingIsSaidInstead) {

@@ -18,13 +18,6 @@ using ::testing::IsEmpty;
 
 constexpr int kFrames = 8;
 
-/// Without times, which differ from run to run.
-OpenedPlace untimed(std::shared_ptr<const FrameSource> source, const Config& config) {
-  OpenedPlace place{.source = std::move(source), .config = config, .options = {}, .problem = {}};
-  place.options.keep_times = false;
-  return place;
-}
-
 class Replay : public ::testing::Test {
  protected:
   /// Plays a recording on the small sequence. @returns what went wrong, "" when nothing did
@@ -35,8 +28,13 @@ class Replay : public ::testing::Test {
     Offscreen offscreen({.width = 1280, .height = 800});
     std::string problem;
     {
-      Desk desk({.open_place = [](const std::string& where,
-                                  const Config& config) { return untimed(open_sequence(where), config); },
+      Desk desk({.open_place =
+                     [](const std::string& where, const Config& config) {
+                       OpenedPlace place{
+                           .source = open_sequence(where), .config = config, .options = {}, .problem = {}};
+                       place.options.keep_times = false;
+                       return place;
+                     },
                  .config = {},
                  .settings = {},
                  .marks_folder = {},
@@ -149,32 +147,35 @@ size 1280 800
       "");
 }
 
-TEST_F(Replay, AClickInTheTimelineGoesThere) {
+TEST_F(Replay, AClickInTheErrorsGoesThere) {
   EXPECT_EQ(play(R"(frame 7
-point timeline 0.45 0.4
-click left
-idle
-expect frame~ 
-)",
-                 "layout {\"panel\": \"timeline\"}\n")
-                .empty(),
-            false);
-  EXPECT_EQ(play(R"(frame 7
-point timeline 0.35 0.5
+action panel.errors
+wait 0.1
+expect panels~ errors
+point errors 0.5 0.5
 click left
 idle
 expect status tracked
 )",
-                 "layout {\"panel\": \"timeline\"}\n"),
+                 "layout {\"panel\": \"input\"}\n"),
+            "");
+}
+
+TEST_F(Replay, ChoicesInALayoutAreTaken) {
+  EXPECT_EQ(play(R"(frame 5
+expect choices errors: Log scale=on
+)",
+                 R"(layout {"panel": "errors", "choices": {"Log scale": "on"}}
+)"),
             "");
 }
 
 TEST_F(Replay, WhatIsNoSequenceIsSaidAndTheOneOpenStays) {
   EXPECT_EQ(play("drop " + out_.path() + R"(
 idle
-expect title )" + std::filesystem::path(folder_.path()).filename().string() +
-                 R"(
-expect message~ rgb.txt
+expect title sequence
+expect frames 8
+expect message~ stillpoint_
 expect log.errors 1
 drop /nowhere/at/all
 idle
@@ -196,19 +197,10 @@ TEST_F(Replay, AFolderDroppedOnTheStartPageOpens) {
             "");
 }
 
-TEST_F(Replay, ASequenceThatVanishesWhileOpenIsShownAsUnreadable) {
-  // Frames 0 and 1 are read when the sequence opens; the others are not there any more by then.
-  for (int i = 4; i < kFrames; ++i) std::filesystem::remove(folder_.path(SmallSequence::colour(i)));
-  EXPECT_EQ(
-      play("key Ctrl+End\nidle\nexpect frame 7\nexpect status unreadable\nkey Home\nidle\nexpect frame 0\n"
-           "expect status initialised\n"),
-      "");
-}
-
 TEST_F(Replay, TwoReplaysGiveTheSameScreenshots) {
   for (const char* name : {"a.png", "b.png"})
     EXPECT_EQ(
-        play("frame 5\npoint input 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) + "\n"),
+        play("frame 5\npoint trajectory 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) + "\n"),
         "");
   const cv::Mat a = cv::imread(out_.path("a.png")), b = cv::imread(out_.path("b.png"));
   ASSERT_EQ(a.size(), cv::Size(1280, 800));

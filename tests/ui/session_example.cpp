@@ -291,16 +291,16 @@ GhostView handmade_ghost(const SessionView& session, const std::string& name, in
   GhostView ghost;
   ghost.name = name;
   ghost.config.motion.border_px = 7;
-  auto run = handmade_run("paper", millimetres);
+  auto run = handmade_run("stillpoint", millimetres);
+  run->records = session.run->records;
   for (FrameRecord& record : run->records) {
-    record.world_from_camera.translation().x() = 0.01 * record.index;
     if (record.index < parts) continue;
-    record.world_from_camera.translation().y() = 0.002 * (record.index - parts + 1);
+    record.world_from_camera.translation().z() += 0.002 * (record.index - parts + 1);
     record.inliers -= 40;
     record.mask_share *= 0.5;
   }
   auto current = std::make_shared<FrameView>(*session.current);
-  current->mask = cv::Mat::zeros(240, 320, CV_8UC1);
+  current->mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(0));
   cv::circle(current->mask, {220, 120}, 40, 255, cv::FILLED);
   current->record = &run->records[static_cast<std::size_t>(current->index)];
   ghost.current = current;
@@ -313,15 +313,6 @@ GhostView handmade_ghost(const SessionView& session, const std::string& name, in
 
 SessionView debug_example() {
   SessionView view = handmade_example();
-  auto run = std::make_shared<RunView>(*view.run);
-  for (FrameRecord& record : run->records) {
-    record.world_from_camera.translation().x() = 0.01 * record.index;
-    run->trajectory.push_back({record.timestamp, record.world_from_camera});
-  }
-  auto current = std::make_shared<FrameView>(*view.current);
-  current->record = &run->records[24];
-  view.run = run;
-  view.current = current;
   DebugView& debug = view.debug;
   debug.bookmarks = {{5, "the walker comes in"}, {24, ""}, {31, "lost soon after"}};
   debug.breakpoints = {

@@ -120,6 +120,17 @@ TEST_F(Wall, ObservationsComeAndGoOnBothSides) {
   EXPECT_EQ(map_.keyframe(1).points[4], kNone);
 }
 
+TEST_F(Wall, PointsThatMoveAreRememberedWhenTheyGo) {
+  const auto ids = begin();
+  const Eigen::Vector3d place = map_.point(ids[3]).position;
+  map_.remove_moving_point(ids[3]);
+  map_.remove_point(ids[4]);
+  EXPECT_FALSE(map_.has_point(ids[3]));
+  ASSERT_EQ(map_.moved_points().size(), 1U);
+  EXPECT_EQ(map_.moved_points()[0].id, ids[3]);
+  EXPECT_EQ(map_.moved_points()[0].position, place);
+}
+
 TEST_F(Wall, FusionJoinsTwinsOfNeighbours) {
   auto ids = begin();
   // The second keyframe missed ten matches and made points of its own there.

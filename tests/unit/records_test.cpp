@@ -26,6 +26,7 @@ class Records : public ::testing::Test {
   void SetUp() override {
     fs::create_directories(run_folder());
     config_.run.method = "stillpoint";
+    config_.run.check_removal = 1;
     config_.features.count = 300;
     source_ = open_sequence(sequence_.path());
     write();
@@ -81,6 +82,12 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
     EXPECT_EQ(back.ms.total, record.ms.total);
     EXPECT_EQ(back.new_points, record.new_points);
     EXPECT_EQ(back.keyframe, record.keyframe);
+    ASSERT_EQ(back.removal_check.nothing_removed.has_value(),
+              record.removal_check.nothing_removed.has_value());
+    if (record.removal_check.nothing_removed) {
+      EXPECT_EQ(back.removal_check.nothing_removed->matrix(), record.removal_check.nothing_removed->matrix());
+    }
+    EXPECT_EQ(back.removal_check.truth_removed.has_value(), record.removal_check.truth_removed.has_value());
     ASSERT_EQ(back.features.size(), record.features.size());
     ASSERT_GT(back.features.size(), 50U);
     for (std::size_t f = 0; f < record.features.size(); ++f) {
@@ -102,6 +109,7 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
             run_.trajectory.back().world_from_camera.matrix());
   ASSERT_EQ(recorded.run.points.size(), run_.points.size());
   EXPECT_EQ(recorded.run.points.back().position, run_.points.back().position);
+  EXPECT_EQ(recorded.run.moved.size(), run_.moved.size());
   EXPECT_EQ(recorded.run.keyframes.size(), run_.keyframes.size());
   EXPECT_EQ(recorded.ground_truth.size(), source_->ground_truth().size());
   EXPECT_EQ(recorded.run.live.size(), run_.live.size());

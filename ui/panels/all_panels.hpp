@@ -20,7 +20,10 @@ enum class MaskKind { kForward, kBackward, kUnion };
 enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_features_panel(FeatureMoment moment, Shared shared);
 
+[[nodiscard]] std::unique_ptr<Panel> make_stages_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_feature_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_depth_motion_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_colour_motion_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_trajectory_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_errors_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timeline_panel(Shared shared);

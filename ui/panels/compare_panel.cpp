@@ -47,7 +47,7 @@ class ComparePanel final : public NamedPanel {
       return;
     }
     difference_ = difference_of(session.run->records[*here], ghost.run->records[*there]);
-    draw_frame_shown(frame, session, ghost);
+    draw_frame_shown(frame, session, ghost, actions);
   }
 
  private:
@@ -116,7 +116,8 @@ class ComparePanel final : public NamedPanel {
     ImGui::PopID();
   }
 
-  void draw_frame_shown(const UiFrame& frame, const SessionView& session, const GhostView& ghost) {
+  void draw_frame_shown(const UiFrame& frame, const SessionView& session, const GhostView& ghost,
+                        PanelActions& actions) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const bool beside = room.x > 1.5F * room.y;
     const float figures_width = beside ? std::min(0.42F * room.x, 330.0F * frame.scale) : room.x;
@@ -127,7 +128,7 @@ class ComparePanel final : public NamedPanel {
     const ImVec2 picture = beside ? ImVec2{room.x - figures_width - gap, room.y}
                                   : ImVec2{room.x, has_figures ? room.y - figures_height - gap : room.y};
     ImGui::BeginChild("masks", picture);
-    draw_masks(frame, session, ghost);
+    draw_masks(frame, session, ghost, actions);
     ImGui::EndChild();
     if (!has_figures) return;
     if (beside) ImGui::SameLine(0.0F, gap);
@@ -136,7 +137,8 @@ class ComparePanel final : public NamedPanel {
     ImGui::EndChild();
   }
 
-  void draw_masks(const UiFrame& frame, const SessionView& session, const GhostView& ghost) {
+  void draw_masks(const UiFrame& frame, const SessionView& session, const GhostView& ghost,
+                  PanelActions& actions) {
     const FrameView& view = *session.current;
     if (!view.frame.readable() || ghost.current == nullptr || ghost.current->index != view.index) {
       draw_absent(frame, view.frame.readable() ? "This run's images of the frame are not there yet."
@@ -170,7 +172,7 @@ class ComparePanel final : public NamedPanel {
     content.texture = &ground_.get(frame, session.current, 0, [&] { return picture_of(view.frame); });
     content.values = &view.frame.gray;
     content.overlays.push_back({&compared, 1.0F});
-    draw_frame_image(frame, "compared", content, *shared_, room_above(frame, footer));
+    draw_frame_image(frame, "compared", content, *shared_, room_above(frame, footer), {session, actions});
     footer.draw(frame);
   }
 

@@ -17,7 +17,7 @@ class CompensatedPanel final : public NamedPanel {
   explicit CompensatedPanel(Shared shared)
       : NamedPanel("compensated", "Compensated frame", std::move(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const std::string missing = missing_motion(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -40,17 +40,21 @@ class CompensatedPanel final : public NamedPanel {
       return;
     }
     const Frame& target = direction_ == 0 ? view.frame : view.reference;
+    const FrameSpace seen = direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference;
+    const FrameSpace carried =
+        direction_ == 0 ? FrameSpace::kCompensatedForward : FrameSpace::kCompensatedBackward;
     if (look_ == kSigned)
-      draw_signed(frame, session, trace, target);
+      draw_signed(frame, {session, actions, seen}, trace, target);
     else
-      draw_images(frame, session, trace, target, held);
+      draw_images(frame, {session, actions, look_ == kImage && !held ? carried : seen}, trace, target, held);
   }
 
  private:
   enum LookAt { kImage, kWipe, kSigned };
 
-  void draw_images(const UiFrame& frame, const SessionView& session, const DirectionTrace& trace,
+  void draw_images(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace,
                    const Frame& target, bool held) {
+    const SessionView& session = place.session;
     const Texture& compensated =
         compensated_.get(frame, session.current, direction_, [&] { return trace.compensated; });
     const Texture& seen = target_.get(frame, session.current, direction_, [&] { return target.gray; });
@@ -66,12 +70,13 @@ class CompensatedPanel final : public NamedPanel {
       content.wiped_to = &compensated;
     }
     const char* heading = look_ == kWipe ? "Left target, right compensated" : held ? "Target" : "Compensated";
-    draw_frame_image(frame, "image", content, *shared_, room_above(frame, footer), heading);
+    draw_frame_image(frame, "image", content, *shared_, room_above(frame, footer), place, heading);
     footer.draw(frame);
   }
 
-  void draw_signed(const UiFrame& frame, const SessionView& session, const DirectionTrace& trace,
+  void draw_signed(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace,
                    const Frame& target) {
+    const SessionView& session = place.session;
     ColourScale scale;
     scale.low = -kSignedRange;
     scale.high = kSignedRange;
@@ -94,7 +99,7 @@ class CompensatedPanel final : public NamedPanel {
     content.values = &difference_;
     ImVec2 size = room_above(frame, footer);
     size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
-    draw_frame_image(frame, "signed", content, *shared_, size);
+    draw_frame_image(frame, "signed", content, *shared_, size, place);
     ImGui::SameLine();
     draw_colour_scale(frame, scale, size.y);
     footer.draw(frame);

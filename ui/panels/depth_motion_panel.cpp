@@ -18,9 +18,15 @@ constexpr std::array<const char*, kStages> kNames{
 /// and what becomes of it on surfaces.
 class DepthMotionPanel final : public NamedPanel {
  public:
-  explicit DepthMotionPanel(Shared shared) : NamedPanel("depth_motion", "Depth motion", std::move(shared)) {}
+  explicit DepthMotionPanel(Shared shared)
+      : NamedPanel("depth_motion", "Depth motion", shared), colour_(make_colour_motion_panel(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    // What is judged in colour instead stands where one looks for it.
+    if (!session.current->colour_motion.points.empty()) {
+      colour_->draw(frame, session, actions);
+      return;
+    }
     const std::string missing = missing_stages(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -49,10 +55,10 @@ class DepthMotionPanel final : public NamedPanel {
       const Tiling tiling = tile(frame, room, kStages, session.current->frame.gray.size());
       for (int i = 0; i < kStages; ++i) {
         ImGui::SetCursorScreenPos(tiling.corner(start, i));
-        draw_stage(frame, session, static_cast<Stage>(i), tiling.size);
+        draw_stage(frame, {session, actions, FrameSpace::kSmall}, static_cast<Stage>(i), tiling.size);
       }
     } else {
-      draw_stage(frame, session, static_cast<Stage>(shown_ - 1), room);
+      draw_stage(frame, {session, actions, FrameSpace::kSmall}, static_cast<Stage>(shown_ - 1), room);
     }
     if (has_scale) {
       ImGui::SetCursorScreenPos({start.x + room.x + ImGui::GetStyle().ItemSpacing.x, start.y});
@@ -142,13 +148,14 @@ class DepthMotionPanel final : public NamedPanel {
     return fmt::format("{}, ±{:g} {}", name, range_of_stage(session, stage), unit_of(stage));
   }
 
-  void draw_stage(const UiFrame& frame, const SessionView& session, Stage stage, ImVec2 size) {
+  void draw_stage(const UiFrame& frame, const FramePlace& place, Stage stage, ImVec2 size) {
+    const SessionView& session = place.session;
     const FrameView& view = *session.current;
     const DepthMotionTrace& trace = view.depth_motion;
     const auto slot = static_cast<std::size_t>(stage);
     ImageContent content;
     if (stage == kMask) {
-      draw_mask(frame, session, size);
+      draw_mask(frame, {session, place.actions, FrameSpace::kTarget}, size);
       return;
     }
     if (stage == kSegments)
@@ -161,11 +168,7 @@ class DepthMotionPanel final : public NamedPanel {
     content.values = &values;
     content.absent = stage == kMemory ? "Nothing is remembered yet." : "Nothing to show.";
     const ImageResponse response =
-        draw_image(frame, heading_of(session, stage).c_str(), content, shared_->views.at("frame"), size);
-    if (response.pixel) {
-      const int factor = std::max(1, view.frame.gray.cols / std::max(1, values.cols));
-      shared_->pixel = Eigen::Vector2i(factor * response.pixel->x(), factor * response.pixel->y());
-    }
+        draw_frame_image(frame, heading_of(session, stage).c_str(), content, *shared_, size, place);
     label(frame, response, heading_of(session, stage), kNames[slot]);
   }
 
@@ -182,7 +185,8 @@ class DepthMotionPanel final : public NamedPanel {
     pop_clip();
   }
 
-  void draw_mask(const UiFrame& frame, const SessionView& session, ImVec2 size) {
+  void draw_mask(const UiFrame& frame, const FramePlace& place, ImVec2 size) {
+    const SessionView& session = place.session;
     const FrameView& view = *session.current;
     const Rgb colour = role_colour(Role::kUnion, frame.theme.name);
     ImageContent content;
@@ -193,7 +197,7 @@ class DepthMotionPanel final : public NamedPanel {
       return tinted_mask(view.depth_motion.mask, colour);
     });
     content.overlays.push_back({&tint, 0.45F});
-    const ImageResponse response = draw_frame_image(frame, "mask", content, *shared_, size);
+    const ImageResponse response = draw_frame_image(frame, "mask", content, *shared_, size, place);
     push_clip(response);
     draw_outlines(frame, response, outlines_, colour);
     pop_clip();
@@ -242,6 +246,7 @@ class DepthMotionPanel final : public NamedPanel {
     return footer;
   }
 
+  std::unique_ptr<Panel> colour_;  // of frames without depth
   int shown_ = 0, reference_ = 0;
   std::array<FrameTexture, kStages> textures_;
   FrameTexture segments_, ground_;

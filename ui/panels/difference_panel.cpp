@@ -18,7 +18,7 @@ class DifferencePanel final : public NamedPanel {
  public:
   explicit DifferencePanel(Shared shared) : NamedPanel("difference", "Difference", std::move(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const std::string missing = missing_motion(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -33,24 +33,25 @@ class DifferencePanel final : public NamedPanel {
       draw_absent(frame, "This direction has no homography, so there is no difference.");
       return;
     }
+    const FramePlace place{session, actions, direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference};
     const ImVec2 room = ImGui::GetContentRegionAvail(), start = ImGui::GetCursorScreenPos();
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     if (room.x > 1.75F * room.y) {
       const float left = std::floor(0.56F * room.x);
-      draw_picture(frame, session, trace, {left, room.y});
+      draw_picture(frame, place, trace, {left, room.y});
       ImGui::SetCursorScreenPos({start.x + left + gap, start.y});
       draw_histogram(frame, session, trace, {room.x - left - gap, room.y});
     } else {
       const float above = std::floor(0.62F * room.y);
-      draw_picture(frame, session, trace, {room.x, above});
+      draw_picture(frame, place, trace, {room.x, above});
       ImGui::SetCursorScreenPos({start.x, start.y + above + gap});
       draw_histogram(frame, session, trace, {room.x, room.y - above - gap});
     }
   }
 
  private:
-  void draw_picture(const UiFrame& frame, const SessionView& session, const DirectionTrace& trace,
-                    ImVec2 size) {
+  void draw_picture(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace, ImVec2 size) {
+    const SessionView& session = place.session;
     ColourScale scale;
     scale.unit = "grey levels";
     // Three times the threshold tells most apart; what is above is as bright as can be.
@@ -67,7 +68,8 @@ class DifferencePanel final : public NamedPanel {
     content.texture = &texture;
     content.values = &trace.difference;
     const float width = size.x - colour_scale_width(frame) - ImGui::GetStyle().ItemSpacing.x;
-    const ImageResponse response = draw_frame_image(frame, "difference", content, *shared_, {width, size.y});
+    const ImageResponse response =
+        draw_frame_image(frame, "difference", content, *shared_, {width, size.y}, place);
     if (outline_) {
       push_clip(response);
       draw_outlines(frame, response, above_, okabe_ito::kSkyBlue);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
 
 namespace stillpoint {
@@ -19,7 +20,7 @@ class FeaturesPanel final : public NamedPanel {
                    std::move(shared)),
         moment_(moment) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     if (view.record == nullptr) {
       draw_absent(frame, fmt::format("Frame {} has not been processed yet.", view.index));
@@ -57,10 +58,11 @@ class FeaturesPanel final : public NamedPanel {
       content.overlays.push_back({&tint, 0.35F});
     }
     const ImageResponse response =
-        draw_frame_image(frame, "features", content, *shared_, room_above(frame, footer));
+        draw_frame_image(frame, "features", content, *shared_, room_above(frame, footer), {session, actions});
     push_clip(response);
     for (const FeatureRecord& feature : view.record->features) draw_feature(frame, response, feature);
     pop_clip();
+    take_feature(frame, session, response);
     footer.draw(frame);
   }
 
@@ -73,11 +75,40 @@ class FeaturesPanel final : public NamedPanel {
     return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
   }
 
-  void draw_feature(const UiFrame& frame, const ImageResponse& response, const FeatureRecord& feature) const {
-    if (moment_ == FeatureMoment::kAfter) {
-      if (feature.fate == FeatureFate::removed) return;
-      if (feature.fate == FeatureFate::unmatched && !unmatched_) return;
+  [[nodiscard]] bool shows(const FeatureRecord& feature) const {
+    if (moment_ == FeatureMoment::kBefore) return true;
+    return feature.fate != FeatureFate::removed && (feature.fate != FeatureFate::unmatched || unmatched_);
+  }
+
+  /// The feature under the mouse tells its story in short; a click chooses it for all panels, one beside
+  /// every feature lets go.
+  void take_feature(const UiFrame& frame, const SessionView& session, const ImageResponse& response) {
+    if (!response.image_point) return;
+    const FrameRecord& record = *session.current->record;
+    const Eigen::Vector2d mouse = (response.image_point->array() - 0.5).matrix();
+    const double reach = kReach * static_cast<double>(frame.scale) / response.map.scale();
+    const auto index = feature_near(record, mouse, reach);
+    if (index && !shows(record.features[static_cast<std::size_t>(*index)])) return;
+    if (response.clicked && index) choose_feature(session, *shared_, *index);
+    if (response.clicked && !index) shared_->feature.reset();
+    if (!index) return;
+    if (hovered_ != *index || !same_view(session.current)) {
+      story_ = explain_feature(*session.current, *session.run, session, *index);
+      hovered_ = *index;
+      hovered_in_ = session.current;
     }
+    push_clip(response);
+    draw_story_marks(frame, response, story_);
+    pop_clip();
+    draw_story_tooltip(frame, story_);
+  }
+
+  [[nodiscard]] bool same_view(const std::shared_ptr<const FrameView>& view) const {
+    return !hovered_in_.owner_before(view) && !view.owner_before(hovered_in_);
+  }
+
+  void draw_feature(const UiFrame& frame, const ImageResponse& response, const FeatureRecord& feature) const {
+    if (!shows(feature)) return;
     const LegendEntry look = look_of(feature.fate, frame.theme.name);
     float radius = (look.sign == Sign::kCircle ? 2.6F : 3.2F) * frame.scale;
     if (by_scale_ && moment_ == FeatureMoment::kAfter)
@@ -116,7 +147,12 @@ class FeaturesPanel final : public NamedPanel {
   }
 
   FeatureMoment moment_;
+  static constexpr double kReach = 9.0;  // design px about the mouse
+
   bool mask_ = true, unmatched_ = true, by_scale_ = false;
+  int hovered_ = -1;
+  std::weak_ptr<const FrameView> hovered_in_;
+  FeatureStory story_;
   FrameTexture ground_, tint_;
 };
 

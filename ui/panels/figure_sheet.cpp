@@ -11,7 +11,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMargin = 16, kHeading = 30, kCaption = 44;  // px at scale 1
+constexpr int kMargin = 16, kHeading = 48, kCaption = 54;  // px at scale 1
 
 double percent_of(const cv::Mat& mask) {
   return mask.empty() ? 0.0 : 100.0 * cv::countNonZero(mask) / static_cast<double>(mask.total());
@@ -57,11 +57,11 @@ std::vector<FigureCell> figure_1_cells(const SessionView& session) {
 FigureSheet::FigureSheet(std::string heading, std::vector<FigureCell> cells, int columns)
     : heading_(std::move(heading)), cells_(std::move(cells)), columns_(columns) {}
 
-std::pair<int, int> FigureSheet::size() const {
+std::pair<int, int> FigureSheet::size(double picture_scale) const {
   int width = 0, height = 0;
   for (const FigureCell& cell : cells_) {
-    width = std::max(width, cell.picture.cols);
-    height = std::max(height, cell.picture.rows);
+    width = std::max(width, cvRound(picture_scale * cell.picture.cols));
+    height = std::max(height, cvRound(picture_scale * cell.picture.rows));
   }
   const int rows = (static_cast<int>(cells_.size()) + columns_ - 1) / columns_;
   return {columns_ * (width + kMargin) + kMargin, kHeading + kMargin + rows * (height + kCaption)};
@@ -76,8 +76,9 @@ void FigureSheet::draw(UiFrame& frame) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float margin = kMargin * frame.scale, caption = kCaption * frame.scale, top = kHeading * frame.scale;
   list.AddRectFilled({0, 0}, frame.size, to_u32(frame.theme.panel));
-  list.AddText(frame.fonts.strong, frame.fonts.strong->FontSize, {margin, 0.4F * margin + 4.0F * frame.scale},
-               to_u32(frame.theme.text), heading_.c_str());
+  list.AddText(frame.fonts.heading, frame.fonts.heading->FontSize,
+               {margin, 0.5F * (top - frame.fonts.heading->FontSize)}, to_u32(frame.theme.text),
+               heading_.c_str());
   const int rows = (static_cast<int>(cells_.size()) + columns_ - 1) / columns_;
   const float width = std::floor((frame.size.x - margin) / static_cast<float>(columns_) - margin);
   const float height = std::floor((frame.size.y - top - margin) / static_cast<float>(rows) - caption);
@@ -89,12 +90,12 @@ void FigureSheet::draw(UiFrame& frame) {
     list.AddImage(textures_[i].imgui_id(), low, high);
     list.AddRect(low, high, to_u32(frame.theme.border));
     const std::string letter = fmt::format("({})", cells_[i].letter);
-    const float below = high.y + 4.0F * frame.scale;
-    const ImFont *strong = frame.fonts.strong, *small = frame.fonts.small;
+    const float below = high.y + 6.0F * frame.scale;
+    const ImFont *strong = frame.fonts.strong, *plain = frame.fonts.text;
     const float indent =
-        strong->CalcTextSizeA(small->FontSize, 1e6F, 0.0F, letter.c_str()).x + 5.0F * frame.scale;
-    list.AddText(strong, small->FontSize, {low.x, below}, to_u32(frame.theme.text), letter.c_str());
-    list.AddText(small, small->FontSize, {low.x + indent, below}, to_u32(frame.theme.text),
+        strong->CalcTextSizeA(plain->FontSize, 1e6F, 0.0F, letter.c_str()).x + 5.0F * frame.scale;
+    list.AddText(strong, plain->FontSize, {low.x, below}, to_u32(frame.theme.text), letter.c_str());
+    list.AddText(plain, plain->FontSize, {low.x + indent, below}, to_u32(frame.theme.text),
                  cells_[i].caption.c_str(), nullptr, width - indent);
   }
 }

@@ -28,8 +28,8 @@ class FigureSheet {
  public:
   FigureSheet(std::string heading, std::vector<FigureCell> cells, int columns);
 
-  /// Its size when pictures keep theirs, px at scale 1.
-  [[nodiscard]] std::pair<int, int> size() const;
+  /// Its size, px, when pictures are shown at `picture_scale` times theirs, and text at its design size.
+  [[nodiscard]] std::pair<int, int> size(double picture_scale = 1.0) const;
 
   /// Draws it over the whole frame.
   void draw(UiFrame& frame);

@@ -14,7 +14,7 @@ class FlowTracksPanel final : public NamedPanel {
  public:
   explicit FlowTracksPanel(Shared shared) : NamedPanel("flow_tracks", "Flow tracks", std::move(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const std::string missing = missing_motion(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -42,7 +42,8 @@ class FlowTracksPanel final : public NamedPanel {
     });
     content.overlays.push_back({&veil, 0.3F});
     const ImageResponse response =
-        draw_frame_image(frame, "tracks", content, *shared_, room_above(frame, footer));
+        draw_frame_image(frame, "tracks", content, *shared_, room_above(frame, footer),
+                         {session, actions, direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference});
     push_clip(response);
     for (const Track& track : trace.tracks) draw_track(frame, response, track);
     pop_clip();

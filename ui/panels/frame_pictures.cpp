@@ -125,16 +125,43 @@ void draw_outlines(const UiFrame& frame, const ImageResponse& response, const Ou
   }
 }
 
+void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading) {
+  if (heading.empty()) return;
+  push_clip(response);
+  const float gap = 5.0F * frame.scale;
+  const ImFont* font = frame.fonts.small;
+  const float room = response.panel_max.x - response.panel_min.x - 4.0F * gap;
+  const auto fits = [&](const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str()).x <= room;
+  };
+  // What stands after a comma is a unit or a range: it goes first.
+  std::string shown = heading;
+  while (!fits(shown) && shown.find(',') != std::string::npos) shown.resize(shown.rfind(','));
+  draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, shown, frame.theme.text);
+  pop_clip();
+}
+
+ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                               PanelsShared& shared, ImVec2 size, const FramePlace& place,
+                               const std::string& heading) {
+  const ImageResponse response = draw_image(frame, id, content, shared.views.at("frame"), size);
+  if (content.texture != nullptr && !content.texture->empty()) {
+    take_mouse(id, response, shared, place);
+    draw_marks(frame, response, shared, place);
+  }
+  draw_heading(frame, response, heading);
+  return response;
+}
+
 ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
                                PanelsShared& shared, ImVec2 size, const std::string& heading) {
   const ImageResponse response = draw_image(frame, id, content, shared.views.at("frame"), size);
-  if (response.pixel) shared.pixel = response.pixel;
-  if (!heading.empty()) {
-    push_clip(response);
-    const float gap = 5.0F * frame.scale;
-    draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, heading, frame.theme.text);
-    pop_clip();
+  if (response.pixel) {
+    const Eigen::Vector2d pixel = response.pixel->cast<double>();
+    shared.pixel = response.pixel;
+    shared.cursor = ImageCursor{FrameSpace::kTarget, pixel, pixel};
   }
+  draw_heading(frame, response, heading);
   return response;
 }
 

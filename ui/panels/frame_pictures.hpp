@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ui/gl/texture.hpp"
+#include "ui/panels/frame_marks.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/view/image_widget.hpp"
 
@@ -57,10 +58,21 @@ using Outlines = std::vector<std::vector<Eigen::Vector2d>>;
 [[nodiscard]] Outlines outlines_of(const cv::Mat& mask);
 void draw_outlines(const UiFrame& frame, const ImageResponse& response, const Outlines& outlines, Rgb colour);
 
-/// Draws an image of a frame with the views all such images share, and tells the inspector the pixel.
+/// Draws an image of a frame with the views all such images share: the cursor, pins and the chosen feature
+/// are marked where it shows them, and what the mouse does there is told to all panels.
+/// @param place whose pixels the image has
+/// @param heading written into the picture's upper left corner
+ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                               PanelsShared& shared, ImVec2 size, const FramePlace& place,
+                               const std::string& heading = {});
+
+/// The same for an image with frame t's pixels, without pins and what hangs on the session.
 /// @param heading written into the picture's upper left corner
 ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
                                PanelsShared& shared, ImVec2 size, const std::string& heading = {});
+
+/// Writes a heading into a picture's upper left corner, cut where there is no room for it.
+void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading);
 
 /// Why the paper's stages are not there for this frame, one sentence; empty when they are.
 [[nodiscard]] std::string missing_motion(const SessionView& session);

@@ -15,22 +15,25 @@ class InputPanel final : public NamedPanel {
  public:
   explicit InputPanel(Shared shared) : NamedPanel("input", "Input", std::move(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     Controls controls(frame);
     const int gap = session.config.motion.reference_gap;
     controls.choice("what", {"Frame t", fmt::format("Frame t−{}", gap), "Depth"}, what_);
     if (what_ == kDepth) {
-      draw_depth(frame, session, view);
+      draw_depth(frame, {session, actions, FrameSpace::kTarget}, view);
       return;
     }
-    draw_picture(frame, session, what_ == kFrame ? view.frame : view.reference);
+    const bool target = what_ == kFrame;
+    draw_picture(frame, {session, actions, target ? FrameSpace::kTarget : FrameSpace::kReference},
+                 target ? view.frame : view.reference);
   }
 
  private:
   enum What { kFrame, kReference, kDepth };
 
-  void draw_picture(const UiFrame& frame, const SessionView& session, const Frame& shown) {
+  void draw_picture(const UiFrame& frame, const FramePlace& place, const Frame& shown) {
+    const SessionView& session = place.session;
     if (!shown.readable()) {
       draw_absent(frame, missing(session, shown));
       return;
@@ -43,11 +46,12 @@ class InputPanel final : public NamedPanel {
     const cv::Mat& picture = picture_of(shown);
     content.texture = &picture_.get(frame, session.current, what_, [&] { return picture; });
     content.values = &picture;
-    draw_frame_image(frame, "image", content, *shared_, room_above(frame, footer));
+    draw_frame_image(frame, "image", content, *shared_, room_above(frame, footer), place);
     footer.draw(frame);
   }
 
-  void draw_depth(const UiFrame& frame, const SessionView& session, const FrameView& view) {
+  void draw_depth(const UiFrame& frame, const FramePlace& place, const FrameView& view) {
+    const SessionView& session = place.session;
     const cv::Mat& depth = view.frame.depth;
     if (depth.empty()) {
       draw_absent(frame, !view.frame.readable() ? missing(session, view.frame)
@@ -77,7 +81,7 @@ class InputPanel final : public NamedPanel {
     content.values = &depth;
     ImVec2 size = room_above(frame, footer);
     size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
-    draw_frame_image(frame, "depth", content, *shared_, size);
+    draw_frame_image(frame, "depth", content, *shared_, size, place);
     ImGui::SameLine();
     draw_colour_scale(frame, scale, size.y);
     footer.draw(frame);

@@ -6,6 +6,8 @@
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/session/point_readings.hpp"
+#include "ui/theme/icons.hpp"
 
 namespace stillpoint {
 namespace {
@@ -13,50 +15,6 @@ namespace {
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
-
-bool inside(const cv::Mat& image, const Eigen::Vector2i& p) {
-  return p.x() >= 0 && p.y() >= 0 && p.x() < image.cols && p.y() < image.rows;
-}
-
-std::string mask_at(const cv::Mat& mask, const Eigen::Vector2i& p) {
-  return inside(mask, p) ? yes(mask.at<std::uint8_t>(p.y(), p.x()) != 0) : "–";
-}
-
-std::string byte_at(const cv::Mat& image, const Eigen::Vector2i& p, const char* unit) {
-  return inside(image, p) ? fmt::format("{} {}", image.at<std::uint8_t>(p.y(), p.x()), unit) : "–";
-}
-
-/// What is known of one pixel.
-Rows pixel_rows(const FrameView& view, const Eigen::Vector2i& p) {
-  Rows rows{{"Pixel", fmt::format("x {}, y {}", p.x(), p.y())},
-            {"Grey", byte_at(view.frame.gray, p, "of 255")}};
-  if (inside(view.frame.colour, p)) {
-    const auto& bgr = view.frame.colour.at<cv::Vec3b>(p.y(), p.x());
-    rows.emplace_back("Red, green, blue", fmt::format("{}, {}, {}", bgr[2], bgr[1], bgr[0]));
-  }
-  if (inside(view.frame.depth, p)) {
-    const float z = view.frame.depth.at<float>(p.y(), p.x());
-    rows.emplace_back("Depth", z > 0.0F ? fmt::format("{:.3f} m", z) : "not measured");
-  }
-  if (!view.motion.rounds.empty()) {
-    const MotionRound& round = view.motion.rounds.back();
-    rows.emplace_back("Difference, forward", byte_at(round.forward.difference, p, "grey levels"));
-    rows.emplace_back("Threshold, forward", fmt::format("{:.0f} grey levels", round.forward.threshold));
-    rows.emplace_back("In the forward mask", mask_at(round.forward.mask, p));
-    rows.emplace_back("In the backward mask", mask_at(round.backward_mask_in_target, p));
-    rows.emplace_back("In the union", mask_at(round.mask, p));
-    if (inside(round.labels, p)) {
-      const int region = round.labels.at<int>(p.y(), p.x());
-      if (region > 0) {
-        const auto& box = round.regions[static_cast<std::size_t>(region - 1)];
-        rows.emplace_back("Region", fmt::format("{}: {} px", region, box.area));
-      }
-    }
-  }
-  rows.emplace_back("Removed", view.mask.empty() ? "no" : mask_at(view.mask, p));
-  if (!view.truth.moving.empty()) rows.emplace_back("Truly moving", mask_at(view.truth.moving, p));
-  return rows;
-}
 
 std::string position_text(const Pose& pose) {
   const Eigen::Vector3d t = pose.translation();
@@ -106,39 +64,162 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
   return rows;
 }
 
-/// The pixel the mouse points at, and the frame's record: every figure with its unit.
+/// A point of the scene as every layer reads it, pins beside it, and the frame's record: every figure with
+/// its unit.
 class InspectorPanel final : public NamedPanel {
  public:
   explicit InspectorPanel(Shared shared) : NamedPanel("inspector", "Inspector", std::move(shared)) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
-    const FrameView& view = *session.current;
+  [[nodiscard]] std::vector<PanelCommand> commands() override {
+    return {{.name = "pin",
+             .title = "Pin the pixel under the mouse, or take its pin out",
+             .group = "View",
+             .icon = icons::kTarget,
+             .keys = {{Key::kP, {}}},
+             .enabled = [this](const SessionView&) { return shared_->pixel.has_value(); },
+             .run = [this](const SessionView& session,
+                           PanelActions& actions) { toggle_pin_at_cursor(session, *shared_, actions); }},
+            {.name = "unpin_all",
+             .title = "Take out all pins",
+             .group = "View",
+             .icon = icons::kClose,
+             .enabled = [](const SessionView& session) { return !session.debug.pins.empty(); },
+             .run = [](const SessionView&,
+                       PanelActions& actions) { actions.requests.emplace_back(request::Pins{}); }}};
+  }
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const bool wide = room.x > 700.0F * frame.scale;
-    const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const bool has_pixel = shared_->pixel && inside(view.frame.gray, *shared_->pixel);
-    const float left = std::floor(wide ? 0.36F * room.x : room.x);
-    const float height = wide        ? room.y
-                         : has_pixel ? std::floor(0.5F * room.y)
-                                     : 2.6F * ImGui::GetTextLineHeightWithSpacing();
-    ImGui::BeginChild("pixel", {left, height});
-    heading(frame, "Pixel under the mouse");
-    if (has_pixel)
-      table(frame, "pixel", pixel_rows(view, *shared_->pixel), 1);
+    if (room.x > 760.0F * frame.scale) {
+      const float left = std::floor(0.5F * room.x);
+      ImGui::BeginChild("points", {left, room.y});
+      draw_points(frame, session, actions, true);
+      ImGui::EndChild();
+      ImGui::SameLine(0.0F, ImGui::GetStyle().ItemSpacing.x);
+      ImGui::BeginChild("record");
+      heading(frame, fmt::format("Record of frame {}", session.current->index));
+      draw_record(frame, session, 2);
+      ImGui::EndChild();
+      return;
+    }
+    Controls(frame).choice("what", {"Points", "Record"}, what_);
+    ImGui::BeginChild("shown");
+    if (what_ == 0)
+      draw_points(frame, session, actions, false);
     else
-      ImGui::TextDisabled("Point at an image to read its pixel.");
-    ImGui::EndChild();
-    if (wide) ImGui::SameLine(0.0F, gap);
-    ImGui::BeginChild("record");
-    heading(frame, fmt::format("Record of frame {}", view.index));
-    if (view.record != nullptr)
-      table(frame, "record", record_rows(session, *view.record), 2);
-    else
-      ImGui::TextDisabled("Frame %d has not been processed yet.", view.index);
+      draw_record(frame, session, room.x > 460.0F * frame.scale ? 2 : 1);
     ImGui::EndChild();
   }
 
  private:
+  /// A column of the table.
+  struct Column {
+    std::string name;
+    std::vector<ReadingGroup> groups;
+    int pin = -1;  // index into the pins; below 0 is the cursor
+  };
+
+  [[nodiscard]] std::vector<Column> columns(const SessionView& session) {
+    std::vector<Column> columns;
+    const PairGeometry& pair = shared_->geometry(session);
+    if (shared_->cursor && shared_->cursor->target)
+      columns.push_back({"Mouse", read_point(session, pair, shared_->pixel->cast<double>()), -1});
+    const auto& pins = session.debug.pins;
+    for (std::size_t i = 0; i < pins.size(); ++i)
+      columns.push_back(
+          {pins[i].name, read_point(session, pair, {pins[i].x, pins[i].y}), static_cast<int>(i)});
+    return columns;
+  }
+
+  /// @param wide the record has a place of its own; elsewhere it stands here until there is a point to read
+  void draw_points(const UiFrame& frame, const SessionView& session, PanelActions& actions, bool wide) {
+    if (!session.current->frame.readable()) {
+      draw_absent(frame, missing_motion(session));
+      return;
+    }
+    const std::vector<Column> shown = columns(session);
+    if (shown.empty()) {
+      ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
+      ImGui::TextWrapped("Point at an image to read every layer there; P pins the pixel.");
+      ImGui::PopStyleColor();
+      if (!wide) draw_record(frame, session, 1);
+      return;
+    }
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
+    const auto count = static_cast<int>(std::min<std::size_t>(shown.size(), kMostColumns));
+    if (ImGui::BeginTable(
+            "points", 1 + count,
+            ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY)) {
+      ImGui::TableSetupScrollFreeze(0, 1);
+      float widest = 0.0F;
+      for (const ReadingGroup& group : shown.front().groups)
+        for (const Reading& reading : group.readings)
+          widest = std::max(widest, ImGui::CalcTextSize(reading.name.c_str()).x);
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
+                              std::min(widest, 0.45F * ImGui::GetContentRegionAvail().x));
+      for (int i = 0; i < count; ++i) ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+      draw_column_names(shown, count, session, actions);
+      for (std::size_t g = 0; g < shown.front().groups.size(); ++g) draw_group(frame, shown, count, g);
+      ImGui::EndTable();
+    }
+    ImGui::PopStyleVar();
+    ImGui::PopFont();
+  }
+
+  static void draw_column_names(const std::vector<Column>& shown, int count, const SessionView& session,
+                                PanelActions& actions) {
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    ImGui::TableNextColumn();
+    for (int i = 0; i < count; ++i) {
+      const Column& column = shown[static_cast<std::size_t>(i)];
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(column.pin < 0 ? column.name.c_str() : ("Pin " + column.name).c_str());
+      if (column.pin < 0) continue;
+      ImGui::SameLine();
+      ImGui::PushID(i);
+      if (ImGui::SmallButton("x")) {
+        auto pins = session.debug.pins;
+        pins.erase(pins.begin() + column.pin);
+        actions.requests.emplace_back(request::Pins{std::move(pins)});
+      }
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("Takes the pin out");
+      ImGui::PopID();
+    }
+  }
+
+  static void draw_group(const UiFrame& frame, const std::vector<Column>& shown, int count,
+                         std::size_t group) {
+    const ReadingGroup& first = shown.front().groups[group];
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextColored(to_vec4(frame.theme.accent), "%s", first.title.c_str());
+    for (std::size_t r = 0; r < first.readings.size(); ++r) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
+      ImGui::TextWrapped("%s", first.readings[r].name.c_str());
+      ImGui::PopStyleColor();
+      for (int i = 0; i < count; ++i) {
+        const auto& groups = shown[static_cast<std::size_t>(i)].groups;
+        ImGui::TableNextColumn();
+        const Reading& reading = groups[group].readings[r];
+        const Rgb ink = reading.speaks ? role_colour(Role::kWarning, frame.theme.name) : frame.theme.text;
+        ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ink));
+        ImGui::TextWrapped("%s", reading.value.c_str());
+        ImGui::PopStyleColor();
+      }
+    }
+  }
+
+  static void draw_record(const UiFrame& frame, const SessionView& session, int pairs) {
+    const FrameView& view = *session.current;
+    if (view.record != nullptr)
+      table(frame, "record", record_rows(session, *view.record), pairs);
+    else
+      ImGui::TextDisabled("Frame %d has not been processed yet.", view.index);
+  }
+
   static void heading(const UiFrame& frame, const std::string& text) {
     ImGui::PushFont(frame.fonts.strong);
     ImGui::TextUnformatted(text.c_str());
@@ -174,6 +255,10 @@ class InspectorPanel final : public NamedPanel {
     ImGui::PopStyleVar();
     ImGui::PopFont();
   }
+
+  static constexpr std::size_t kMostColumns = 8;
+
+  int what_ = 0;
 };
 
 }  // namespace

@@ -14,7 +14,10 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_flow_tracks_panel(shared));
   panels.push_back(make_features_panel(FeatureMoment::kBefore, shared));
   panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
+  panels.push_back(make_feature_panel(shared));
+  panels.push_back(make_stages_panel(shared));
   panels.push_back(make_depth_motion_panel(shared));
+  panels.push_back(make_colour_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
   panels.push_back(make_timeline_panel(shared));

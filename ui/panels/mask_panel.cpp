@@ -39,7 +39,7 @@ class MaskPanel final : public NamedPanel {
               : kind == MaskKind::kBackward ? Role::kBackward
                                             : Role::kUnion) {}
 
-  void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const std::string missing = missing_motion(session);
     if (!missing.empty()) {
       draw_absent(frame, missing);
@@ -75,13 +75,15 @@ class MaskPanel final : public NamedPanel {
       content.overlays.push_back({&tint, opacity_});
     }
     const ImVec2 start = ImGui::GetCursorScreenPos();
-    const ImageResponse response = draw_frame_image(frame, "mask", content, *shared_, tiling.size,
+    const FramePlace place{session, actions,
+                           &ground == &view.frame ? FrameSpace::kTarget : FrameSpace::kReference};
+    const ImageResponse response = draw_frame_image(frame, "mask", content, *shared_, tiling.size, place,
                                                     beside ? heading(ground, session) : "");
     push_clip(response);
     if (look_ == kOverlay) draw_outlines(frame, response, outlines_, role_colour(role_, frame.theme.name));
     if (kind_ == MaskKind::kUnion && stage_ == kCleaned) draw_regions(frame, response, round.regions);
     pop_clip();
-    if (beside) draw_truth(frame, session, round, tiling, start, variant);
+    if (beside) draw_truth(frame, {session, actions}, round, tiling, start, variant);
     ImGui::SetCursorScreenPos({start.x, start.y + room.y + ImGui::GetStyle().ItemSpacing.y});
     footer.draw(frame);
   }
@@ -162,8 +164,9 @@ class MaskPanel final : public NamedPanel {
     }
   }
 
-  void draw_truth(const UiFrame& frame, const SessionView& session, const MotionRound& round,
+  void draw_truth(const UiFrame& frame, const FramePlace& place, const MotionRound& round,
                   const Tiling& tiling, ImVec2 start, int variant) {
+    const SessionView& session = place.session;
     ImGui::SetCursorScreenPos(tiling.corner(start, 1));
     const FrameView& view = *session.current;
     const Texture& compared = compared_.get(frame, session.current, variant, [&] {
@@ -173,7 +176,7 @@ class MaskPanel final : public NamedPanel {
     content.texture = &truth_ground_.get(frame, session.current, 0, [&] { return picture_of(view.frame); });
     content.values = &view.truth.moving;
     content.overlays.push_back({&compared, 1.0F});
-    draw_frame_image(frame, "truth", content, *shared_, tiling.size, "Against the truth in frame t");
+    draw_frame_image(frame, "truth", content, *shared_, tiling.size, place, "Against the truth in frame t");
   }
 
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session, const MotionRound& round,

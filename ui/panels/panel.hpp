@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,7 +18,21 @@ struct PanelActions {
   std::optional<int> go_to_frame;                                   ///< 0 to frame_count - 1
   std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
   std::vector<SessionRequest> requests;                             ///< in order
+  bool compare_frames = false;                                      ///< FrameView::before is wanted
   std::optional<LaneFigure> worst_by;                               ///< what "worst" is to go by from now on
+};
+
+/// Something a panel can have done, by menu, key and palette, whether or not it is drawn.
+struct PanelCommand {
+  std::string name;   ///< "stage_next"
+  std::string title;  ///< "Next stage of the frame"
+  std::string group;  ///< the menu it stands in
+  std::string icon;
+  std::vector<KeyChord> keys{};
+  bool repeats = false;                               ///< while its key is held
+  bool shows = false;                                 ///< brings its panel up where it is not shown
+  std::function<bool(const SessionView&)> enabled{};  ///< always, when empty
+  std::function<void(const SessionView&, PanelActions&)> run;
 };
 
 /// One view of the session. What it draws is the same in a window and in an image file.
@@ -38,6 +53,8 @@ class Panel {
   [[nodiscard]] virtual const std::string& title() const = 0;
   /// Draws into the current ImGui window or child, filling what is left of it.
   virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
+  /// Valid as long as the panel.
+  [[nodiscard]] virtual std::vector<PanelCommand> commands() { return {}; }
 };
 
 /// All of them, in the order one reads them. Image panels among them zoom and pan together, and tell the

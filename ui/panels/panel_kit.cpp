@@ -34,6 +34,17 @@ void tooltip_of_last(const char* tooltip) {
 
 }  // namespace
 
+const PairGeometry& PanelsShared::geometry(const SessionView& session) {
+  const auto same = [](const auto& weak, const auto& strong) {
+    return !weak.owner_before(strong) && !strong.owner_before(weak);
+  };
+  if (same(geometry_of_, session.current) && same(geometry_run_, session.run)) return geometry_;
+  geometry_ = pair_geometry(*session.current, *session.run, session.camera, session.config);
+  geometry_of_ = session.current;
+  geometry_run_ = session.run;
+  return geometry_;
+}
+
 // Controls
 // --------------------------------------------------------------------------------------------------------
 
@@ -50,13 +61,16 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
                       const char* tooltip) {
   if (!frame_.controls) return false;
   const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
+  const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
   float width = 0.0F;
-  for (const std::string& name : names) width += text_width(name.c_str()) + 2.0F * padding + gap;
+  for (const std::string& name : names) width += width_of(name) + gap;
   place(width - gap);
   const auto shown = [&] {
     const bool any = chosen >= 0 && chosen < static_cast<int>(names.size());
     return any ? names[static_cast<std::size_t>(chosen)] : std::string();
   };
+  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  float right = ImGui::GetCursorScreenPos().x;
   bool changed = false;
   // Which round is shown is a matter of the frame, not of taste.
   const bool kept = frame_.choices != nullptr && std::string_view(id) != kRoundId;
@@ -71,7 +85,14 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   ImGui::PushID(id);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-    if (i > 0) ImGui::SameLine();
+    // A choice wider than its panel goes on in the next line rather than out of sight.
+    const float next = right + width_of(names[static_cast<std::size_t>(i)]);
+    if (i > 0 && next <= edge) {
+      ImGui::SameLine();
+    } else if (i > 0) {
+      right = ImGui::GetCursorScreenPos().x;
+    }
+    right += width_of(names[static_cast<std::size_t>(i)]) + gap;
     const bool on = i == chosen;
     if (on) {
       const Rgb ground = mix(frame_.theme.raised, frame_.theme.accent, 0.45F);
@@ -88,6 +109,7 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   ImGui::PopStyleVar();
   ImGui::PopID();
   if (kept) frame_.choices->note(id, shown());
+  right_ = right - gap;
   return changed;
 }
 

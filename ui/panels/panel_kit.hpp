@@ -4,10 +4,14 @@
 
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "ui/panels/panel.hpp"
+#include "ui/session/feature_story.hpp"
+#include "ui/session/scene_point.hpp"
+#include "ui/session/stages.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_view.hpp"
 
@@ -16,10 +20,29 @@ namespace stillpoint {
 // What panels draw with: rows of controls, legends, captions, scales. Lengths in design px are times
 // frame.scale.
 
+/// What the mouse was on last in any image of a frame.
+struct ImageCursor {
+  FrameSpace space = FrameSpace::kTarget;           ///< of the image it was on
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< px there, the middle of pixel (i, j) is (i, j)
+  std::optional<Eigen::Vector2d> target;            ///< px: the same scene point in frame t, where known
+  bool operator==(const ImageCursor&) const = default;
+};
+
 /// What the panels of one set share.
 struct PanelsShared {
-  LinkedViews views;                     ///< zoom and pan by name; all images of frames use "frame"
-  std::optional<Eigen::Vector2i> pixel;  ///< the one the mouse was on last, of a full-size image
+  LinkedViews views;                        ///< zoom and pan by name; all images of frames use "frame"
+  std::optional<Eigen::Vector2i> pixel;     ///< of frame t: the scene point the mouse was on last
+  std::optional<ImageCursor> cursor;        ///< the same, where it was
+  std::optional<FeatureSelection> feature;  ///< the feature chosen
+  std::optional<StageInfo> stage;           ///< the stage chosen
+
+  /// The geometry of the pair shown, worked out once a frame.
+  const PairGeometry& geometry(const SessionView& session);
+
+ private:
+  PairGeometry geometry_;
+  std::weak_ptr<const FrameView> geometry_of_;
+  std::weak_ptr<const RunView> geometry_run_;
 };
 
 /// A panel that has its names and what the set shares.

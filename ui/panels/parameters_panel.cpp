@@ -21,9 +21,11 @@ class ParametersPanel final : public NamedPanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     follow(session);
-    Config defaults, run = session.config, wanted = wanted_;
+    Config defaults, run = session.config;
     const std::vector<Parameter> usual = parameters(defaults), now = parameters(run);
     draw_head(frame, session, actions);
+    // The head's buttons may have discarded or reset what the sliders say, so it is read after them.
+    Config wanted = wanted_;
     ImGui::BeginChild("list");
     const std::vector<Parameter> shown = parameters(wanted);
     std::string section;
@@ -267,6 +269,12 @@ class ParametersPanel final : public NamedPanel {
       for (const std::string& choice : parameter.choices)
         if (ImGui::Selectable(choice.c_str(), choice == **text)) **text = choice;
       ImGui::EndCombo();
+      return;
+    }
+    if (auto* const* flag = std::get_if<int*>(&parameter.value);
+        flag != nullptr && parameter.min == 0.0 && parameter.max == 1.0) {
+      bool on = **flag != 0;
+      if (ImGui::Checkbox("##value", &on)) **flag = on ? 1 : 0;
       return;
     }
     // A wide range is gone through by factors, so that small values can be hit too.

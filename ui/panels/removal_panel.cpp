@@ -27,8 +27,7 @@ class RemovalPanel final : public NamedPanel {
     collect(session);
     draw_head(frame, session, actions);
     Footer footer;
-    footer.legend = {{"helped", helped_colour(), Sign::kSquare},
-                     {"hurt", hurt_colour(frame), Sign::kTriangle}};
+    footer.legend = {{"helped", helped_colour(), Sign::kSquare}, {"hurt", hurt_colour(frame), Sign::kCircle}};
     footer.caption = caption();
     const ImVec2 room = room_above(frame, footer);
     draw_plot_of(frame, session, actions, room);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostErrorLines = 400;
 constexpr double kMostRoom = 0.5;    // … but no more than so many times the extent of the paths
+constexpr double kLeastSight = 0.1;  // m, along each axis
 constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
 constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
 
@@ -112,6 +113,10 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 
 SceneBounds sight_of(const SceneData& data) {
   SceneBounds box = bounds(data);
+  // A camera that stands still trembles by millimetres, which are not to fill the view.
+  const Eigen::Vector3d middle = 0.5 * (box.low + box.high);
+  box.low = box.low.cwiseMin(middle - Eigen::Vector3d::Constant(0.5 * kLeastSight));
+  box.high = box.high.cwiseMax(middle + Eigen::Vector3d::Constant(0.5 * kLeastSight));
   if (data.points.size() < 20) return box;
   const double most = kMostRoom * std::max((box.high - box.low).norm(), 0.05);
   for (int axis = 0; axis < 3; ++axis) {

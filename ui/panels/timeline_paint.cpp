@@ -46,14 +46,14 @@ void TimelinePaint::text(ImVec2 at, const std::string& words, Rgb colour) const 
                 to_u32(colour), words.c_str());
 }
 
-void TimelinePaint::name(float top, const std::string& words, Rgb colour) const {
+void TimelinePaint::name(float top, const std::string& words, Rgb colour, float indent) const {
   list_.PushClipRect({low_.x, low_.y}, {left - 2.0F, high_.y}, true);
-  text({low_.x, top}, words, colour);
+  text({low_.x + indent, top}, words, colour);
   list_.PopClipRect();
 }
 
 void TimelinePaint::name_sign(float top, float bottom, Sign sign, Rgb colour) const {
-  draw_sign(frame_, list_, {left - 9.0F * frame_.scale, 0.5F * (top + bottom)}, 3.5F * frame_.scale, sign,
+  draw_sign(frame_, list_, {low_.x + 4.0F * frame_.scale, 0.5F * (top + bottom)}, 3.5F * frame_.scale, sign,
             to_u32(colour));
 }
 

@@ -25,8 +25,9 @@ class TimelinePaint {
   void ruler(float top, float bottom) const;
   /// A row's ground; what lies right of `done` has not been processed.
   void ground(float top, float bottom, int done) const;
-  void name(float top, const std::string& text, Rgb colour) const;
-  /// A sign at the end of a row's name.
+  /// @param indent room left for a sign before it
+  void name(float top, const std::string& text, Rgb colour, float indent = 0.0F) const;
+  /// A sign before a row's name.
   void name_sign(float top, float bottom, Sign sign, Rgb colour) const;
   void value(float top, const std::string& text, Rgb colour) const;
   void status(const std::vector<int>& frames, const std::vector<double>& badness, float top,

@@ -20,6 +20,9 @@ constexpr float kLeastLane = 20.0F;         // design px
 constexpr float kGrip = 5.0F;               // design px about an end of the range
 constexpr std::size_t kWorstShown = 5;
 
+std::string earlier(const char* what) { return std::string(icons::kChevronLeft) + "  " + what; }
+std::string later(const char* what) { return std::string(what) + "  " + icons::kChevronRight; }
+
 /// The whole run at a glance, frame by frame, and the ways to what went wrong in it.
 class TimelinePanel final : public NamedPanel {
  public:
@@ -30,6 +33,8 @@ class TimelinePanel final : public NamedPanel {
       draw_absent(frame, "No frame has been processed yet.");
       return;
     }
+    if (title_ != session.title) range_.reset();
+    title_ = session.title;
     model_.update(session, lanes_);
     update_worst(session);
     if (ImGui::GetContentRegionAvail().y > kRoomForControls * frame.scale)
@@ -84,16 +89,21 @@ class TimelinePanel final : public NamedPanel {
     jump(icons::kChevronUp, "The one before it (Shift+N)", previous_worst(worst_, here));
     if (!session.debug.breakpoints.empty()) {
       const std::vector<int> hits = hit_frames(session.debug);
-      jump("Previous hit", "Breakpoint hit before this frame (Shift+F8)", previous_in(hits, here));
-      jump("Next hit", "Breakpoint hit after this frame (F8)", next_in(hits, here));
+      jump(earlier("Hit").c_str(), "Breakpoint hit before this frame (Shift+F8)", previous_in(hits, here));
+      jump(later("Hit").c_str(), "Breakpoint hit after this frame (F8)", next_in(hits, here));
     }
     const std::vector<int> hurt = hurt_frames(session.debug);
-    if (!hurt.empty()) jump("Next hurt", "Next frame that removal made worse (J)", next_in(hurt, here));
-    const bool marked = bookmark_at(session.debug, here) != nullptr;
-    if (controls.button(icons::kBookmark,
-                        marked ? "Take the bookmark off this frame" : "Bookmark this frame (B)"))
-      actions.requests.push_back(request::Bookmarks{marked ? without_bookmark(session.debug.bookmarks, here)
-                                                           : with_bookmark(session.debug.bookmarks, here)});
+    if (!hurt.empty())
+      jump(later("Hurt").c_str(), "Next frame that removal made worse (J)", next_in(hurt, here));
+    const Bookmark* bookmark = bookmark_at(session.debug, here);
+    // A note is not thrown away by a click; the bookmarks panel deletes it.
+    ImGui::BeginDisabled(bookmark != nullptr && !bookmark->note.empty());
+    if (controls.button(icons::kBookmark, bookmark != nullptr ? "Take the bookmark off this frame (B)"
+                                                              : "Bookmark this frame (B)"))
+      actions.requests.push_back(request::Bookmarks{bookmark != nullptr
+                                                        ? without_bookmark(session.debug.bookmarks, here)
+                                                        : with_bookmark(session.debug.bookmarks, here)});
+    ImGui::EndDisabled();
     if (controls.button("Lanes", "Which figures are shown")) ImGui::OpenPopup("which lanes");
     draw_lane_choice();
     if (session.debug.span) draw_span_controls(controls, session, actions);
@@ -265,6 +275,7 @@ class TimelinePanel final : public NamedPanel {
   std::optional<LaneFigure> worst_by_;
   std::tuple<const RunView*, std::uint64_t, std::size_t, LaneFigure> worst_key_{};
   std::vector<int> worst_;
+  std::string title_;               // of the sequence shown last
   std::optional<AxisRange> range_;  // frames; none shows all
   std::optional<int> hovered_;
   SpanDrag drag_;

@@ -66,7 +66,7 @@ void TimelineRows::ghost(std::size_t index, float top, float bottom) const {
   const auto& frames = model_.ghost_frames[index];
   paint_.ground(top, bottom, frames.empty() ? -1 : frames.back());
   paint_.name_sign(top, bottom, look.sign, look.colour);
-  paint_.name(top, one.name, frame_.theme.text);
+  paint_.name(top, one.name, frame_.theme.text, 12.0F * frame_.scale);
   paint_.status(frames, model_.ghost_badness[index], 0.5F * (top + bottom), bottom);
   paint_.signs({one.from}, Sign::kLine, look.colour, 0.5F * (top + bottom), 3.0F * frame_.scale);
   if (one.diverged)

@@ -67,7 +67,9 @@ class Overlay {
   }
 
   void error_scale(float most_m) const {
-    const float height = 110.0F * scale_, width = 10.0F * scale_;
+    // The axes' directions stand below it.
+    const float room = high_.y - low_.y - 130.0F * scale_;
+    const float height = std::clamp(room, 24.0F * scale_, 110.0F * scale_), width = 10.0F * scale_;
     const ImVec2 corner{high_.x - 64.0F * scale_, low_.y + 34.0F * scale_};
     const float half = 0.5F * frame_.fonts.small->FontSize;
     backdrop({corner.x - 8.0F * scale_, low_.y + 8.0F * scale_},

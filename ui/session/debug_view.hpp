@@ -121,7 +121,8 @@ struct RemoveGhost {
 struct ExportFrames {
   std::string folder;
 };
-/// Records, sidecar and frames as one folder that opens elsewhere.
+/// Records, sidecar and frames as one folder that opens elsewhere: from the first frame to the span's last,
+/// or all that are processed.
 struct ExportSession {
   std::string folder;
 };

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <future>
 #include <list>
+#include <set>
+#include <vector>
 
 #include "core/sequence/source.hpp"
 
@@ -9,7 +13,7 @@ namespace stillpoint {
 /// The frames read last: going a step back, or looking at a pair again, need not read anew.
 class FrameCache {
  public:
-  explicit FrameCache(const FrameSource& source, std::size_t capacity = 16)
+  explicit FrameCache(const FrameSource& source, std::size_t capacity = 32)
       : source_(&source), capacity_(capacity) {}
 
   /// A frame. Its images are shared with the cache: they are to be read only.
@@ -23,6 +27,26 @@ class FrameCache {
     frames_.front().index = index;
     if (frames_.size() > capacity_) frames_.pop_back();
     return frames_.front();
+  }
+
+  /// Reads frames that will be asked for next, two at a time; as many as there is room for.
+  void read_ahead(const std::set<int>& indices) {
+    std::vector<int> missing;
+    for (const int index : indices)
+      if (std::none_of(frames_.begin(), frames_.end(), [&](const Frame& f) { return f.index == index; }))
+        missing.push_back(index);
+    if (missing.size() > capacity_) missing.resize(capacity_);
+    for (std::size_t i = 0; i < missing.size(); i += 2) {
+      std::future<Frame> beside;
+      if (i + 1 < missing.size())
+        beside =
+            std::async(std::launch::async, [this, index = missing[i + 1]] { return source_->read(index); });
+      (void)read(missing[i]);
+      if (!beside.valid()) continue;
+      frames_.push_front(beside.get());
+      frames_.front().index = missing[i + 1];
+      if (frames_.size() > capacity_) frames_.pop_back();
+    }
   }
 
  private:

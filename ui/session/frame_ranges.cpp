@@ -33,8 +33,8 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 }
 
 [[noreturn]] void refuse(std::string_view text) {
-  throw InputError(
-      fmt::format("--frames {}: expected frames like 10, 20:40:5 or -1, with commas between", in_quotes(text)));
+  throw InputError(fmt::format("--frames {}: expected frames like 10, 20:40:5 or -1, with commas between",
+                               in_quotes(text)));
 }
 
 int number_or(std::string_view part, int otherwise, std::string_view whole) {

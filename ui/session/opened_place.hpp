@@ -11,6 +11,7 @@ namespace stillpoint {
 struct OpenedPlace {
   std::shared_ptr<const FrameSource> source;
   Config config;
+  int frames = 0;          ///< to look at: the sequence's, or those of the finished run
   SessionOptions options;  ///< with the finished run and its baseline in it
   std::string problem;  ///< what is missing though it could be opened, one sentence; empty when all is well
 };

@@ -32,7 +32,9 @@ RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun>
 
 void RunTrack::catch_up_one(const ReadFrame& read) {
   if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();
-  (void)process(odometry_, seen_, read);
+  const Frame frame = read(seen_);
+  const FrameResult result = process(odometry_, seen_, [&frame](int) { return frame; });
+  keep_motion(result, frame.has_depth());
   ++seen_;
   if (seen_ == source_->size()) odometry_.finish();
 }
@@ -46,9 +48,9 @@ std::vector<SavedKeyframe> RunTrack::keyframes() const {
 }
 
 std::vector<SavedPoint> RunTrack::points() const {
-  if (is_as_recorded()) return recorded_->run.points;
-  std::vector<SavedPoint> points = saved_points(odometry_.map());
-  const std::vector<SavedPoint> moved = moved_points(odometry_.map());
+  const bool recorded = is_as_recorded();
+  std::vector<SavedPoint> points = recorded ? recorded_->run.points : saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = recorded ? recorded_->run.moved : moved_points(odometry_.map());
   points.insert(points.end(), moved.begin(), moved.end());
   return points;
 }

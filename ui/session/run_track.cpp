@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <utility>
 
-namespace stillpoint {
-namespace {
+#include "core/sequence/prefetch.hpp"
 
-/// How many frames back a method looks.
+namespace stillpoint {
+
 int frames_looked_back(const Config& config) {
   if (config.run.method == "none" || config.run.method == "oracle") return 0;
-  if (config.run.method == "stillpoint") return config.depth_motion.far_reference;
-  return config.motion.reference_gap;
+  if (config.run.method != "stillpoint") return config.motion.reference_gap;
+  const DepthMotionConfig& motion = config.depth_motion;
+  return std::max({motion.near_reference, motion.far_reference, motion.slow_reference});
 }
-
-}  // namespace
 
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)
     : source_(&source), options_(options), odometry_(source.camera(), config) {}
@@ -26,11 +25,22 @@ FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& re
   return result;
 }
 
+void RunTrack::keep_motion(const FrameResult& result, bool has_depth) {
+  constexpr int kMemoryEvery = 4;  // frames: 77 kB each at 640x480
+  const int index = result.record.index;
+  has_view_.resize(static_cast<std::size_t>(index) + 1, 0);
+  has_view_.back() = result.record.estimated && has_depth ? 1 : 0;
+  if (index % kMemoryEvery == 0 && has_view_.back() != 0 && !result.depth_motion.log_odds.empty())
+    memories_.emplace(index, result.depth_motion.log_odds);
+}
+
 FrameResult RunTrack::process_next(const ReadFrame& read) {
   const int index = processed();
   while (seen_ < index) catch_up_one(read);
   if (index == begins_at_ || index % options_.checkpoint_every == 0) keep_checkpoint();
-  FrameResult result = process(odometry_, index, read);
+  const Frame frame = read(index);
+  FrameResult result = process(odometry_, index, [&frame](int) { return frame; });
+  keep_motion(result, frame.has_depth());
   ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
@@ -52,7 +62,7 @@ FrameRecord RunTrack::record(int index) const {
 }
 
 void RunTrack::keep_checkpoint() {
-  checkpoints_.emplace(seen_, odometry_);
+  checkpoints_.emplace(seen_, odometry_).first->second.drop_images();
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
   std::erase_if(checkpoints_, [this](const auto& kept) {
@@ -64,10 +74,22 @@ Odometry RunTrack::before(int index, const ReadFrame& read) const {
   const auto after = checkpoints_.upper_bound(index);
   // A finished run that odometry has not seen here has none.
   const bool fresh = after == checkpoints_.begin();
+  const int first = fresh ? 0 : std::prev(after)->first;
   Odometry odometry = fresh ? Odometry(source_->camera(), config()) : std::prev(after)->second;
-  for (int before = fresh ? 0 : std::prev(after)->first; before < index; ++before)
-    (void)process(odometry, before, read);
+  odometry.restore_images(first, read);
+  Prefetcher frames(*source_, first, index, 2);
+  for (int before = first; before < index; ++before)
+    (void)process(odometry, before, [&frames](int) { return frames.next(); });
   return odometry;
+}
+
+std::set<int> RunTrack::frames_to_restore(int index) const {
+  const auto after = checkpoints_.upper_bound(index);
+  std::set<int> frames;
+  if (after == checkpoints_.begin()) return frames;
+  const int first = std::prev(after)->first;
+  for (int i = std::max(0, first - frames_looked_back(config())); i < first; ++i) frames.insert(i);
+  return frames;
 }
 
 FrameResult RunTrack::replay(int index, const ReadFrame& read) const {
@@ -75,9 +97,9 @@ FrameResult RunTrack::replay(int index, const ReadFrame& read) const {
   return process(odometry, index, read);
 }
 
-std::vector<PastFrame> RunTrack::frames_before(int index, const Config& config, const ReadFrame& read) const {
+std::vector<PastFrame> RunTrack::frames_before(int index, int count, const ReadFrame& read) const {
   std::vector<PastFrame> past;
-  for (int i = std::max(0, index - frames_looked_back(config)); i < index; ++i) {
+  for (int i = std::max(0, index - count); i < index; ++i) {
     const FrameRecord& record = records_[static_cast<std::size_t>(i)];
     past.push_back({read(i), record.world_from_camera.inverse(), record.estimated});
   }
@@ -87,14 +109,17 @@ std::vector<PastFrame> RunTrack::frames_before(int index, const Config& config, 
 RunTrack RunTrack::branch(int from, const Config& config, const ReadFrame& read) const {
   RunTrack other(*source_, config, options_);
   if (from <= begins_at_ || from >= processed()) return other;
+  const Odometry here = before(from, read);
   std::optional<Odometry> odometry =
-      before(from, read).continued_with(config, frames_before(from, config, read));
+      here.continued_with(config, frames_before(from, here.frames_wanted(config), read));
   if (!odometry) return other;
   other.odometry_ = std::move(*odometry);
   other.begins_at_ = from;
   other.seen_ = from;
   other.records_.assign(records_.begin(), records_.begin() + from);
   other.features_.assign(features_.begin(), features_.begin() + from);
+  other.has_view_.assign(has_view_.begin(),
+                         has_view_.begin() + std::min(from, static_cast<int>(has_view_.size())));
   for (const FrameRecord& record : other.records_) other.hash_.add(record);
   return other;
 }

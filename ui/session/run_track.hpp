@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/odometry/odometry.hpp"
@@ -14,6 +15,9 @@
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint {
+
+/// How many frames back a method looks.
+[[nodiscard]] int frames_looked_back(const Config& config);
 
 /// How much a RunTrack keeps.
 struct RunTrackOptions {
@@ -43,15 +47,24 @@ class RunTrack {
   /// Processes a frame that was processed before once more, from the nearest checkpoint on.
   [[nodiscard]] FrameResult replay(int index, const ReadFrame& read) const;
 
+  /// Frames that repeat_motion(index) reads; nothing where it cannot be done.
+  [[nodiscard]] std::optional<std::set<int>> frames_to_repeat(int index) const;
+
+  /// Method `stillpoint`'s motion stage of a processed frame once more, which is far quicker than replay()
+  /// where its record tells enough (MotionReplay). @pre frames_to_repeat(index)
+  [[nodiscard]] FrameResult repeat_motion(int index, const ReadFrame& read) const;
+
   /// Processes frame `index` with an odometry that stands before it, and changes nothing here.
   [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const;
 
   /// The odometry as it stood before frame `index`, which was processed.
   [[nodiscard]] Odometry before(int index, const ReadFrame& read) const;
 
-  /// What Odometry::continued_with wants to go on with `config` from frame `index` on.
-  [[nodiscard]] std::vector<PastFrame> frames_before(int index, const Config& config,
-                                                     const ReadFrame& read) const;
+  /// Earlier frames that before(index) looks at beside those it processes.
+  [[nodiscard]] std::set<int> frames_to_restore(int index) const;
+
+  /// `count` frames before frame `index`, fewer at the start: what Odometry::continued_with wants.
+  [[nodiscard]] std::vector<PastFrame> frames_before(int index, int count, const ReadFrame& read) const;
 
   /// Another run that has this one's frames up to `from`, and goes on with another config from there; from
   /// the first frame on where that cannot be (Odometry::continued_with).
@@ -74,6 +87,7 @@ class RunTrack {
   /// What a recorded run removed from a frame; empty where nothing was.
   [[nodiscard]] cv::Mat recorded_mask(int index) const;
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
+  [[nodiscard]] bool keeps_times() const { return options_.keep_times; }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
   [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
 
@@ -84,6 +98,9 @@ class RunTrack {
   using Features = std::shared_ptr<const std::vector<FeatureRecord>>;  // shared with branches
 
   void keep_checkpoint();
+  void keep_motion(const FrameResult& result, bool has_depth);
+  [[nodiscard]] int memory_before(int index) const;
+  void add_references(int index, int memory, std::set<int>& frames) const;
   [[nodiscard]] bool is_as_recorded() const;
 
   const FrameSource* source_;
@@ -95,6 +112,9 @@ class RunTrack {
   std::vector<FrameRecord> records_;     // without features
   std::vector<Features> features_;       // … which are here; null where they are not kept
   std::map<int, Odometry> checkpoints_;  // by the frame they process next
+  std::vector<std::uint8_t> has_view_;   // one a frame seen: whether later ones may be compared with it
+  std::map<int, cv::Mat>
+      memories_;  // log-odds of moving that some frames left to the next (method stillpoint)
   RunHash hash_;
 };
 

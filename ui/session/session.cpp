@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <future>
 
+#include "ui/session/frame_neighbours.hpp"
+
 namespace stillpoint {
 
 Session::Session(std::shared_ptr<const FrameSource> source, const Config& config,
@@ -16,6 +18,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
 
 Session::~Session() {
   if (!worker_.joinable()) return;
+  stopping_ = true;
   worker_.request_stop();
   asked_.notify_all();
   worker_.join();
@@ -47,6 +50,10 @@ void Session::restart(const Config& config) {
 }
 
 void Session::process_one() {
+  if (run_->track().seen() < run_->track().processed()) {  // a finished run goes on from where it ended
+    run_->catch_up_one();
+    return;
+  }
   const Frame frame = frames_.read(run_->track().processed());
   // The baseline sees the same frame at the same time; neither knows of the other.
   std::future<FrameResult> beside;
@@ -59,7 +66,9 @@ void Session::process_one() {
 }
 
 void Session::show(int frame) {
-  current_ = run_->frame_view(frame);
+  // Going forward, the frame before is the one shown until now.
+  const bool follows = current_ && current_->index + 1 == frame && current_->record != nullptr;
+  current_ = run_->frame_view(frame, follows ? alone(*current_) : nullptr);
   for (Ghost& ghost : ghosts_) {
     const RunTrack& track = ghost.run->track();
     if (frame >= track.processed())
@@ -72,11 +81,22 @@ void Session::show(int frame) {
   publish();
 }
 
+bool Session::lacks_before() const {
+  return current_->record != nullptr && current_->index > run_->track().begins_at() &&
+         current_->before == nullptr;
+}
+
+void Session::complete() {
+  if (!lacks_before()) return;
+  const int frame = current_->index;
+  current_ = run_->frame_view(frame, alone(*run_->frame_view(frame - 1)));
+  publish();
+}
+
 DebugView Session::debug_view() {
   DebugView debug = debug_;
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
-  debug.removal = removal_errors(run_view_->records, run_view_->evaluation);
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,
                             .config = ghost.run->track().config(),
@@ -94,6 +114,7 @@ void Session::publish() {
   const bool grown = run_view_ != run_->run_view();
   if (grown) {
     run_view_ = run_->run_view();
+    debug_.removal = removal_errors(run_view_->records, run_view_->evaluation);
     if (baseline_) baseline_view_ = std::make_shared<const RunView>(baseline_->view());
     ++revision_;
   }
@@ -133,7 +154,7 @@ void Session::go_to(int frame, const std::function<void(const FrameRecord&)>& on
   target_ = std::clamp(frame, 0, source_->size() - 1);
   while (run_->track().processed() <= target_) {
     process_one();
-    if (on_frame) on_frame(run_->track().records().back());
+    if (on_frame) on_frame(run_->track().records()[static_cast<std::size_t>(run_->track().seen() - 1)]);
   }
   while (options_.catch_up && options_.no_images.empty() && run_->track().seen() <= target_) {
     const int index = run_->track().seen();
@@ -161,11 +182,18 @@ bool Session::idle() const {
   return resting_ && requests_.empty();
 }
 
-void Session::rest(const std::stop_token& stop) {
+void Session::rest(const std::stop_token& stop, bool until_comparison) {
   std::unique_lock lock(mutex_);
   resting_ = true;
-  asked_.wait(lock, stop, [this] { return !requests_.empty(); });
+  asked_.wait(lock, stop,
+              [&] { return !requests_.empty() || (until_comparison && compares_ && lacks_before()); });
   resting_ = false;
+}
+
+void Session::request_comparison(bool wanted) {
+  if (compares_.exchange(wanted) == wanted) return;
+  const std::lock_guard lock(mutex_);
+  asked_.notify_all();
 }
 
 }  // namespace stillpoint

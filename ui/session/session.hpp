@@ -57,6 +57,9 @@ class Session {
   /// @param on_frame told the record of each frame newly processed
   void go_to(int frame, const std::function<void(const FrameRecord&)>& on_frame = {});
 
+  /// Works out FrameView::before of the frame shown, where it is not at hand. Not beside a worker.
+  void complete();
+
   /// A record of the session's run with all its features. Not beside a worker.
   [[nodiscard]] FrameRecord record(int index) const { return run_->track().record(index); }
 
@@ -73,6 +76,8 @@ class Session {
   void request_speed(double frames_per_second);
   /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
   [[nodiscard]] bool idle() const;
+  /// Whether the frame before the one shown is wanted as well: made when there is nothing else to do.
+  void request_comparison(bool wanted);
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config) { request(request::RunAll{config}); }
 
@@ -95,6 +100,7 @@ class Session {
   void show(int frame);
   void publish();
   [[nodiscard]] DebugView debug_view();
+  [[nodiscard]] bool lacks_before() const;
 
   // Requests, one by one.
   void carry_out(const SessionRequest& wanted);
@@ -118,7 +124,8 @@ class Session {
   [[nodiscard]] bool at_rest() const;
   [[nodiscard]] int next_while_playing() const;
   void stop_playing_where_wanted();
-  void rest(const std::stop_token& stop);
+  /// Waits until something is asked for or, with `until_comparison`, until the frame before is.
+  void rest(const std::stop_token& stop, bool until_comparison);
   void work_step();
   void settle();
   // What is done when nothing else is asked for, a frame at a time.
@@ -152,6 +159,7 @@ class Session {
   bool preview_due_ = false;
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
+  std::atomic<bool> stopping_ = false;  // what is under way is to end
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
@@ -160,7 +168,8 @@ class Session {
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
-  std::jthread worker_;  // last: it ends before what it works with
+  std::atomic<bool> compares_ = false;  // FrameView::before is wanted
+  std::jthread worker_;                 // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

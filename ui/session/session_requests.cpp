@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/excerpt.hpp"
+#include "ui/session/export_session.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {
@@ -152,7 +153,19 @@ void Session::carry_out(const request::ExportFrames& wanted) {
 }
 
 void Session::carry_out(const request::ExportSession& wanted) {
-  throw InputError(fmt::format("{}: sessions are not exported as a whole; frames are", wanted.folder));
+  refuse_without_images();
+  const RunTrack& track = run_->track();
+  const int frames = debug_.span ? std::min(debug_.span->last + 1, track.processed()) : track.processed();
+  if (frames == 0) throw InputError(fmt::format("{}: no frame has been processed yet", wanted.folder));
+  RunHash hash;
+  for (int i = 0; i < frames; ++i) hash.add(track.records()[static_cast<std::size_t>(i)]);
+  debug_.notice = export_session({.source = *source_,
+                                  .config = track.config(),
+                                  .frames = frames,
+                                  .run_hash = hash.hex(),
+                                  .marks = marks(),
+                                  .stop = &stopping_},
+                                 wanted.folder);
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

@@ -50,7 +50,7 @@ void Session::work_step() {
 
 bool Session::has_background() const {
   const int processed = run_->track().processed();
-  return preview_due_ || sidecar_due_ || processed < wanted_ ||
+  return preview_due_ || sidecar_due_ || processed < wanted_ || (compares_ && lacks_before()) ||
          (worker_.joinable() && stages_are_missing()) ||
          std::any_of(ghosts_.begin(), ghosts_.end(),
                      [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
@@ -58,8 +58,17 @@ bool Session::has_background() const {
 
 void Session::background_step() {
   if (preview_due_) {
+    // A finished run's frames are seen here first, one at a time.
+    if (run_->track().seen() < std::min(current_->index, run_->track().processed())) {
+      run_->catch_up_one();
+      return;
+    }
     compute_preview();
     publish();
+    return;
+  }
+  if (compares_ && lacks_before()) {
+    complete();
     return;
   }
   if (sidecar_due_) {
@@ -116,7 +125,9 @@ void Session::update_breakpoints() {
 
 void Session::open_sidecar() {
   sidecar_due_ = false;
-  debug_.sequence_hash = sequence_fingerprint(*source_);
+  // A finished run may be shown without its images.
+  debug_.sequence_hash =
+      options_.recorded ? options_.recorded->origin.fingerprint : sequence_fingerprint(*source_);
   sidecar_.emplace(*options_.sidecar, MarkedSequence{source_->name(), debug_.sequence_hash, source_->size()});
   Marks kept = sidecar_->load();
   // What was marked before there was time to look stays.
@@ -178,7 +189,7 @@ void Session::work(const std::stop_token& stop) {
         continue;
       }
       if (waits && !playing_) {
-        rest(stop);
+        rest(stop, true);
         continue;
       }
       if (waits) {
@@ -197,7 +208,7 @@ void Session::work(const std::stop_token& stop) {
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
-      rest(stop);
+      rest(stop, false);
     }
   }
 }

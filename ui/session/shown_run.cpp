@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/motion/detect_motion.hpp"
+#include "ui/session/frame_neighbours.hpp"
 
 namespace stillpoint {
 namespace {
@@ -30,7 +31,8 @@ std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord>
 void ShownRun::process(const Frame& frame) {
   FrameResult result = track_.process_next([&frame](int) { return frame; });
   view_.reset();
-  keep({frame.index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)});
+  keep({frame.index, std::move(result.motion), std::move(result.depth_motion),
+        std::move(result.colour_motion), std::move(result.mask)});
 }
 
 void ShownRun::keep(Extras extras) {
@@ -52,19 +54,30 @@ ShownRun::Extras ShownRun::extras_of(int index) {
         "frame on.";
     return extras;
   }
-  FrameResult again = process_again(index, track_.config());
-  keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.mask)});
+  FrameResult again;
+  if (const auto frames = track_.frames_to_repeat(index)) {
+    frames_->read_ahead(*frames);
+    again = track_.repeat_motion(index, reader());
+  } else {
+    again = process_again(index, track_.config());
+  }
+  keep({index, std::move(again.motion), std::move(again.depth_motion), std::move(again.colour_motion),
+        std::move(again.mask)});
   return extras_.front();
 }
 
 FrameResult ShownRun::process_again(int index, const Config& config) {
-  if (!before_ || before_->first != index) before_.emplace(index, track_.before(index, reader()));
+  if (!before_ || before_->first != index) {
+    frames_->read_ahead(track_.frames_to_restore(index));
+    before_.emplace(index, track_.before(index, reader()));
+  }
   if (config == track_.config()) {
     Odometry odometry = before_->second;
     return track_.process(odometry, index, reader());
   }
+  const Odometry& here = before_->second;
   std::optional<Odometry> odometry =
-      before_->second.continued_with(config, track_.frames_before(index, config, reader()));
+      here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
   if (!odometry)
     throw InputError("features.levels and features.scale_factor take effect only when all is run anew");
   return track_.process(*odometry, index, reader());
@@ -73,6 +86,7 @@ FrameResult ShownRun::process_again(int index, const Config& config) {
 FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   FrameView view;
   view.index = index;
+  if (index >= config.motion.reference_gap) frames_->read_ahead({index - config.motion.reference_gap, index});
   view.frame = frames_->read(index);
   view.reference.index = index - config.motion.reference_gap;
   if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);
@@ -83,15 +97,21 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   if (view.motion.rounds.empty() && pair)
     view.motion = detect_motion(view.reference.gray, view.frame.gray, config.motion, config.run.threads);
   view.depth_motion = std::move(extras.depth_motion);
+  view.colour_motion = std::move(extras.colour_motion);
   view.mask = config.run.method == "paper" ? view.motion.mask() : std::move(extras.mask);
   // Without its images, a finished run still tells what it removed.
   if (!pair && view.mask.empty()) view.mask = track_.recorded_mask(index);
+  if (!track_.keeps_times()) clear_times(view);
   return view;
 }
 
-std::shared_ptr<const FrameView> ShownRun::frame_view(int index) {
+std::shared_ptr<const FrameView> ShownRun::frame_view(int index, std::shared_ptr<const FrameView> before) {
   FrameView view = images_of(index, track_.config(), extras_of(index));
   const bool processed = index < track_.processed();
+  if (processed) {
+    view.history = history_of(index, [this](int past) { return track_.record(past); });
+    view.before = std::move(before);
+  }
   return hold(std::move(view), processed ? std::optional(track_.record(index)) : std::nullopt);
 }
 
@@ -106,7 +126,8 @@ std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& conf
   if (index < track_.processed() && index >= track_.begins_at()) {
     FrameResult result = process_again(index, config);
     record = std::move(result.record);
-    extras = {index, std::move(result.motion), std::move(result.depth_motion), std::move(result.mask)};
+    extras = {index, std::move(result.motion), std::move(result.depth_motion),
+              std::move(result.colour_motion), std::move(result.mask)};
   }
   return hold(images_of(index, config, std::move(extras)), std::move(record));
 }

@@ -26,8 +26,10 @@ class ShownRun {
 
   [[nodiscard]] const RunTrack& track() const { return track_; }
 
-  /// The frame with all its images and, where it was processed, its record.
-  [[nodiscard]] std::shared_ptr<const FrameView> frame_view(int index);
+  /// The frame with all its images and, where it was processed, its record and those right before.
+  /// @param before becomes FrameView::before
+  [[nodiscard]] std::shared_ptr<const FrameView> frame_view(
+      int index, std::shared_ptr<const FrameView> before = nullptr);
 
   /// The run for panels; the same object until another frame was processed.
   [[nodiscard]] std::shared_ptr<const RunView> run_view();
@@ -46,6 +48,7 @@ class ShownRun {
     int index = 0;
     MotionTrace motion{};
     DepthMotionTrace depth_motion{};
+    ColourMotionTrace colour_motion{};
     cv::Mat mask{};
   };
 

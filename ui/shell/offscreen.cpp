@@ -72,6 +72,7 @@ cv::Mat Offscreen::image() const {
 
 void Offscreen::resize(int width, int height) {
   require_size(width, height);
+  if (width == framebuffer_->width() && height == framebuffer_->height()) return;
   make_current();
   framebuffer_ = std::make_unique<Framebuffer>(canvas_->gl(), width, height);
 }

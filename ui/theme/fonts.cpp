@@ -69,7 +69,7 @@ Fonts load_fonts(float scale) {
   fonts.text = add_with_icons(regular, kTextSize);
   fonts.strong = add_with_icons(semibold, kTextSize);
   fonts.heading = add_with_icons(semibold, kHeadingSize);
-  fonts.small = add(regular, size(kSmallSize), kTextRanges);
+  fonts.small = add_with_icons(regular, kSmallSize);
   fonts.mono = add(mono, size(kMonoSize), kTextRanges);
   atlas.Build();
   ImGui::GetIO().FontDefault = fonts.text;

@@ -8,7 +8,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNumbersFromScale = 32.0;  // panel px an image px, design px
+constexpr double kNumbersFromScale = 28.0;  // panel px an image px, design px
 constexpr double kWheelFactor = 1.2;
 constexpr float kClickSlack = 4.0F;  // px the mouse may move in a click
 
@@ -17,7 +17,12 @@ Eigen::Vector2d to_vector(ImVec2 v) { return {static_cast<double>(v.x), static_c
 ImVec2 to_imvec(const Eigen::Vector2d& v) { return {static_cast<float>(v.x()), static_cast<float>(v.y())}; }
 
 std::string number_text(double value, int depth) {
-  if (depth == CV_32F || depth == CV_64F) return fmt::format("{:.3g}", value);
+  if (depth == CV_32F || depth == CV_64F) {
+    // Five characters at most: what fits a pixel as soon as numbers are drawn.
+    if (std::isnan(value)) return "–";
+    const double size = std::abs(value);
+    return fmt::format("{:.{}f}", value, size < 9.995 ? 2 : size < 99.95 ? 1 : 0);
+  }
   return fmt::format("{:.0f}", value);
 }
 
@@ -127,7 +132,7 @@ void draw_pictures(const ImageContent& content, const ImageResponse& response,
 }
 
 void handle_mouse(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
-                  ImVec2 panel_min, bool& clicked) {
+                  ImVec2 panel_min, ImageResponse& response) {
   const ImGuiIO& io = ImGui::GetIO();
   const Eigen::Vector2d cursor = to_vector(io.MousePos) - to_vector(panel_min);
   if (ImGui::IsItemHovered()) {
@@ -135,8 +140,12 @@ void handle_mouse(ImageView& view, const Eigen::Vector2d& image_size, const Eige
       zoom_about(view, image_size, panel_size, cursor, std::pow(kWheelFactor, io.MouseWheel));
     }
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) view = ImageView{};
-    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
-    clicked = ImGui::IsMouseReleased(ImGuiMouseButton_Left) && std::hypot(moved.x, moved.y) < kClickSlack;
+    const auto released_in_place = [](ImGuiMouseButton button) {
+      const ImVec2 moved = ImGui::GetMouseDragDelta(button, 0.0F);
+      return ImGui::IsMouseReleased(button) && std::hypot(moved.x, moved.y) < kClickSlack;
+    };
+    response.clicked = released_in_place(ImGuiMouseButton_Left);
+    response.right_clicked = released_in_place(ImGuiMouseButton_Right);
   }
   if (!ImGui::IsItemActive()) return;
   for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right, ImGuiMouseButton_Middle}) {
@@ -173,14 +182,12 @@ ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageConten
   ImGui::InvisibleButton(id, size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  bool clicked = false;
-  if (present) handle_mouse(view, image_size, panel_size, low, clicked);
   ImageResponse response;
+  if (present) handle_mouse(view, image_size, panel_size, low, response);
   response.map = ImageMap(view, image_size, panel_size);
   response.panel_min = low;
   response.panel_max = high;
   response.hovered = ImGui::IsItemHovered();
-  response.clicked = clicked;
 
   push_clip(response);
   ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(frame.theme.background));

@@ -37,6 +37,7 @@ struct ImageResponse {
   std::optional<Eigen::Vector2d> image_point;  ///< under the mouse, image coordinates
   std::optional<Eigen::Vector2i> pixel;        ///< under the mouse
   bool clicked = false;                        ///< left, pressed and released in place
+  bool right_clicked = false;                  ///< the same of the right button
 
   /// Image coordinates to the display's.
   [[nodiscard]] ImVec2 to_screen(const Eigen::Vector2d& image) const;

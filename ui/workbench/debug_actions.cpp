@@ -121,6 +121,13 @@ void Workbench::toggle_bookmark() {
   }
 }
 
+void Workbench::tell_notice() {
+  const std::string notice = session_ == nullptr ? "" : session_->debug.notice;
+  if (notice == notice_) return;
+  notice_ = notice;
+  if (!notice.empty()) say(notice);
+}
+
 void Workbench::add_layout_actions() {
   int digit = static_cast<int>(Key::k1);
   for (const NamedLayout& layout : named_layouts())

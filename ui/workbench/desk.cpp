@@ -64,18 +64,23 @@ WorkbenchHost Desk::host() {
       if (session_) request(*session_, value);
     };
   };
-  return {
-      .go_to_frame = ask([](Session& session, int frame) { session.request_frame(frame); }),
-      .play = ask([](Session& session, bool play) { session.request_play(play); }),
-      .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
-      .configure =
-          [this](const Config& config) {
-            options_.config = config;
-            ++configured_;
-            if (session_) session_->request_config(config);
-          },
-      .open = [this](const std::string& where) { open(where); },
-      .request = ask([](Session& session, SessionRequest wanted) { session.request(std::move(wanted)); })};
+  return {.go_to_frame = ask([](Session& session, int frame) { session.request_frame(frame); }),
+          .play = ask([](Session& session, bool play) { session.request_play(play); }),
+          .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
+          .configure =
+              [this](const Config& config) {
+                options_.config = config;
+                ++configured_;
+                if (session_) session_->request_config(config);
+              },
+          .open = [this](const std::string& where) { open(where); },
+          .request =
+              [this](SessionRequest wanted) {
+                // What is opened next is run as this one is.
+                if (const auto* all = std::get_if<request::RunAll>(&wanted)) options_.config = all->config;
+                if (session_) session_->request(std::move(wanted));
+              },
+          .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
 }
 
 std::unique_ptr<Session> Desk::make_session(const OpenedPlace& place, const std::string& where) const {

@@ -11,9 +11,9 @@ namespace {
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
 
-constexpr std::array<const char*, 14> kFacts{"frame", "frames",    "processed", "playing",   "status",
-                                             "title", "method",    "message",   "panels",    "maximised",
-                                             "theme", "shortcuts", "palette",   "log.errors"};
+constexpr std::array<const char*, 15> kFacts{"frame", "frames",    "processed", "playing",    "status",
+                                             "title", "method",    "message",   "panels",     "maximised",
+                                             "theme", "shortcuts", "palette",   "log.errors", "choices"};
 
 }  // namespace
 
@@ -41,6 +41,13 @@ std::optional<std::string> Workbench::fact(const std::string& what, const Sessio
   if (what == "theme") return std::string(look_.theme == ThemeName::kDark ? "dark" : "light");
   if (what == "shortcuts") return yes(shortcuts_open_);
   if (what == "palette") return yes(palette_.open);
+  if (what == "choices") {
+    std::string text;
+    for (const auto& [panel, choices] : choices_)
+      for (const auto& [control, value] : choices.changed())
+        text += fmt::format("{}{}: {}={}", text.empty() ? "" : ", ", panel, control, value);
+    return text.empty() ? none : text;
+  }
   if (what == "log.errors") return std::to_string(log_.errors());
   return std::nullopt;
 }

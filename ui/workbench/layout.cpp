@@ -151,19 +151,20 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
 
 LayoutNode default_layout(std::string_view method) {
   using enum Division;
-  // What the method itself goes by stands where one looks for the result.
-  const bool by_depth = method == "stillpoint";
-  const char* const found = by_depth ? "depth_motion" : "union_mask";
-  const char* const beside = by_depth ? "union_mask" : "compensated";
-  // Above, how what moves is found, from left to right; below, what comes of it.
+  // Above, what is held to be moving and which features that takes, by what the method itself goes by; in the
+  // middle what comes of it; below, the whole run to go about in.
+  const LayoutNode found =
+      method == "stillpoint"
+          ? divide(0.42, kColumns,
+                   {tile(0.29, "features_before"), tile(0.42, "depth_motion"), tile(0.29, "features_after")})
+          : divide(0.42, kColumns,
+                   {tile(0.25, "features_before"), tile(0.25, "forward_mask"), tile(0.25, "backward_mask"),
+                    tile(0.25, "union_mask")});
   return divide(
       1.0, kRows,
-      {divide(0.45, kColumns,
-              {tile(0.25, "features_after"), tile(0.25, "forward_mask"), tile(0.25, "backward_mask"),
-               tile(0.25, found)}),
-       divide(0.55, kColumns,
-              {divide(0.25, kRows, {tile(0.6, beside), tile(0.4, "inspector")}), tile(0.39, "trajectory"),
-               divide(0.36, kRows, {tile(0.5, "errors"), tile(0.5, "timeline")})})});
+      {found,
+       divide(0.34, kColumns, {tile(0.38, "trajectory"), tile(0.38, "errors"), tile(0.24, "inspector")}),
+       tile(0.24, "timeline")});
 }
 
 namespace {
@@ -204,13 +205,22 @@ LayoutNode failures_layout(std::string_view method) {
                tile(0.2, "inspector")})});
 }
 
+/// One frame from within: its stages, and what pixels and features there say.
+LayoutNode stages_layout(std::string_view) {
+  return divide(
+      1.0, kColumns,
+      {tile(0.48, "stages"), divide(0.28, kRows, {tile(0.46, "features_before"), tile(0.54, "feature")}),
+       divide(0.24, kRows, {tile(0.72, "inspector"), tile(0.28, "timeline")})});
+}
+
 }  // namespace
 
 std::vector<NamedLayout> named_layouts() {
   return {{"inspect", "Inspect", default_layout},
           {"motion", "Motion", motion_layout},
           {"compare", "Compare", compare_layout},
-          {"failures", "Failures", failures_layout}};
+          {"failures", "Failures", failures_layout},
+          {"stages", "Stages", stages_layout}};
 }
 
 }  // namespace stillpoint

@@ -77,7 +77,7 @@ struct NamedLayout {
   LayoutNode (*make)(std::string_view method);
 };
 
-/// Inspect (the default layout), Motion, Compare, Failures.
+/// Inspect (the default layout), Motion, Compare, Failures, Stages.
 [[nodiscard]] std::vector<NamedLayout> named_layouts();
 
 /// The tree as JSON: {"columns": [{"share": 0.4, "panel": "input", "choices": {"Map points": "off"}},

@@ -52,7 +52,9 @@ void Workbench::draw_opening() {
   if (opening_.empty()) return;
   const UiFrame& frame = *frame_;
   frame_->redraw_after_s = std::min(frame_->redraw_after_s, kTurnSeconds);
-  if (begin_notice(frame, "##opening", {0.5F * frame.size.x, 0.46F * frame.size.y}, {0.5F, 0.5F},
+  // Below what the start page says, in the middle of panels.
+  const float height = session_ == nullptr ? 0.8F : 0.46F;
+  if (begin_notice(frame, "##opening", {0.5F * frame.size.x, height * frame.size.y}, {0.5F, 0.5F},
                    mix(frame.theme.border, frame.theme.accent, 0.6F))) {
     // A dot goes round while the interface lives.
     const ImVec2 corner = ImGui::GetCursorScreenPos();

@@ -12,6 +12,8 @@ namespace {
 
 // Design px.
 constexpr float kGap = 5.0F, kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
+// In smaller tiles than these, controls are small too: the picture matters more.
+constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
 constexpr ImGuiWindowFlags kRootFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -55,7 +57,17 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
                         ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
+  const bool compact = rect.width < kCompactWidth * frame.scale || rect.height < kCompactHeight * frame.scale;
+  if (compact) {
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5.0F * frame.scale, 2.0F * frame.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {5.0F * frame.scale, 3.0F * frame.scale});
+  }
   if (visible) panel.draw(frame, session, wanted);
+  if (compact) {
+    ImGui::PopStyleVar(2);
+    ImGui::PopFont();
+  }
   ImGui::EndChild();
 }
 
@@ -133,6 +145,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   const bool overlay = palette_.open || open_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
+  tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
   const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
@@ -152,6 +165,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_palette();
   draw_open_dialog();
   look_ = frame.wanted_look;
+  if (session != nullptr && host_.compare) host_.compare(compare_frames_);
+  compare_frames_ = false;
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -292,6 +307,7 @@ void Workbench::draw_tile_menu(const std::string& name) {
 void Workbench::carry_out(const PanelActions& wanted) {
   if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  compare_frames_ |= wanted.compare_frames;
   if (host_.request)
     for (const SessionRequest& wish : wanted.requests) host_.request(wish);
   if (wanted.set_parameters.empty() || !host_.configure) return;

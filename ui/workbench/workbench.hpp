@@ -25,6 +25,7 @@ struct WorkbenchHost {
   std::function<void(const Config&)> configure{};  ///< run with this config
   std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
   std::function<void(SessionRequest)> request{};   ///< what panels ask of the session
+  std::function<void(bool)> compare{};             ///< whether FrameView::before is wanted; told each frame
 };
 
 /// The whole interface: menus, toolbar, tiles with panels, status bar, palette, shortcut sheet, start page.
@@ -89,12 +90,14 @@ class Workbench {
   void add_playback_actions();
   void add_view_actions();
   void add_panel_actions();
+  void add_panel_command(const std::string& panel, PanelCommand command);
   void add_layout_actions();
   void add_debug_actions();
   void add_mark_actions();
   void go_to(int frame);
   void ask(SessionRequest request);
   void toggle_bookmark();
+  void tell_notice();
   [[nodiscard]] const std::vector<int>& worst();
   void toggle_panel(const std::string& name);
   void scale_by(float factor);
@@ -155,10 +158,12 @@ class Workbench {
   std::optional<LaneFigure> worst_by_;
   WorstKey worst_key_;
   std::vector<int> worst_;
+  std::string notice_;  // of the session, told last
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
   const SessionView* session_ = nullptr;
+  bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 
   // How fast frames go by while playing.

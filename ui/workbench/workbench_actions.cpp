@@ -146,6 +146,29 @@ void Workbench::add_panel_actions() {
                   .checked = [this, name] { return contains(layout_, name); },
                   .run = [this, name] { after_frame_ = [this, name] { toggle_panel(name); }; }});
   }
+  for (const auto& panel : panels_)
+    for (PanelCommand& command : panel->commands()) add_panel_command(panel->name(), std::move(command));
+}
+
+void Workbench::add_panel_command(const std::string& panel, PanelCommand command) {
+  const auto shared = std::make_shared<const PanelCommand>(std::move(command));
+  actions_.add(
+      {.name = shared->name,
+       .title = shared->title,
+       .group = shared->group,
+       .icon = shared->icon,
+       .keys = shared->keys,
+       .repeats = shared->repeats,
+       .enabled =
+           [this, shared] { return session_ != nullptr && (!shared->enabled || shared->enabled(*session_)); },
+       .run =
+           [this, shared, panel] {
+             PanelActions wanted;
+             shared->run(*session_, wanted);
+             carry_out(wanted);
+             if (!shared->shows || contains(layout_, panel)) return;
+             after_frame_ = [this, panel] { toggle_panel(panel); };
+           }});
 }
 
 void Workbench::go_to(int frame) {

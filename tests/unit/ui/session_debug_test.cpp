@@ -5,6 +5,8 @@
 #include <condition_variable>
 #include <random>
 
+#include "core/run/open_run.hpp"
+#include "core/run/record_codec.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/cli/small_sequence.hpp"
 #include "ui/session/session.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+namespace fs = std::filesystem;
 
 constexpr int kFrames = 12;
 
@@ -25,6 +28,11 @@ class SessionDebug : public ::testing::Test {
   }
   [[nodiscard]] std::unique_ptr<Session> session(bool baseline = false) const {
     return std::make_unique<Session>(source_, config_, SessionOptions{.baseline = baseline});
+  }
+  [[nodiscard]] RunResult batch(const Config& config, int frames) const {
+    RunOptions options;
+    options.count = frames;
+    return run_sequence(*source_, config, options);
   }
   static const DebugView& debug(const Session& session) {
     static std::shared_ptr<const SessionView> view;
@@ -112,6 +120,65 @@ TEST_F(SessionDebug, TheHashIsTheBatchRunsHoweverOneCameThere) {
   EXPECT_EQ(debug(*s).run_hash, run_hash(batch.records));
 }
 
+/// All that a record holds, times left out, as bytes.
+std::vector<std::uint8_t> bytes_of(FrameRecord record) {
+  record.ms = {};
+  ByteWriter bytes;
+  write_record(bytes, record);
+  return bytes.bytes();
+}
+
+TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
+  for (const char* method : {"none", "paper", "stillpoint", "oracle"}) {
+    config_.run.method = method;
+    std::vector<FrameResult> expected;
+    RunOptions options;
+    options.on_frame = [&](const FrameResult& frame) { expected.push_back(frame); };
+    (void)run_sequence(*source_, config_, options);
+    const auto s = session(true);
+    std::mt19937 random(11);
+    std::vector<int> way = {3, 2, 1, 0, kFrames - 1, kFrames - 2};
+    for (int step = 0; step < 30; ++step) way.push_back(static_cast<int>(random() % kFrames));
+    for (const int frame : way) {
+      s->request(request::GoTo{frame});
+      const auto view = s->view()->current;
+      const FrameResult& batch_frame = expected[static_cast<std::size_t>(frame)];
+      EXPECT_EQ(bytes_of(*view->record), bytes_of(batch_frame.record)) << method << " " << frame;
+      ASSERT_EQ(view->mask.empty(), batch_frame.mask.empty()) << method << " " << frame;
+      if (!view->mask.empty()) {
+        EXPECT_EQ(cv::norm(view->mask, batch_frame.mask, cv::NORM_INF), 0.0) << method << " " << frame;
+      }
+    }
+  }
+}
+
+TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
+  config_.run.method = "stillpoint";
+  config_.depth_motion.far_reference = 3;
+  config_.depth_motion.slow_reference = 5;
+  RunTrack track(*source_, config_);
+  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  std::vector<FrameResult> results;
+  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  EXPECT_FALSE(track.frames_to_repeat(0).has_value());
+  for (const int index : {11, 1, 7, 4, 5, 10}) {
+    const auto frames = track.frames_to_repeat(index);
+    ASSERT_TRUE(frames.has_value()) << index;
+    EXPECT_EQ(*frames->rbegin(), index);
+    std::set<int> used;
+    const FrameResult again = track.repeat_motion(index, [&](int i) {
+      used.insert(i);
+      return source_->read(i);
+    });
+    EXPECT_EQ(used, *frames);
+    const FrameResult& first = results[static_cast<std::size_t>(index)];
+    EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
+    EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
+    EXPECT_EQ(cv::norm(again.depth_motion.prior, first.depth_motion.prior, cv::NORM_INF), 0.0) << index;
+    ASSERT_EQ(again.depth_motion.references.size(), first.depth_motion.references.size()) << index;
+  }
+}
+
 TEST_F(SessionDebug, AGhostWithTheSameConfigIsTheSameRun) {
   for (const char* method : {"none", "paper", "stillpoint"}) {
     config_.run.method = method;
@@ -181,8 +248,7 @@ TEST_F(SessionDebug, AGhostWhoseFeaturesWouldNotFitBeginsAtTheFirstFrame) {
   other.features.levels = 5;
   s->request(request::AddGhost{other, "levels 5", 5});
   EXPECT_EQ(debug(*s).ghosts[0].from, 0);
-  EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records),
-            run_hash(run_sequence(*source_, other, {.count = 9}).records));
+  EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records), run_hash(batch(other, 9).records));
 }
 
 TEST_F(SessionDebug, PreviewsTheFrameShownAndLeavesTheRunAlone) {
@@ -222,7 +288,7 @@ TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
   EXPECT_EQ(s->view()->current->index, 3);
   EXPECT_EQ(s->view()->config.run.method, "none");
   EXPECT_EQ(s->view()->processed, 10);
-  EXPECT_EQ(debug(*s).run_hash, run_hash(run_sequence(*source_, other, {.count = 10}).records));
+  EXPECT_EQ(debug(*s).run_hash, run_hash(batch(other, 10).records));
 }
 
 TEST_F(SessionDebug, ExportedFramesShowTheSame) {
@@ -243,6 +309,38 @@ TEST_F(SessionDebug, ExportedFramesShowTheSame) {
   EXPECT_FALSE(part->ground_truth().empty());
   s->request(request::ExportFrames{out.path("part")});
   EXPECT_THAT(s->view()->message, HasSubstr("holds a sequence already"));
+}
+
+TEST_F(SessionDebug, ASessionIsHandedOnAsOneFolder) {
+  const auto s = session();
+  s->request(request::GoTo{7});
+  const std::string hash = debug(*s).run_hash;
+  s->request(request::Bookmarks{{{2, "look"}, {9, "beyond what is processed"}}});
+  const TemporaryFolder out;
+  s->request(request::ExportSession{out.path("session")});
+  ASSERT_EQ(s->view()->message, "");
+  EXPECT_THAT(debug(*s).notice,
+              ::testing::AllOf(HasSubstr("8 frames"), ::testing::Not(HasSubstr("another one"))));
+
+  // It opens where it was not written.
+  fs::rename(out.path("session"), out.path("elsewhere"));
+  const OpenedRun run = open_run(out.path("elsewhere"));
+  EXPECT_EQ(run.no_images, "");
+  EXPECT_EQ(run.recorded->hash, hash);
+  SessionOptions options;
+  options.recorded = run.recorded;
+  options.sidecar = SidecarPlaces{out.path("elsewhere"), {}};
+  Session other(run.source, run.recorded->run.config, options);
+  other.request(request::GoTo{3});
+  EXPECT_EQ(other.view()->message, "");
+  EXPECT_EQ(other.view()->debug.run_hash, hash);
+  EXPECT_THAT(other.view()->debug.bookmarks, ElementsAre(Bookmark{2, "look"}));
+  other.request(request::Preview{config_});
+  ASSERT_NE(other.view()->debug.preview, nullptr);
+  EXPECT_TRUE(computed_alike(*other.view()->debug.preview->record, *other.view()->current->record));
+
+  s->request(request::ExportSession{out.path("elsewhere")});
+  EXPECT_THAT(s->view()->message, HasSubstr("elsewhere"));
 }
 
 TEST_F(SessionDebug, SavedPresetsAreRead) {

@@ -132,6 +132,56 @@ TEST_P(SessionTest, TheWorkerComesToTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, SessionTest, ::testing::Values("none", "paper", "stillpoint"));
 
+TEST_P(SessionTest, AFrameIsShownWithThoseBeforeIt) {
+  Session session(source_, config_, {.keep_times = false});
+  session.go_to(4);
+  session.go_to(5);
+  const auto forward = session.view()->current;
+  ASSERT_NE(forward->before, nullptr);
+  EXPECT_EQ(forward->before->index, 4);
+  EXPECT_EQ(forward->before->before, nullptr);
+  ASSERT_EQ(forward->history.size(), 5U);
+  EXPECT_EQ(forward->history[0]->index, 4);
+  EXPECT_EQ(run_hash({*forward->history[2]}), run_hash({session.record(2)}));
+  for (const MotionRound& round : forward->motion.rounds) {
+    EXPECT_EQ(round.union_ms, 0.0);
+    EXPECT_EQ(round.forward.ms.homography, 0.0);
+  }
+  session.go_to(3);
+  EXPECT_EQ(session.view()->current->before, nullptr);
+  session.complete();
+  const auto completed = session.view()->current;
+  EXPECT_EQ(completed->index, 3);
+  ASSERT_NE(completed->before, nullptr);
+  EXPECT_EQ(completed->before->index, 2);
+  EXPECT_EQ(run_hash({*completed->before->record}), run_hash({session.record(2)}));
+  session.go_to(0);
+  session.complete();
+  EXPECT_EQ(session.view()->current->before, nullptr);
+}
+
+TEST_P(SessionTest, TheWorkerComparesFramesWhereThatIsWanted) {
+  Session session(source_, config_);
+  std::mutex mutex;
+  std::condition_variable changed;
+  session.start([&] {
+    const std::lock_guard lock(mutex);
+    changed.notify_all();
+  });
+  const auto wait_for = [&](auto&& holds) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*session.view()->current); });
+  };
+  session.request_frame(5);
+  EXPECT_TRUE(wait_for([](const FrameView& view) { return view.index == 5 && view.record != nullptr; }));
+  session.request_frame(3);
+  EXPECT_TRUE(wait_for([](const FrameView& view) { return view.index == 3; }));
+  EXPECT_EQ(session.view()->current->before, nullptr);
+  session.request_comparison(true);
+  EXPECT_TRUE(
+      wait_for([](const FrameView& view) { return view.before != nullptr && view.before->index == 2; }));
+}
+
 TEST(Session, RunsABaselineBesideOtherMethodsAlone) {
   const SmallSequence folder(4);
   const std::shared_ptr<const FrameSource> source = open_sequence(folder.path());

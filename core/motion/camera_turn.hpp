@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+namespace stillpoint {
+
+/// A point seen from two places: bearings (x, y, 1), that is, undistorted pixels less the principal point by
+/// the focal length.
+struct BearingPair {
+  Eigen::Vector3d now, then;
+  double weight = 1.0;  ///< trust that it stands still, times its share of the image
+};
+
+/// The camera's motion between two frames as images alone tell it: then ~ rotation * now + translation /
+/// depth, the translation a direction only.
+struct CameraTurn {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of length 1; of no meaning when turns_only
+  bool turns_only = false;  ///< rotation alone explains what stands still: there is no parallax
+  double explained = 0.0;   ///< weighted share of the pairs within a few sigma of the motion, 0 to 1
+};
+
+struct CameraTurnOptions {
+  double sigma = 1e-3;            ///< noise of a bearing, in units of the focal length
+  double least_sigma = 4e-4;  ///< the same at its best, by which parallax is told from noise
+  int samples = 60;               ///< directions tried
+  double turns_only_share = 0.6;  ///< so many must agree with rotation alone …
+  double between_share = 0.12;    ///< … and at most so many may disagree by little, as parallax does
+};
+
+/// Robust (Geman-McClure, annealed) rotation and direction of translation: Gauss-Newton on the Sampson
+/// distance, from the best of many directions through two points each. Deterministic.
+/// @param hint a direction to begin with as well, or null
+[[nodiscard]] CameraTurn estimate_camera_turn(std::span<const BearingPair> pairs,
+                                              const CameraTurnOptions& options,
+                                              const CameraTurn* hint = nullptr);
+
+/// How far `then` lies off what the camera's motion allows, in units of the focal length: off the rotation
+/// where the camera only turned; else off the epipolar line, or, along it, beyond the point at infinity by
+/// more than `tolerance`.
+[[nodiscard]] Eigen::Vector2d unexplained(const CameraTurn& motion, const BearingPair& pair,
+                                          double tolerance);
+
+/// Signed distance off the epipolar line, to first order (Sampson), in units of the focal length.
+[[nodiscard]] double sampson_distance(const CameraTurn& motion, const BearingPair& pair);
+
+/// Shift of a pair beside the rotation, in units of the focal length: `then` less where rotation alone puts
+/// it.
+[[nodiscard]] Eigen::Vector2d parallax(const CameraTurn& motion, const BearingPair& pair);
+
+}  // namespace stillpoint

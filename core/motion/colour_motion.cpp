@@ -1,0 +1,234 @@
+#include "core/motion/colour_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/error.hpp"
+#include "core/motion/regions.hpp"
+#include "core/motion/shared_evidence.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kSmallerBy = 2;  // full-size pixels a side of a small pixel, in which points are followed
+constexpr int kFewestPairs = 40;
+constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
+constexpr float kExpectedNoise = 0.3F;  // px, small image: of a followed point
+// A turn of the camera mistaken for its going sideways, as before a plane, looks like places behind infinity,
+// so lying there is no evidence.
+constexpr double kNoTurn = 1e9;
+constexpr float kGreyNoise = 8.0F;  // grey levels, in a window that is followed
+constexpr float kEdge = 0.06F;      // smaller over larger eigenvalue, below which a point lies on an edge
+constexpr float kLeastNoise = 0.1F, kMostNoise = 0.4F;
+
+Eigen::Vector3d bearing(const cv::Point2f& pixel, const Camera& camera) {
+  return {(pixel.x - camera.cx) / camera.fx, (pixel.y - camera.cy) / camera.fy, 1.0};
+}
+
+/// Each point's share of the image: many close together count for no more than few far apart, lest the most
+/// textured thing be taken for the room.
+std::vector<double> even_weights(const std::vector<cv::Point2f>& points, float reach) {
+  std::vector<double> weights(points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const cv::Point2f apart = points[i] - points[j];
+      const float squared = apart.dot(apart) / (reach * reach);
+      if (squared > 9.0F) continue;
+      const double near = i == j ? 0.5 : std::exp(-squared);
+      weights[i] += near;
+      weights[j] += near;
+    }
+  for (double& weight : weights) weight = 1.0 / weight;
+  return weights;
+}
+
+double weighted_median(std::vector<std::pair<double, double>> value_and_weight) {
+  std::sort(value_and_weight.begin(), value_and_weight.end());
+  double all = 0.0, below = 0.0;
+  for (const auto& [value, weight] : value_and_weight) all += weight;
+  for (const auto& [value, weight] : value_and_weight)
+    if ((below += weight) >= 0.5 * all) return value;
+  return 0.0;
+}
+
+/// A residual by its own noise: that of all points, and what a point is free to slide where it has little
+/// gradient, all the farther the longer it is followed.
+float in_sigmas(const cv::Point2f& residual, double sigma, int gap, const cv::Matx22f& gradients) {
+  const auto common = static_cast<float>(sigma * sigma);
+  const float slide = kGreyNoise * kGreyNoise * static_cast<float>(gap);
+  // (common I + slide G^-1)^-1 = (common G + slide I)^-1 G
+  const cv::Matx22f sum = common * gradients + slide * cv::Matx22f::eye();
+  const float determinant = sum(0, 0) * sum(1, 1) - sum(0, 1) * sum(1, 0);
+  const cv::Matx22f inverse(sum(1, 1) / determinant, -sum(0, 1) / determinant, -sum(1, 0) / determinant,
+                            sum(0, 0) / determinant);
+  const cv::Vec2f r(residual.x, residual.y);
+  return std::sqrt(std::max(0.0F, r.dot((inverse * gradients) * r)));
+}
+
+/// Gradient in one direction alone: where two outlines cross, or an edge ends, there is nothing to follow.
+bool is_edge(const cv::Matx22f& gradients) {
+  const float trace = gradients(0, 0) + gradients(1, 1);
+  const float determinant = gradients(0, 0) * gradients(1, 1) - gradients(0, 1) * gradients(0, 1);
+  return determinant < kEdge * trace * trace;  // nearly the ratio of the two eigenvalues
+}
+
+/// Regions large enough and with enough points that move, their holes filled.
+cv::Mat moving_regions(const cv::Mat& evidence, const std::vector<PointTrack>& tracks,
+                       const std::vector<float>& shared, const ColourMotionConfig& config) {
+  cv::Mat mask = evidence > config.moving_evidence;
+  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, cv::Mat());
+  if (config.close_px > 0)
+    cv::morphologyEx(
+        mask, mask, cv::MORPH_CLOSE,
+        cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * config.close_px + 1, 2 * config.close_px + 1}));
+  if (config.shave_px > 0)
+    cv::erode(
+        mask, mask,
+        cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * config.shave_px + 1, 2 * config.shave_px + 1}));
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
+  std::vector<int> moving_points(static_cast<std::size_t>(count), 0);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i].age < config.min_age || shared[i] <= static_cast<float>(config.moving_evidence)) continue;
+    const cv::Point at(std::min(static_cast<int>(tracks[i].path.back().x / 2), mask.cols - 1),
+                       std::min(static_cast<int>(tracks[i].path.back().y / 2), mask.rows - 1));
+    ++moving_points[static_cast<std::size_t>(labels.at<int>(at))];
+  }
+  const double least = config.min_area_share * static_cast<double>(mask.total());
+  cv::Mat kept = cv::Mat::zeros(mask.size(), CV_8UC1);
+  for (int label = 1; label < count; ++label)
+    if (stats.at<int>(label, cv::CC_STAT_AREA) >= least &&
+        moving_points[static_cast<std::size_t>(label)] >= config.min_points)
+      kept.setTo(255, labels == label);
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(kept, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::drawContours(kept, outlines, -1, cv::Scalar(255), cv::FILLED);
+  return kept;
+}
+
+}  // namespace
+
+ColourMotionDetector::ColourMotionDetector(const Camera& camera, const ColourMotionConfig& config)
+    : camera_(camera), config_(config) {}
+
+void ColourMotionDetector::judge(ColourReference& reference, const std::vector<cv::Point2f>& now) {
+  const std::vector<PointTrack>& tracks = tracks_.all();
+  std::vector<cv::Point2f> then, places;
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    if (const cv::Point2f* back = tracks[i].back(reference.gap)) {
+      reference.points.push_back(static_cast<int>(i));
+      then.push_back(*back);
+      places.push_back(now[i]);
+    }
+  if (static_cast<int>(then.size()) < kFewestPairs) return;
+  then = small_.undistort(then);
+  const std::vector<cv::Point2f> straight = small_.undistort(places);
+  const std::vector<double> even = even_weights(places, static_cast<float>(4 * config_.cell_px));
+  std::vector<BearingPair> pairs;
+  for (std::size_t k = 0; k < then.size(); ++k) {
+    const float held = tracks[static_cast<std::size_t>(reference.points[k])].evidence;
+    const double trust = 0.02 + 1.0 / (1.0 + std::exp(2.0 * held));
+    pairs.push_back({bearing(straight[k], small_), bearing(then[k], small_), even[k] * trust});
+  }
+  CameraTurnOptions options;
+  options.sigma = kExpectedNoise / small_.fx;
+  options.least_sigma = 1.2 * kLeastNoise / small_.fx;
+  reference.motion = estimate_camera_turn(pairs, options);
+  std::vector<std::pair<double, double>> noise;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const BearingPair& pair = pairs[k];
+    const Eigen::Vector2d off = unexplained(reference.motion, pair, kNoTurn) * small_.fx;
+    const Eigen::Vector2d shift = parallax(reference.motion, pair) * small_.fx;
+    reference.residuals.emplace_back(static_cast<float>(off.x()), static_cast<float>(off.y()));
+    reference.shifts.emplace_back(static_cast<float>(-shift.x()), static_cast<float>(-shift.y()));
+    noise.emplace_back(off.norm(), pair.weight);
+  }
+  const double to_sigma =
+      reference.motion.turns_only ? 1.0 / 1.1774 : 1.4826;  // of Rayleigh's and of half a
+                                                            // normal distribution's median
+  reference.sigma = std::clamp(to_sigma * weighted_median(noise), double{kLeastNoise}, double{kMostNoise});
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    reference.sigmas.push_back(in_sigmas(reference.residuals[k], reference.sigma, reference.gap,
+                                         tracks[static_cast<std::size_t>(reference.points[k])].gradients));
+}
+
+void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& references) {
+  std::vector<PointTrack>& tracks = tracks_.all();
+  std::vector<float> heard(tracks.size(), 0.0F);
+  std::vector<int> times(tracks.size(), 0);
+  for (const ColourReference& reference : references)
+    for (std::size_t k = 0; k < reference.sigmas.size(); ++k) {
+      const auto i = static_cast<std::size_t>(reference.points[k]);
+      if (is_edge(tracks[i].gradients)) continue;
+      const double sigmas = reference.sigmas[k];
+      heard[i] +=
+          static_cast<float>(std::clamp(config_.evidence_a_sigma * (sigmas - config_.sigmas), -0.5, 1.0));
+      ++times[i];
+    }
+  const auto limit = static_cast<float>(config_.max_evidence);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (times[i] == 0) continue;
+    const float now = heard[i] / static_cast<float>(times[i]);
+    tracks[i].evidence = std::clamp(static_cast<float>(config_.memory) * tracks[i].evidence + now,
+                                    -static_cast<float>(config_.max_static_evidence), limit);
+  }
+}
+
+ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
+  if (image.empty() || (image.type() != CV_8UC3 && image.type() != CV_8UC1))
+    throw InputError("colour motion needs an 8-bit image of one or three channels");
+  ColourMotionTrace trace;
+  if (image.size() != size_) {
+    tracks_.clear();
+    size_ = image.size();
+    small_ = camera_.scaled_to(size_.width / kSmallerBy, size_.height / kSmallerBy);
+  }
+  if (std::min(size_.width, size_.height) < kMinSide) {
+    trace.note = fmt::format("frames of {}x{} are too small to follow points in", size_.width, size_.height);
+    return trace;
+  }
+  cv::Mat gray = image, small;
+  if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  cv::resize(gray, small, {size_.width / kSmallerBy, size_.height / kSmallerBy}, 0, 0, cv::INTER_AREA);
+  tracks_.advance(small, config_);
+
+  std::vector<cv::Point2f> now;
+  for (const PointTrack& track : tracks_.all()) now.push_back(track.path.back());
+  int last_gap = 0;
+  for (const int wanted : {config_.near_reference, config_.far_reference / 2, config_.far_reference}) {
+    const int gap = std::min(wanted, tracks_.frames() - 1);
+    if (gap <= last_gap) continue;
+    last_gap = gap;
+    ColourReference reference;
+    reference.gap = gap;
+    judge(reference, now);
+    if (!reference.residuals.empty()) trace.references.push_back(std::move(reference));
+  }
+  gather_evidence(trace.references);
+  const std::vector<float> shared = share_evidence(tracks_.all(), small.size(), config_);
+
+  cv::Mat smaller;
+  cv::resize(image, smaller, small.size() / 2, 0, 0, cv::INTER_AREA);
+  cv::GaussianBlur(smaller, smaller, {3, 3}, 0);
+  trace.evidence = spread_evidence(smaller, tracks_.all(), shared, config_);
+  const cv::Mat small_mask = moving_regions(trace.evidence, tracks_.all(), shared, config_);
+  cv::resize(small_mask, trace.mask, size_, 0, 0, cv::INTER_LINEAR);
+  trace.mask = trace.mask > 127;
+
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    const PointTrack& track = tracks_.all()[i];
+    trace.points.push_back({track.path.back() * kSmallerBy, track.age, track.evidence, shared[i]});
+  }
+  LabelledRegions found = find_regions(trace.mask);
+  trace.regions = std::move(found.regions);
+  trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  if (trace.references.empty())
+    trace.note = tracks_.frames() < 2 ? "the first frame has none before it to be compared with"
+                                      : "too few points could be followed";
+  return trace;
+}
+
+}  // namespace stillpoint

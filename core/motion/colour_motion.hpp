@@ -1,0 +1,73 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/camera_turn.hpp"
+#include "core/motion/motion_trace.hpp"
+#include "core/motion/point_tracks.hpp"
+
+namespace stillpoint {
+
+// What moves, judged from colour alone: points are followed over some tenths of a second, the camera's own
+// motion is found from where they go, and what no place in a still room explains is held to move. A point may
+// shift along its epipolar line however it likes, for that is what parallax does; beside the line only what
+// moves can go. Evidence stays with its point from frame to frame, is shared among neighbours that have moved
+// alike all along, and spreads to the image up to colour's edges.
+
+/// Comparison of the current frame with one some frames back.
+struct ColourReference {
+  int gap = 0;                      ///< frames back
+  CameraTurn motion;                ///< the camera's, and whether it only turned
+  std::vector<int> points;          ///< indices into ColourMotionTrace::points, those seen in both
+  std::vector<cv::Point2f> shifts;  ///< px, small image, of each of `points` since then beside its rotation
+  std::vector<cv::Point2f> residuals;  ///< px, small image: what the camera's motion leaves unexplained
+  std::vector<float> sigmas;           ///< the same by its own noise, standard deviations
+  double sigma = 0.0;                  ///< px, small image: noise of the residuals of what stands still
+};
+
+/// A followed point and what is held of it.
+struct ColourPoint {
+  cv::Point2f at;         ///< px, full size
+  int age = 0;            ///< frames it has been followed
+  float evidence = 0.0F;  ///< of moving: its own, accumulated
+  float shared = 0.0F;    ///< after listening to neighbours that move alike
+};
+
+/// What colour-only motion detection saw, stage by stage.
+struct ColourMotionTrace {
+  std::vector<ColourPoint> points;
+  std::vector<ColourReference> references;
+  cv::Mat evidence;  ///< CV_32FC1, a quarter of the frame's side: evidence spread over the image
+  cv::Mat mask;      ///< CV_8UC1, full size: 255 = moving; empty when there is no mask
+  std::vector<MotionRegion> regions;
+  double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
+  std::string note;         ///< why there is no mask, or why it is empty; empty when all is well
+};
+
+/// Sees frames one after the other. A value: a copy goes on as the original would, with the same bytes.
+class ColourMotionDetector {
+ public:
+  /// @param camera of the sequence; its intrinsics need not be exact
+  ColourMotionDetector(const Camera& camera, const ColourMotionConfig& config);
+
+  /// The next frame.
+  /// @param image CV_8UC3 or CV_8UC1. A frame of another size than the last begins anew.
+  /// @throws InputError for another type, or none
+  [[nodiscard]] ColourMotionTrace next(const cv::Mat& image);
+
+ private:
+  void judge(ColourReference& reference, const std::vector<cv::Point2f>& now);
+  void gather_evidence(const std::vector<ColourReference>& references);
+
+  Camera camera_;  ///< as given; scaled to the frames' size
+  Camera small_;   ///< of the small image
+  ColourMotionConfig config_;
+  PointTracks tracks_;
+  cv::Size size_;
+};
+
+}  // namespace stillpoint

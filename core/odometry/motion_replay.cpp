@@ -1,0 +1,29 @@
+#include "core/odometry/motion_replay.hpp"
+
+namespace stillpoint {
+
+MotionReplay::MotionReplay(const Camera& camera, const Config& config) : odometry_(camera, config) {
+  odometry_.last_ = Odometry::Last{};  // without points: none is to be purged
+}
+
+void MotionReplay::take(const Frame& frame, const FrameRecord& record, const cv::Mat& log_odds) {
+  FrameResult result;
+  result.record.index = record.index;
+  result.record.estimated = record.estimated;
+  result.record.world_from_camera = record.world_from_camera;
+  result.depth_motion.log_odds = log_odds;
+  odometry_.remember_view(frame, result);
+}
+
+FrameResult MotionReplay::repeat(const Frame& frame, const FrameRecord& record) {
+  FrameResult result;
+  result.record.index = record.index;
+  result.record.estimated = record.estimated;
+  result.record.world_from_camera = record.world_from_camera;
+  if (record.prior_pose) result.mask = odometry_.remembered_mask(frame, *record.prior_pose, result.record);
+  if (record.motion_pose) odometry_.detect_by_pose(frame, *record.motion_pose, result);
+  odometry_.remember_view(frame, result);
+  return result;
+}
+
+}  // namespace stillpoint

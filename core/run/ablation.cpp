@@ -1,0 +1,189 @@
+#include "core/run/ablation.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr const char* kWhole = "whole method";
+constexpr const char* kNothing = "–";
+
+std::string name_of(const AblationRow& row) {
+  return row.without.empty() ? kWhole : "without " + row.without;
+}
+
+std::string number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string(kNothing);
+}
+
+std::string signed_percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:+.1f} %", 100.0 * *share) : std::string(kNothing);
+}
+
+nlohmann::ordered_json or_null(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// A mean of what is known.
+std::optional<double> mean_iou(const AblationRow& row) {
+  double sum = 0.0;
+  int count = 0;
+  for (const AblationCell& cell : row.cells)
+    if (cell.mask_iou) sum += *cell.mask_iou, ++count;
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+}  // namespace
+
+const std::vector<Ingredient>& ingredients() {
+  static const std::vector<Ingredient> all = {
+      {"depth_evidence", "judging motion by depth", {"depth_motion.use_depth=0"}},
+      {"brightness_evidence", "judging motion by brightness", {"depth_motion.use_brightness=0"}},
+      {"memory", "carrying evidence from frame to frame", {"depth_motion.memory=0"}},
+      {"firm_memory", "letting go but slowly of what firmly moves", {"depth_motion.release=1"}},
+      {"patch_shifts", "slow movers by the shifts of patches", {"depth_motion.patch_share=0"}},
+      {"slow_reference", "the farthest of the three references", {"depth_motion.slow_reference=10"}},
+      {"neighbours", "patches of one surface agreeing", {"depth_motion.smoothing=0"}},
+      {"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=0"}},
+      {"purge", "taking map points on movers out of the map", {"map.purge_moving=0"}},
+      {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},
+      {"depth_residual", "depth beside pixels in the pose", {"tracking.depth_weight=0"}},
+      {"rolling_shutter", "undoing the rolling shutter", {"tracking.correct_rolling_shutter=0"}},
+      {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=0"}},
+  };
+  return all;
+}
+
+const Ingredient& ingredient_by_name(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Ingredient& one : ingredients()) {
+    if (one.name == name) return one;
+    names.push_back(one.name);
+  }
+  throw InputError(fmt::format("there is no ingredient '{}'; there are: {}", name, fmt::join(names, ", ")));
+}
+
+Config ablated(Config config, const Ingredient* without) {
+  config.run.method = "stillpoint";
+  if (without)
+    for (const std::string& assignment : without->assignments) set_parameter(config, assignment);
+  return config;
+}
+
+AblationCell ablation_cell(const RunReport& report) {
+  AblationCell cell;
+  if (report.evaluation && report.evaluation->rpe_time.translation_m.count > 0)
+    cell.rpe_m = report.evaluation->rpe_time.translation_m.rmse;
+  if (report.scores.known) cell.mask_iou = report.scores.mask.iou();
+  cell.coverage = report.coverage;
+  cell.median_ms = report.speed.median_ms;
+  cell.hash = report.hash;
+  return cell;
+}
+
+AblationChange change_of(const AblationRow& row, const AblationRow& whole) {
+  AblationChange change;
+  double logs = 0.0, iou = 0.0;
+  int errors = 0, masks = 0;
+  const std::size_t count = std::min(row.cells.size(), whole.cells.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const AblationCell &now = row.cells[i], &then = whole.cells[i];
+    change.median_ms += now.median_ms / static_cast<double>(count);
+    change.coverage = std::min(change.coverage, now.coverage);
+    if (now.hash == then.hash) ++change.unchanged;
+    if (now.mask_iou && then.mask_iou) iou += *now.mask_iou - *then.mask_iou, ++masks;
+    if (!now.rpe_m || !then.rpe_m || *now.rpe_m <= 0 || *then.rpe_m <= 0) continue;
+    const double ratio = *now.rpe_m / *then.rpe_m;
+    logs += std::log(ratio);
+    ++errors;
+    if (!change.worst || ratio - 1.0 > *change.worst) change.worst = ratio - 1.0, change.worst_sequence = i;
+  }
+  if (errors > 0) change.mean = std::exp(logs / errors) - 1.0;
+  if (masks > 0) change.mask_iou = iou / masks;
+  return change;
+}
+
+Table ablation_summary(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
+  Table table;
+  table.header = {"stillpoint",     "RPE, mean change", "worst change",      "on", "mask IoU", "IoU change",
+                  "least coverage", "median ms",        "nothing changed on"};
+  for (const AblationRow& row : rows) {
+    const AblationChange change = change_of(row, rows.front());
+    const bool whole = row.without.empty();
+    table.rows.push_back({name_of(row), whole ? kNothing : signed_percent(change.mean),
+                          whole ? kNothing : signed_percent(change.worst),
+                          whole || !change.worst ? kNothing : sequences[change.worst_sequence],
+                          number(mean_iou(row), 3),
+                          whole || !change.mask_iou ? kNothing : fmt::format("{:+.3f}", *change.mask_iou),
+                          fmt::format("{:.1f} %", std::floor(1000.0 * change.coverage) / 10.0),
+                          fmt::format("{:.1f}", change.median_ms),
+                          whole ? kNothing : fmt::format("{} of {}", change.unchanged, row.cells.size())});
+  }
+  return table;
+}
+
+Table ablation_errors(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
+  Table table;
+  table.header = {"RPE 1 s, RMSE [m]"};
+  for (const AblationRow& row : rows) table.header.push_back(name_of(row));
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    std::vector<std::string> cells = {sequences[i]};
+    for (const AblationRow& row : rows)
+      cells.push_back(i < row.cells.size() ? number(row.cells[i].rpe_m, 4) : kNothing);
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
+  Table table;
+  table.header = {"sequence", "without", "rpe_1s_m", "mask_iou", "coverage", "median_ms", "run_hash"};
+  for (const AblationRow& row : rows)
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const AblationCell& cell = row.cells[i];
+      table.rows.push_back({sequences[i], row.without, cell.rpe_m ? fmt::format("{:.6f}", *cell.rpe_m) : "",
+                            cell.mask_iou ? fmt::format("{:.4f}", *cell.mask_iou) : "",
+                            fmt::format("{:.4f}", cell.coverage), fmt::format("{:.2f}", cell.median_ms),
+                            cell.hash});
+    }
+  return table;
+}
+
+nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
+                                     const std::vector<std::string>& sequences) {
+  nlohmann::ordered_json variants = nlohmann::ordered_json::array();
+  for (const AblationRow& row : rows) {
+    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const AblationCell& cell = row.cells[i];
+      runs.push_back({{"sequence", sequences[i]},
+                      {"rpe_1s_m", or_null(cell.rpe_m)},
+                      {"mask_iou", or_null(cell.mask_iou)},
+                      {"coverage", cell.coverage},
+                      {"median_ms", cell.median_ms},
+                      {"run_hash", cell.hash}});
+    }
+    const AblationChange change = change_of(row, rows.front());
+    nlohmann::ordered_json variant;
+    variant["without"] =
+        row.without.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(row.without);
+    if (!row.without.empty()) {
+      variant["set"] = ingredient_by_name(row.without).assignments;
+      variant["rpe_mean_change"] = or_null(change.mean);
+      variant["mask_iou_change"] = or_null(change.mask_iou);
+    }
+    variant["runs"] = runs;
+    variants.push_back(variant);
+  }
+  return {{"method", "stillpoint"}, {"variants", variants}};
+}
+
+}  // namespace stillpoint

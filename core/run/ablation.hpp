@@ -1,0 +1,79 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/evaluation/tables.hpp"
+#include "core/run/run_report.hpp"
+
+namespace stillpoint {
+
+// What each ingredient of method `stillpoint` is worth: the whole method, and the method with one ingredient
+// left out at a time, over the same sequences.
+
+/// Something the method can do without, and how it is told to.
+struct Ingredient {
+  std::string name;                      ///< for the command line and tables: "memory"
+  std::string help;                      ///< what it does, a few words
+  std::vector<std::string> assignments;  ///< `section.name=value`, as set_parameter takes them
+};
+
+/// All of them, in the order of tables.
+[[nodiscard]] const std::vector<Ingredient>& ingredients();
+
+/// The ingredient of that name.
+/// @throws InputError naming those there are
+[[nodiscard]] const Ingredient& ingredient_by_name(const std::string& name);
+
+/// Method `stillpoint` with `config`'s constants, without one ingredient or, where `without` is null, whole.
+[[nodiscard]] Config ablated(Config config, const Ingredient* without);
+
+/// What one variant reached on one sequence.
+struct AblationCell {
+  std::optional<double> rpe_m;     ///< translational RPE over 1 s, RMSE, m
+  std::optional<double> mask_iou;  ///< 0 to 1; nothing where no mask is known or nothing moves
+  double coverage = 0.0;           ///< share of frames with a pose
+  double median_ms = 0.0;          ///< tracking time a frame
+  std::string hash;  ///< of the run: equal to the whole method's where leaving out changed nothing
+};
+
+[[nodiscard]] AblationCell ablation_cell(const RunReport& report);
+
+/// All that one variant reached, a cell a sequence, in their order.
+struct AblationRow {
+  std::string without;  ///< an ingredient's name; empty = the whole method
+  std::vector<AblationCell> cells;
+};
+
+/// What leaving something out did to the error over all sequences.
+struct AblationChange {
+  std::optional<double> mean;   ///< geometric mean of RPE over the whole method's, less 1; nothing = no pair
+  std::optional<double> worst;  ///< the largest of these changes …
+  std::size_t worst_sequence = 0;  ///< … and where
+  std::optional<double> mask_iou;  ///< mean difference of IoU
+  double median_ms = 0.0;          ///< mean over the sequences of the median time a frame
+  double coverage = 1.0;           ///< least over the sequences
+  int unchanged = 0;               ///< sequences on which nothing at all changed
+};
+
+/// @param row,whole with as many cells as one another; what one of them lacks is not compared
+[[nodiscard]] AblationChange change_of(const AblationRow& row, const AblationRow& whole);
+
+/// A row a variant, the whole method first: what changed over all sequences.
+[[nodiscard]] Table ablation_summary(const std::vector<AblationRow>& rows,
+                                     const std::vector<std::string>& sequences);
+
+/// A row a sequence: RPE over 1 s of each variant.
+[[nodiscard]] Table ablation_errors(const std::vector<AblationRow>& rows,
+                                    const std::vector<std::string>& sequences);
+
+/// A row a run, for programs.
+[[nodiscard]] Table ablation_list(const std::vector<AblationRow>& rows,
+                                  const std::vector<std::string>& sequences);
+[[nodiscard]] nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
+                                                   const std::vector<std::string>& sequences);
+
+}  // namespace stillpoint

@@ -1,0 +1,83 @@
+#include "core/run/ablation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+
+namespace stillpoint {
+namespace {
+
+AblationCell cell(std::optional<double> rpe_m, std::optional<double> iou, double ms, std::string hash) {
+  return {rpe_m, iou, 1.0, ms, std::move(hash)};
+}
+
+TEST(Ablation, EveryIngredientChangesTheConfigAndNothingElse) {
+  const Config whole = ablated({}, nullptr);
+  EXPECT_EQ(whole.run.method, "stillpoint");
+  std::set<std::string> names;
+  for (const Ingredient& one : ingredients()) {
+    const Config without = ablated({}, &one);
+    EXPECT_FALSE(without == whole) << one.name;
+    EXPECT_EQ(without.run, whole.run) << one.name;
+    EXPECT_FALSE(one.help.empty());
+    EXPECT_TRUE(names.insert(one.name).second) << one.name;
+    // Its values are in range, and another config's constants stay.
+    Config other;
+    other.features.count = 321;
+    EXPECT_EQ(ablated(other, &one).features.count, 321);
+  }
+  EXPECT_THROW((void)ingredient_by_name("luck"), InputError);
+  EXPECT_EQ(ingredient_by_name("memory").name, "memory");
+}
+
+TEST(Ablation, ChangesAreAgainstTheWholeMethod) {
+  const AblationRow whole{
+      "", {cell(0.010, 0.8, 10, "a"), cell(0.020, std::nullopt, 12, "b"), cell({}, 0.5, 14, "c")}};
+  const AblationRow without{
+      "memory", {cell(0.020, 0.6, 8, "x"), cell(0.010, std::nullopt, 8, "b"), cell(0.5, 0.4, 8, "z")}};
+  const AblationChange change = change_of(without, whole);
+  // Twice and half: the geometric mean is no change at all.
+  ASSERT_TRUE(change.mean && change.worst && change.mask_iou);
+  EXPECT_NEAR(*change.mean, 0.0, 1e-12);
+  EXPECT_NEAR(*change.worst, 1.0, 1e-12);
+  EXPECT_EQ(change.worst_sequence, 0U);
+  EXPECT_NEAR(*change.mask_iou, -0.15, 1e-12);
+  EXPECT_NEAR(change.median_ms, 8.0, 1e-12);
+  EXPECT_EQ(change.unchanged, 1);
+}
+
+TEST(Ablation, NothingToCompareIsSaidSo) {
+  const AblationRow whole{"", {cell({}, {}, 1, "a")}}, without{"memory", {cell({}, {}, 1, "b")}};
+  const AblationChange change = change_of(without, whole);
+  EXPECT_FALSE(change.mean || change.worst || change.mask_iou);
+  const Table table = ablation_summary({whole, without}, {"room"});
+  EXPECT_THAT(table.rows.at(1),
+              ::testing::ElementsAre("without memory", "–", "–", "–", "–", "–", "100.0 %", "1.0", "0 of 1"));
+  EXPECT_TRUE(ablation_summary({{"", {}}, {"memory", {}}}, {}).rows.size() == 2);
+}
+
+TEST(Ablation, TablesHoldEveryRun) {
+  const std::vector<AblationRow> rows = {{"", {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
+                                         {"memory", {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+  const std::vector<std::string> sequences = {"one", "two"};
+  const Table errors = ablation_errors(rows, sequences);
+  EXPECT_THAT(errors.header, ::testing::ElementsAre("RPE 1 s, RMSE [m]", "whole method", "without memory"));
+  EXPECT_THAT(errors.rows.at(1), ::testing::ElementsAre("two", "0.0200", "0.0400"));
+  const Table list = ablation_list(rows, sequences);
+  ASSERT_EQ(list.rows.size(), 4U);
+  for (const auto& row : list.rows) EXPECT_EQ(row.size(), list.header.size());
+  EXPECT_THAT(list.rows.at(2),
+              ::testing::ElementsAre("one", "memory", "0.030000", "0.6000", "1.0000", "8.00", "x"));
+  const auto json = ablation_json(rows, sequences);
+  EXPECT_TRUE(json["variants"][0]["without"].is_null());
+  EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_1s_m"], 0.04);
+  EXPECT_TRUE(json["variants"][1]["runs"][1]["mask_iou"].is_null());
+  // (3 * 2)^(1/2) - 1
+  EXPECT_NEAR(json["variants"][1]["rpe_mean_change"].get<double>(), std::sqrt(6.0) - 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace stillpoint

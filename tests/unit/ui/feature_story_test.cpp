@@ -1,0 +1,177 @@
+#include "ui/session/feature_story.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/ui/inspect_scene.hpp"
+#include "ui/session/feature_trail.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+FeatureStory explain(const InspectScene& scene, int index, const std::vector<SavedPoint>& points = {}) {
+  SessionView session = scene.session();
+  session.map_points = points;
+  return explain_feature(scene.view, scene.run, session, index);
+}
+
+TEST(FeatureStory, TellsMaskRoundRegionAndMarginOfARemovedFeature) {
+  InspectScene scene;
+  // Of the second square, which round 2 alone found: 3 px inside the cleaned mask's edge.
+  const FeatureStory story = explain(scene, scene.add_feature({110, 85}, FeatureFate::removed));
+  EXPECT_THAT(story.verdict, HasSubstr("Removed"));
+  EXPECT_EQ(story.since_round, 1);
+  EXPECT_EQ(story.region, 2);
+  ASSERT_EQ(story.because.size(), 1U);
+  EXPECT_THAT(story.because[0], HasSubstr("forward mask alone"));
+  EXPECT_THAT(story.because[0], HasSubstr("region 2, 256 px"));
+  EXPECT_THAT(story.because[0], HasSubstr("since round 2 of 2"));
+  ASSERT_EQ(story.margins.size(), 2U);
+  EXPECT_EQ(story.margins[0].value, 50.0);
+  EXPECT_EQ(story.margins[0].limit, 20.0);
+  EXPECT_EQ(story.margins[0].margin(), 30.0);
+  EXPECT_EQ(story.mask_edge_px, 4.0);
+
+  const FeatureStory first = explain(scene, scene.add_feature({50, 40}, FeatureFate::removed));
+  EXPECT_EQ(first.since_round, 0);
+  EXPECT_EQ(first.region, 1);
+}
+
+TEST(FeatureStory, SaysWhenDilationAloneReachedIt) {
+  InspectScene scene;
+  const FeatureStory story = explain(scene, scene.add_feature({38, 40}, FeatureFate::removed));
+  ASSERT_EQ(story.because.size(), 2U);
+  EXPECT_THAT(story.because[1], HasSubstr("2 px away"));
+  EXPECT_LT(story.margins[0].margin(), 0.0);
+}
+
+TEST(FeatureStory, OfAKeptFeatureTheMaskIsOnlyADistance) {
+  InspectScene scene;
+  const FeatureStory story = explain(scene, scene.add_feature({32, 40}, FeatureFate::unmatched));
+  EXPECT_THAT(story.verdict, HasSubstr("no map point"));
+  EXPECT_TRUE(story.because.empty());
+  EXPECT_FALSE(story.since_round);
+  EXPECT_EQ(story.mask_edge_px, -5.0);
+  ASSERT_TRUE(story.in_world);
+  EXPECT_NEAR(story.in_world->x(), (32 - 79.5) / 100.0 * 2.0 + 0.5, 1e-5);
+}
+
+TEST(FeatureStory, AStaticFeatureIsWhereItsMapPointIs) {
+  InspectScene scene;
+  // A point straight before frame 5's camera, 2 m away; it is seen 3 px beside.
+  const int index = scene.add_feature({82.5F, 59.5F}, FeatureFate::outlier, 7, 3.0F);
+  const FeatureStory story = explain(scene, index, {{3, {}, 1}, {7, {0.5, 0.0, 2.0}, 4}});
+  EXPECT_EQ(story.observations, 4);
+  ASSERT_TRUE(story.if_static);
+  EXPECT_NEAR(*story.own_motion_px(), 3.0, 1e-6);
+  EXPECT_THAT(story.verdict, HasSubstr("map point 7"));
+  EXPECT_THAT(story.static_by, HasSubstr("map point"));
+}
+
+TEST(FeatureStory, AMovingFeatureIsHeldAgainstTheCamerasMotion) {
+  InspectScene scene;
+  // The track from (45, 40) to (52, 40): the wall there would have come to (40, 40).
+  const FeatureStory story = explain(scene, scene.add_feature({52, 40}, FeatureFate::removed));
+  ASSERT_TRUE(story.if_static);
+  EXPECT_NEAR(story.if_static->x(), 40.0, 1e-3);
+  EXPECT_NEAR(*story.own_motion_px(), 12.0, 1e-3);
+  EXPECT_THAT(story.static_by, HasSubstr("depth"));
+}
+
+TEST(FeatureStory, FollowsMapPointsThenFlowThenNeighbours) {
+  InspectScene scene;
+  const int matched = scene.add_feature({100, 60}, FeatureFate::inlier, 9, 0.5F);
+  const int moving = scene.add_feature({52, 40}, FeatureFate::removed);
+  const auto past = [](int frame, std::vector<FeatureRecord> features) {
+    auto record = std::make_shared<FrameRecord>();
+    record->index = frame;
+    record->features = std::move(features);
+    return record;
+  };
+  const FeatureRecord plain{{}, 2.0F, 0.0F, kNone, 0, FeatureFate::unmatched};
+  const auto at = [&](float x, float y, int map_point = kNone) {
+    FeatureRecord feature = plain;
+    feature.pixel = {x, y};
+    feature.map_point = map_point;
+    return feature;
+  };
+  FeatureRecord far = at(45.5F, 40);
+  far.depth = 3.0F;  // nearer by place, but not by depth
+  scene.view.history = {past(4, {at(20, 20, 9), far, at(46, 40)}), past(3, {at(39, 41)}),
+                        past(2, {at(90, 90)})};
+  const std::vector<TrailPoint> still = trail_of(scene.view, matched);
+  ASSERT_EQ(still.size(), 2U);
+  EXPECT_EQ(still[1].link, TrailLink::kMapPoint);
+  EXPECT_EQ(still[1].feature.pixel.x, 20.0F);
+  const std::vector<TrailPoint> moved = trail_of(scene.view, moving);
+  ASSERT_EQ(moved.size(), 3U);
+  EXPECT_EQ(moved[1].link, TrailLink::kFlow);
+  EXPECT_EQ(moved[1].feature.pixel.x, 46.0F);
+  EXPECT_EQ(moved[2].link, TrailLink::kNearby);
+  EXPECT_EQ(moved[2].frame, 3);
+}
+
+TEST(FeatureStory, AChoiceIsFoundAgainInTheNextFrame) {
+  InspectScene scene;
+  scene.add_feature({10, 10}, FeatureFate::inlier, 4);
+  scene.add_feature({52, 40}, FeatureFate::removed);
+  FeatureSelection selected{5, 1, scene.record().features[1]};
+  EXPECT_EQ(find_selected(scene.view, selected), 1);
+  selected.feature.map_point = 4;
+  selected.frame = 2;
+  EXPECT_EQ(find_selected(scene.view, selected), 0);
+  selected = {4, 0, {}};
+  selected.feature.pixel = {45, 40};  // where the track begins that ends at the second
+  EXPECT_EQ(find_selected(scene.view, selected), 1);
+  selected = {0, 0, {}};
+  selected.feature.pixel = {52, 40};
+  EXPECT_EQ(find_selected(scene.view, selected), std::nullopt);
+  EXPECT_EQ(find_selected(scene.view, {5, 99, {}}), std::nullopt);
+}
+
+TEST(FeatureStory, OfStillpointsMaskThePatchDecides) {
+  InspectScene scene;
+  scene.config.run.method = "stillpoint";
+  const int index = scene.add_feature({52, 40}, FeatureFate::removed);
+  DepthMotionTrace& trace = scene.view.depth_motion;
+  trace.log_odds = cv::Mat::zeros(30, 40, CV_32FC1);
+  trace.labels = cv::Mat::zeros(30, 40, CV_32SC1);
+  trace.segments = {{{}, 2.0F, 30, 1.5F, 1.25F, true}};
+  ReferenceEvidence evidence;
+  evidence.depth_residual = cv::Mat(30, 40, CV_32FC1, cv::Scalar(9.0));
+  evidence.intensity_residual = cv::Mat(30, 40, CV_32FC1, cv::Scalar(std::nanf("")));
+  trace.references = {evidence};
+  const FeatureStory story = explain(scene, index);
+  ASSERT_EQ(story.margins.size(), 2U);
+  EXPECT_EQ(story.margins[0].value, 1.25);
+  EXPECT_EQ(story.margins[0].limit, scene.config.depth_motion.moving_log_odds);
+  EXPECT_EQ(story.margins[1].value, 9.0);
+  ASSERT_EQ(story.because.size(), 1U);
+  EXPECT_THAT(story.because[0], HasSubstr("30 small pixels at 2.00 m"));
+}
+
+TEST(FeatureStory, TheEdgeOfAMaskIsMeasuredFromBothSides) {
+  cv::Mat mask = cv::Mat::zeros(50, 50, CV_8UC1);
+  mask(cv::Rect(10, 10, 20, 20)).setTo(255);
+  EXPECT_EQ(distance_to_edge(mask, {19, 19}), 10.0);
+  EXPECT_EQ(distance_to_edge(mask, {6, 13}), -4.0);
+  EXPECT_FALSE(distance_to_edge(mask, {19, 19}, 5));
+  EXPECT_FALSE(distance_to_edge(mask, {-5, 19}));
+  EXPECT_FALSE(distance_to_edge({}, {1, 1}));
+}
+
+TEST(FeatureStory, WithoutAChoiceTheRemovedOneInTheMiddleIsTold) {
+  InspectScene scene;
+  EXPECT_FALSE(telling_feature(scene.record(), scene.view.frame.gray.size()));
+  scene.add_feature({80, 60}, FeatureFate::inlier, 1, 0.4F);
+  scene.add_feature({10, 60}, FeatureFate::outlier, 2, 7.0F);
+  EXPECT_EQ(telling_feature(scene.record(), scene.view.frame.gray.size()), 1);
+  scene.add_feature({20, 20}, FeatureFate::removed);
+  scene.add_feature({60, 60}, FeatureFate::removed);
+  EXPECT_EQ(telling_feature(scene.record(), scene.view.frame.gray.size()), 3);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

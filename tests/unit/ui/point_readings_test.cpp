@@ -1,0 +1,100 @@
+#include "ui/session/point_readings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/ui/inspect_scene.hpp"
+#include "ui/session/pins.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+Reading reading(const std::vector<ReadingGroup>& groups, const std::string& group, const std::string& name) {
+  for (const ReadingGroup& one : groups)
+    for (const Reading& reading : one.readings)
+      if (one.title == group && reading.name == name) return reading;
+  throw std::logic_error("no reading " + name);
+}
+
+std::vector<ReadingGroup> read(const InspectScene& scene, double x, double y) {
+  const SessionView session = scene.session();
+  return read_point(session, pair_geometry(*session.current, *session.run, session.camera, session.config),
+                    {x, y});
+}
+
+TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
+  InspectScene scene;
+  scene.add_feature({113, 84}, FeatureFate::removed);
+  const auto groups = read(scene, 110, 84);
+  EXPECT_EQ(reading(groups, "Place", "Depth").value, "2.000 m");
+  EXPECT_EQ(reading(groups, "Place", "… in frame 4").value, "115.0, 84.0 by depth");
+  EXPECT_EQ(reading(groups, "Place", "In the camera").value, "0.610, 0.490, 2.000 m");
+  EXPECT_EQ(reading(groups, "Place", "In the world").value, "1.110, 0.490, 2.000 m");
+  // 40 + (110 + 25) % 100, and the same point of the wall 5 px further right in frame 4.
+  EXPECT_EQ(reading(groups, "Brightness", "Frame t").value, "75 of 255");
+  EXPECT_EQ(reading(groups, "Brightness", "Frame 4, same scene point").value, "75 of 255");
+  const Reading difference = reading(groups, "Paper, round 2 of 2", "Forward difference");
+  EXPECT_EQ(difference.value, "50 > 20");
+  EXPECT_TRUE(difference.speaks);
+  EXPECT_EQ(reading(groups, "Paper, round 1 of 2", "Forward difference").value, "0 ≤ 20");
+  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Forward mask, raw → clean").value, "yes → yes");
+  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Union").value, "region 2, 256 px");
+  EXPECT_EQ(reading(groups, "Paper, round 1 of 2", "Union").value, "no");
+  EXPECT_EQ(reading(groups, "Result", "Removed").value, "yes");
+  EXPECT_EQ(reading(groups, "Result", "Feature near it").value, "3.0 px off, removed");
+}
+
+TEST(PointReadings, SayWhereALayerHasNothing) {
+  InspectScene scene;
+  scene.view.frame.depth.setTo(0.0);
+  scene.view.motion.rounds[1].forward.valid.setTo(0);
+  const auto groups = read(scene, 20, 20);
+  EXPECT_EQ(reading(groups, "Place", "Depth").value, "not measured");
+  EXPECT_EQ(reading(groups, "Place", "In the world").value, "–");
+  EXPECT_THAT(reading(groups, "Place", "… in frame 4").value, HasSubstr("by homography"));
+  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Forward difference").value, "no data");
+}
+
+TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
+  InspectScene scene;
+  DepthMotionTrace& trace = scene.view.depth_motion;
+  trace.log_odds = trace.prior = cv::Mat(30, 40, CV_32FC1, cv::Scalar(0.5));
+  trace.labels = cv::Mat(30, 40, CV_32SC1, cv::Scalar(-1));
+  trace.labels.at<int>(5, 5) = 0;
+  trace.segments = {{{}, 2.0F, 12, 0.1F, 0.9F, true}};
+  trace.small_mask = cv::Mat::zeros(30, 40, CV_8UC1);
+  trace.mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  const auto one = read(scene, 21.5, 21.5), other = read(scene, 158, 119);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t g = 0; g < one.size(); ++g) {
+    EXPECT_EQ(one[g].title, other[g].title);
+    ASSERT_EQ(one[g].readings.size(), other[g].readings.size()) << one[g].title;
+    for (std::size_t r = 0; r < one[g].readings.size(); ++r)
+      EXPECT_EQ(one[g].readings[r].name, other[g].readings[r].name);
+  }
+  EXPECT_EQ(reading(one, "Stillpoint", "Patch").value, "0, 12 px, moves");
+  EXPECT_EQ(reading(other, "Stillpoint", "Patch").value, "–");
+  EXPECT_EQ(reading(one, "Stillpoint", "Memory").value, "+0.50 log-odds");
+}
+
+TEST(Pins, AreSetTakenOutAndNamed) {
+  std::vector<Pin> pins = with_pin_toggled({}, 3, 10, 20);
+  ASSERT_EQ(pins.size(), 1U);
+  EXPECT_EQ(pins[0], (Pin{3, 10.0, 20.0, "A"}));
+  pins = with_pin_toggled(pins, 3, 30, 20);
+  EXPECT_EQ(pins[1].name, "B");
+  pins = with_pin_toggled(pins, 9, 10, 20);  // the same pixel again, in whatever frame
+  ASSERT_EQ(pins.size(), 1U);
+  EXPECT_EQ(pins[0].name, "B");
+  EXPECT_EQ(free_pin_name(pins), "A");
+  pins.clear();
+  for (int i = 0; i < 26; ++i) pins = with_pin_toggled(pins, 0, 5 * i, 0);
+  EXPECT_EQ(free_pin_name(pins), "A1");
+  EXPECT_EQ(pin_near(pins, 11.0, 0.0, 2.0), 2U);
+  EXPECT_FALSE(pin_near(pins, 12.5, 0.0, 2.0));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

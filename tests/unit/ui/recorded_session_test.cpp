@@ -1,0 +1,122 @@
+// A finished run in a session: what its records hold at once, and the rest bit for bit as the run had it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/run/open_run.hpp"
+#include "core/run/run_report.hpp"
+#include "tests/cli/small_sequence.hpp"
+#include "ui/session/session.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFrames = 9;
+
+class RecordedSession : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    config_.run.method = GetParam();
+    config_.features.count = 400;
+    source_ = open_sequence(sequence_.path());
+  }
+
+  /// Runs the first `frames` frames, keeps their records in a folder, and opens that.
+  [[nodiscard]] OpenedRun recorded(int frames) const {
+    const std::string folder = out_.path("run");
+    std::filesystem::create_directories(folder);
+    RecordsWriter writer(folder, origin_of(*source_, sequence_.path(), {}), config_);
+    RunOptions options;
+    options.count = frames;
+    options.on_frame = [&](const FrameResult& frame) { writer.add(frame); };
+    const RunResult run = run_sequence(*source_, config_, options);
+    writer.finish(run, source_->ground_truth());
+    return open_run(folder);
+  }
+
+  [[nodiscard]] static SessionOptions options_of(const OpenedRun& run) {
+    SessionOptions options;
+    options.recorded = run.recorded;
+    options.no_images = run.no_images;
+    return options;
+  }
+
+  SmallSequence sequence_{kFrames};
+  TemporaryFolder out_{"out"};
+  Config config_;
+  std::shared_ptr<const FrameSource> source_;
+};
+
+TEST_P(RecordedSession, ShowsEveryFrameAtOnceAsItWas) {
+  const OpenedRun run = recorded(kFrames);
+  Session live(source_, config_);
+  live.go_to(kFrames - 1);
+  Session session(run.source, config_, options_of(run));
+  EXPECT_EQ(session.view()->processed, kFrames);
+  for (const int index : {8, 3, 0, 5}) {
+    session.go_to(index);
+    live.go_to(index);
+    const FrameView &opened = *session.view()->current, &ran = *live.view()->current;
+    ASSERT_NE(opened.record, nullptr);
+    EXPECT_EQ(run_hash({*opened.record}), run_hash({*ran.record}));
+    EXPECT_EQ(opened.record->features.size(), ran.record->features.size());
+    ASSERT_EQ(opened.mask.size(), ran.mask.size()) << index;
+    if (!ran.mask.empty()) {
+      EXPECT_EQ(cv::norm(opened.mask, ran.mask, cv::NORM_INF), 0.0) << index;
+    }
+  }
+  const auto view = session.view(), expected = live.view();
+  EXPECT_EQ(view->keyframes.size(), expected->keyframes.size());
+  EXPECT_EQ(view->map_points.size(), expected->map_points.size());
+  ASSERT_EQ(view->run->trajectory.size(), expected->run->trajectory.size());
+  EXPECT_EQ(view->run->evaluation.ate.translation_m.rmse, expected->run->evaluation.ate.translation_m.rmse);
+}
+
+TEST_P(RecordedSession, CaughtUpHasTheStagesToo) {
+  const OpenedRun run = recorded(kFrames);
+  SessionOptions options = options_of(run);
+  options.catch_up = true;
+  Session live(source_, config_), session(run.source, config_, options);
+  live.go_to(6);
+  session.go_to(6);
+  const cv::Mat &expected = live.view()->current->depth_motion.log_odds,
+                &again = session.view()->current->depth_motion.log_odds;
+  ASSERT_EQ(again.empty(), expected.empty());
+  if (!expected.empty()) {
+    EXPECT_EQ(cv::norm(again, expected, cv::NORM_INF), 0.0);
+  }
+}
+
+TEST_P(RecordedSession, ARunThatWasStoppedGoesOnAsIfItHadNotBeen) {
+  const OpenedRun run = recorded(4);
+  Session session(run.source, config_, options_of(run));
+  EXPECT_EQ(session.view()->processed, 4);
+  session.go_to(kFrames - 1);
+  ASSERT_EQ(session.view()->processed, kFrames);
+  std::vector<FrameRecord> records;
+  for (int i = 0; i < kFrames; ++i) records.push_back(session.record(i));
+  EXPECT_EQ(run_hash(records), run_hash(run_sequence(*source_, config_).records));
+}
+
+TEST_P(RecordedSession, WithoutImagesNothingIsLostOrTried) {
+  OpenedRun run = recorded(kFrames);
+  std::filesystem::remove_all(sequence_.path());
+  run = open_run(out_.path("run"));
+  ASSERT_NE(run.no_images, "");
+  SessionOptions options = options_of(run);
+  options.catch_up = true;
+  Session session(run.source, config_, options);
+  session.go_to(kFrames - 1);
+  const auto view = session.view();
+  EXPECT_EQ(view->message, run.no_images);
+  EXPECT_EQ(view->processed, kFrames);
+  EXPECT_FALSE(view->current->frame.readable());
+  EXPECT_FALSE(view->current->record->features.empty());
+  EXPECT_GT(view->run->evaluation.ate.translation_m.count, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RecordedSession, testing::Values("none", "paper", "stillpoint"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+}  // namespace
+}  // namespace stillpoint

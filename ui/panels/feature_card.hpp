@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "ui/panels/panel_kit.hpp"
+#include "ui/session/feature_story.hpp"
+#include "ui/view/image_widget.hpp"
+
+namespace stillpoint {
+
+// A feature's story as panels draw it.
+
+/// "removed", "inlier", …, and the colour and sign it has in every panel.
+[[nodiscard]] LegendEntry fate_look(FeatureFate fate, ThemeName theme);
+
+/// Its trail over the last frames, and an arrow from where it would be had it stood still, on frame t's
+/// picture.
+void draw_story_marks(const UiFrame& frame, const ImageResponse& response, const FeatureStory& story);
+
+/// The story in a few lines beside the mouse.
+void draw_story_tooltip(const UiFrame& frame, const FeatureStory& story);
+
+/// A figure against its limit, as a bar: the limit stands in the middle. At ImGui's cursor.
+void draw_margin(const UiFrame& frame, const Margin& margin);
+
+}  // namespace stillpoint

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/all_panels.hpp"
+#include "ui/panels/feature_card.hpp"
+#include "ui/panels/frame_pictures.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kShownPx = 110.0;  // of the frame, across the picture
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+std::string metres(const Eigen::Vector3d& p) {
+  return fmt::format("{:.3f}, {:.3f}, {:.3f} m", p.x(), p.y(), p.z());
+}
+
+const char* link_text(TrailLink link) {
+  switch (link) {
+    case TrailLink::kItself:
+      return "itself";
+    case TrailLink::kMapPoint:
+      return "same map point";
+    case TrailLink::kFlow:
+      return "where the flow leads";
+    case TrailLink::kNearby:
+      return "nearest of its kind";
+  }
+  return "";
+}
+
+Facts facts_of(const FeatureStory& story) {
+  const FeatureRecord& f = story.feature;
+  Facts facts{{"Pixel", fmt::format("{:.1f}, {:.1f}, octave {}", f.pixel.x, f.pixel.y, f.octave)},
+              {"Depth", f.depth > 0.0F ? fmt::format("{:.3f} m", f.depth) : "not measured"}};
+  if (f.map_point != kNone) {
+    facts.emplace_back("Map point",
+                       story.observations
+                           ? fmt::format("{}, seen by {} keyframes", f.map_point, *story.observations)
+                           : fmt::format("{}, since taken out of the map", f.map_point));
+    facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
+  } else {
+    facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
+  }
+  const std::size_t back = story.trail.size() - 1;
+  facts.emplace_back("Followed back", fmt::format("{} frame{}", back, back == 1 ? "" : "s"));
+  if (story.mask_edge_px)
+    facts.emplace_back("To the mask's edge", fmt::format("{:.0f} px, {}", std::abs(*story.mask_edge_px),
+                                                         *story.mask_edge_px > 0.0 ? "inside" : "outside"));
+  if (const auto motion = story.own_motion_px())
+    facts.emplace_back("If static", fmt::format("{:.1f}, {:.1f}: {:.1f} px away, by {}", story.if_static->x(),
+                                                story.if_static->y(), *motion, story.static_by));
+  if (story.in_camera) facts.emplace_back("In the camera", metres(*story.in_camera));
+  if (story.in_world) facts.emplace_back("In the world", metres(*story.in_world));
+  return facts;
+}
+
+/// One feature: what became of it, why, and where it came from.
+class FeaturePanel final : public NamedPanel {
+ public:
+  explicit FeaturePanel(Shared shared) : NamedPanel("feature", "Feature", std::move(shared)) {}
+
+  void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
+    const FrameView& view = *session.current;
+    const std::string missing = missing_features(session);
+    if (!missing.empty()) {
+      draw_absent(frame, missing);
+      return;
+    }
+    const std::optional<int> chosen = chosen_feature(session, *shared_);
+    if (shared_->feature && !chosen) {
+      draw_absent(frame,
+                  fmt::format("The feature chosen in frame {} is not found in frame {}. Click another in a "
+                              "features panel.",
+                              shared_->feature->frame, view.index));
+      return;
+    }
+    const std::optional<int> index = chosen ? chosen : telling_feature(*view.record, view.frame.gray.size());
+    if (!index) {
+      draw_absent(frame, fmt::format("Frame {} has no features.", view.index));
+      return;
+    }
+    tell(session, *index);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const bool wide = room.x > 1.25F * room.y;
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const ImVec2 size =
+        wide ? ImVec2{std::floor(0.42F * room.x), room.y} : ImVec2{room.x, std::floor(0.42F * room.y)};
+    draw_picture(frame, {session, actions}, size);
+    if (wide) ImGui::SameLine(0.0F, gap);
+    ImGui::BeginChild("story");
+    draw_story(frame, chosen.has_value());
+    ImGui::EndChild();
+  }
+
+ private:
+  [[nodiscard]] static std::string missing_features(const SessionView& session) {
+    const FrameView& view = *session.current;
+    if (!view.frame.readable()) return missing_motion(session);
+    if (view.record == nullptr) return fmt::format("Frame {} has not been processed yet.", view.index);
+    if (view.record->features.empty() && view.record->features_found > 0)
+      return fmt::format("Frame {}'s {} features were not kept in its record.", view.index,
+                         view.record->features_found);
+    return {};
+  }
+
+  void tell(const SessionView& session, int index) {
+    const bool same = !told_.owner_before(session.current) && !session.current.owner_before(told_);
+    if (same && story_.index == index) return;
+    const FrameView& view = *session.current;
+    story_ = explain_feature(view, *session.run, session, index);
+    told_ = session.current;
+    const cv::Size size = view.frame.gray.size();
+    view_.zoom = std::max(1.0, size.width / kShownPx);
+    view_.centre = {(static_cast<double>(story_.feature.pixel.x) + 0.5) / size.width,
+                    (static_cast<double>(story_.feature.pixel.y) + 0.5) / size.height};
+  }
+
+  void draw_picture(const UiFrame& frame, const FramePlace& place, ImVec2 size) {
+    const FrameView& view = *place.session.current;
+    ImageContent content;
+    content.texture = &ground_.get(frame, place.session.current, 0, [&] {
+      outlines_ = outlines_of(view.mask);
+      return view.frame.gray;
+    });
+    content.values = &view.frame.gray;
+    const ImageResponse response = draw_image(frame, "picture", content, view_, size);
+    take_mouse("picture", response, *shared_, place);
+    push_clip(response);
+    draw_outlines(frame, response, outlines_, role_colour(Role::kUnion, frame.theme.name));
+    draw_story_marks(frame, response, story_);
+    pop_clip();
+    draw_marks(frame, response, *shared_, place);
+  }
+
+  void draw_story(const UiFrame& frame, bool chosen) const {
+    const LegendEntry look = fate_look(story_.feature.fate, frame.theme.name);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float sign = 0.5F * ImGui::GetTextLineHeight();
+    draw_sign(frame, *ImGui::GetWindowDrawList(), {at.x + sign, at.y + sign}, 4.5F * frame.scale, look.sign,
+              to_u32(look.colour));
+    ImGui::SetCursorScreenPos({at.x + 2.6F * sign, at.y});
+    ImGui::PushFont(frame.fonts.strong);
+    ImGui::TextWrapped("%s", story_.verdict.c_str());
+    ImGui::PopFont();
+    for (const std::string& sentence : story_.because) ImGui::TextWrapped("%s", sentence.c_str());
+    for (const Margin& margin : story_.margins) draw_margin(frame, margin);
+    ImGui::PushFont(frame.fonts.small);
+    if (ImGui::BeginTable("facts", 2, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed);
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+      for (const auto& [name, value] : facts_of(story_)) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextDisabled("%s", name.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", value.c_str());
+      }
+      ImGui::EndTable();
+    }
+    draw_trail(frame);
+    if (!chosen)
+      ImGui::TextWrapped("No feature is chosen: this is the %s. Click another in a features panel.",
+                         story_.feature.fate == FeatureFate::removed ? "removed one nearest to the middle"
+                                                                     : "one with the largest residual");
+    ImGui::PopFont();
+  }
+
+  /// The last frames, newest first.
+  void draw_trail(const UiFrame& frame) const {
+    if (story_.trail.size() < 2) return;
+    if (!ImGui::BeginTable("trail", 5, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp))
+      return;
+    for (const char* name : {"Frame", "Pixel", "Depth", "Then", "Found as"}) ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    for (const TrailPoint& point : story_.trail) {
+      ImGui::TableNextRow();
+      const FeatureRecord& f = point.feature;
+      const LegendEntry look = fate_look(f.fate, frame.theme.name);
+      const std::string fate = f.fate == FeatureFate::inlier || f.fate == FeatureFate::outlier
+                                   ? fmt::format("{} {:.1f} px", look.name, f.residual_px)
+                                   : look.name;
+      const std::string cells[] = {
+          fmt::format("{}", point.frame), fmt::format("{:.0f}, {:.0f}", f.pixel.x, f.pixel.y),
+          f.depth > 0.0F ? fmt::format("{:.2f} m", f.depth) : "–", fate, link_text(point.link)};
+      for (const std::string& cell : cells) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(cell.c_str());
+      }
+    }
+    ImGui::EndTable();
+  }
+
+  FeatureStory story_;
+  std::weak_ptr<const FrameView> told_;
+  ImageView view_;
+  FrameTexture ground_;
+  Outlines outlines_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> make_feature_panel(Shared shared) {
+  return std::make_unique<FeaturePanel>(std::move(shared));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,155 @@
+#include "ui/panels/stage_drawing.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "ui/theme/colormap.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr Rgb kGainedColour = okabe_ito::kSkyBlue, kLostColour = okabe_ito::kVermillion,
+              kStaysColour = okabe_ito::kPurple;
+
+LegendEntry look_of(DotKind kind, ThemeName theme) {
+  switch (kind) {
+    case DotKind::kInlier:
+      return {"inlier", role_colour(Role::kInlier, theme), Sign::kCircle};
+    case DotKind::kOutlier:
+      return {"outlier", role_colour(Role::kOutlier, theme), Sign::kTriangle};
+    case DotKind::kRemoved:
+      return {"taken out", role_colour(Role::kRemoved, theme), Sign::kCross};
+    case DotKind::kKept:
+      return {"kept", role_colour(Role::kKept, theme), Sign::kCircle};
+    case DotKind::kUnmatched:
+      return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
+    case DotKind::kGained:
+      return {"gained", kGainedColour, Sign::kCircle};
+    case DotKind::kLost:
+      return {"lost", kLostColour, Sign::kCross};
+  }
+  return {};
+}
+
+ColourScale scale_of(const UiFrame& frame, const StagePicture& picture) {
+  ColourScale scale;
+  scale.high = picture.range;
+  scale.none_colour = no_value_colour(frame.theme);
+  const double range = std::max(picture.range, 1e-9);
+  if (picture.look == PictureLook::kSigned) {
+    scale.low = -picture.range;
+    scale.colour = [&theme = frame.theme, range](double v) { return diverging_colour(theme, v / range); };
+  } else if (picture.look == PictureLook::kLength) {
+    scale.colour = [range](double v) {
+      return map_colour(Colormap::kViridis, static_cast<float>(1.0 - v / range));
+    };
+  } else {
+    scale.colour = [range](double v) {
+      return map_colour(Colormap::kInferno, static_cast<float>(v / range));
+    };
+  }
+  return scale;
+}
+
+/// A photo as a texture takes it; grey levels as floats, with gaps, as well.
+cv::Mat as_picture(const UiFrame& frame, const cv::Mat& image) {
+  if (image.depth() != CV_32F) return image;
+  ColourScale grey;
+  grey.high = 255.0;
+  grey.none_colour = no_value_colour(frame.theme);
+  grey.colour = [](double v) {
+    const auto level = static_cast<std::uint8_t>(v);
+    return Rgb{level, level, level};
+  };
+  return coloured(image, grey);
+}
+
+cv::Mat changes(const cv::Mat& image) {
+  cv::Mat picture(image.size(), CV_8UC4, cv::Scalar::all(0));
+  const auto fill = [&](MaskChange kind, Rgb colour, int alpha) {
+    picture.setTo(cv::Scalar(colour.b, colour.g, colour.r, alpha), image == kind);
+  };
+  fill(kStays, kStaysColour, 110);
+  fill(kGained, kGainedColour, 225);
+  fill(kLost, kLostColour, 225);
+  return picture;
+}
+
+void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::vector<PictureDot>& dots) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  // Small pictures get smaller signs.
+  const float size = std::clamp(static_cast<float>(response.map.scale()) * 3.6F, 1.3F, 3.0F) * frame.scale;
+  for (const PictureDot& dot : dots) {
+    const LegendEntry look = look_of(dot.kind, frame.theme.name);
+    const ImVec2 at = response.keypoint_to_screen(dot.at);
+    if (dot.from)
+      list.AddLine(response.keypoint_to_screen(dot.at + 2.0F * (*dot.from - dot.at)), at,
+                   to_u32(look.colour, 0.8F), 0.45F * size);
+    draw_sign(frame, list, at, look.sign == Sign::kCircle ? 0.8F * size : size, look.sign,
+              to_u32(look.colour));
+  }
+}
+
+}  // namespace
+
+void StagePainter::draw(const UiFrame& frame, const char* id, const StagePicture& picture, int variant,
+                        PanelsShared& shared, const FramePlace& place, ImVec2 size) {
+  ImageContent content;
+  content.absent = "There is none.";
+  content.values = &picture.image;
+  const auto& view = place.session.current;
+  const bool over = picture.look == PictureLook::kMask || picture.look == PictureLook::kMaskChange;
+  if (!picture.image.empty()) {
+    content.texture = &ground_.get(frame, view, variant, [&] {
+      if (over) return picture.ground;
+      return picture.look == PictureLook::kPhoto
+                 ? as_picture(frame, picture.image)
+                 : coloured(picture.image, scale_of(frame, picture), picture.look == PictureLook::kLength);
+    });
+    if (over) {
+      const Texture& tint = over_.get(frame, view, variant, [&] {
+        return picture.look == PictureLook::kMask
+                   ? tinted_mask(picture.image, role_colour(Role::kUnion, frame.theme.name))
+                   : changes(picture.image);
+      });
+      content.overlays.push_back({&tint, picture.look == PictureLook::kMask ? 0.55F : 1.0F});
+    }
+  }
+  std::string heading = picture.heading;
+  if (picture.look == PictureLook::kSigned) heading += fmt::format(", ±{:g} {}", picture.range, picture.unit);
+  if (picture.look == PictureLook::kLevels || picture.look == PictureLook::kLength)
+    heading += fmt::format(", 0 to {:.3g} {}", picture.range, picture.unit);
+  if (picture.elsewhere) {
+    const ImageResponse response = draw_image(frame, id, content, shared.views.at("frame"), size);
+    draw_heading(frame, response, heading);
+    return;
+  }
+  const ImageResponse response = draw_frame_image(frame, id, content, shared, size,
+                                                  {place.session, place.actions, picture.space}, heading);
+  push_clip(response);
+  draw_dots(frame, response, picture.dots);
+  pop_clip();
+}
+
+std::vector<LegendEntry> legend_of(const UiFrame& frame, const StagePicture& picture) {
+  std::vector<LegendEntry> legend;
+  if (picture.look == PictureLook::kMask)
+    legend.push_back({"in the mask", role_colour(Role::kUnion, frame.theme.name), Sign::kSquare});
+  if (picture.look == PictureLook::kMaskChange) {
+    legend.push_back({"gained", kGainedColour, Sign::kSquare});
+    legend.push_back({"lost", kLostColour, Sign::kSquare});
+    legend.push_back({"stays", kStaysColour, Sign::kSquare});
+  }
+  if (picture.look == PictureLook::kSigned) {
+    legend.push_back({"above 0", diverging_colour(frame.theme, 1.0), Sign::kSquare});
+    legend.push_back({"below 0", diverging_colour(frame.theme, -1.0), Sign::kSquare});
+  }
+  std::set<DotKind> kinds;
+  for (const PictureDot& dot : picture.dots) kinds.insert(dot.kind);
+  for (const DotKind kind : kinds) legend.push_back(look_of(kind, frame.theme.name));
+  return legend;
+}
+
+}  // namespace stillpoint
