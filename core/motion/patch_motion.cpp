@@ -139,11 +139,13 @@ Eigen::Matrix3d information_of(const Measured& m) {
   return information;
 }
 
-/// The twist most patches share: iteratively reweighted least squares, ever stricter (Cauchy).
+/// The twist most patches share: iteratively reweighted least squares (Geman-McClure), from the pose given.
+/// Strict from the first round: all patches together may be met by a slide and a turn that belong to none of
+/// them.
 Vector6d common_twist(const Camera& camera, const std::vector<Measured>& measured,
                       const std::vector<double>& votes) {
   Vector6d twist = Vector6d::Zero();
-  for (const double strictness : {100.0, 40.0, 16.0, 8.0, 6.0, 6.0}) {
+  for (const double strictness : {12.0, 8.0, 6.0, 6.0, 6.0}) {
     Matrix6d h = Matrix6d::Zero();
     h.diagonal() << 2500, 2500, 2500, 1e4, 1e4, 1e4;  // the pose given is right to centimetres
     Vector6d g = Vector6d::Zero();
@@ -153,7 +155,8 @@ Vector6d common_twist(const Camera& camera, const std::vector<Measured>& measure
       const auto j = by_twist(camera, m.place);
       const Eigen::Matrix3d information = information_of(m);
       const Eigen::Vector3d r = residual_of(m, j, twist);
-      const double weight = votes[i] / (1.0 + r.dot(information * r) / strictness);
+      const double off = 1.0 + r.dot(information * r) / strictness;
+      const double weight = votes[i] / (off * off);
       h += weight * j.transpose() * information * j;
       g += weight * j.transpose() * information * Eigen::Vector3d(m.shift.x(), m.shift.y(), m.step);
     }
@@ -187,7 +190,10 @@ Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::V
   }
   Slack slack;
   if (shifts.size() < kMinPatches) return slack;
-  slack.shift = std::max(kRegistration, std::sqrt(std::max(0.0, middle_of(shifts))));
+  // The worse registration is, the longer its tails are.
+  constexpr double kTail = 1.6, kNoTail = 0.06;
+  const double usual = std::sqrt(std::max(0.0, middle_of(shifts)));
+  slack.shift = std::max(kRegistration, kTail * usual - kNoTail);
   slack.step = std::sqrt(std::max(0.0, middle_of(steps)));
   return slack;
 }
