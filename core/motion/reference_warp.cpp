@@ -29,7 +29,9 @@ ReferenceWarp warp_reference(const RgbdView& current, const ReferenceView& refer
       warp.shift.at<float>(y, x) = static_cast<float>(std::hypot(pixel.x() - x, pixel.y() - y));
     }
   cv::remap(reference.view->gray, warp.gray, places, cv::Mat(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  warp.gray.setTo(cv::Scalar(kUnknown), warp.shift != warp.shift);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      if (std::isnan(warp.shift.at<float>(y, x))) warp.gray.at<float>(y, x) = kUnknown;
   return warp;
 }
 

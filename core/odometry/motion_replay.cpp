@@ -6,12 +6,21 @@ MotionReplay::MotionReplay(const Camera& camera, const Config& config) : odometr
   odometry_.last_ = Odometry::Last{};  // without points: none is to be purged
 }
 
+void MotionReplay::make_view(const Frame& frame) {
+  odometry_.view_.reset();
+  if (frame.has_depth())
+    odometry_.view_ =
+        std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, odometry_.camera_,
+                                                        odometry_.config_.depth_motion.factor));
+}
+
 void MotionReplay::take(const Frame& frame, const FrameRecord& record, const cv::Mat& log_odds) {
   FrameResult result;
   result.record.index = record.index;
   result.record.estimated = record.estimated;
   result.record.world_from_camera = record.world_from_camera;
   result.depth_motion.log_odds = log_odds;
+  make_view(frame);
   odometry_.remember_view(frame, result);
 }
 
@@ -20,6 +29,7 @@ FrameResult MotionReplay::repeat(const Frame& frame, const FrameRecord& record) 
   result.record.index = record.index;
   result.record.estimated = record.estimated;
   result.record.world_from_camera = record.world_from_camera;
+  make_view(frame);
   if (record.prior_pose) result.mask = odometry_.remembered_mask(frame, *record.prior_pose, result.record);
   if (record.motion_pose) odometry_.detect_by_pose(frame, *record.motion_pose, result);
   odometry_.remember_view(frame, result);

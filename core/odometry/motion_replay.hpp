@@ -19,6 +19,8 @@ class MotionReplay {
   [[nodiscard]] FrameResult repeat(const Frame& frame, const FrameRecord& record);
 
  private:
+  void make_view(const Frame& frame);
+
   Odometry odometry_;
 };
 

@@ -124,6 +124,9 @@ FigureUnit common_unit(const Node& a, const Node& b, const Token& between) {
   if (a.unit == b.unit) return a.unit;
   if (a.literal) return b.unit;
   if (b.literal) return a.unit;
+  // A share is a plain number: half is 50 %.
+  const auto unitless = [](const Node& node) { return node.unit == plain || node.unit == share; };
+  if (unitless(a) && unitless(b)) return share;
   fail(between.column, fmt::format("left of {} stands a value that is {}, right of it one that is {}",
                                    in_quotes(between.text), unit_text(a), unit_text(b)));
 }

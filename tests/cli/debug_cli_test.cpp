@@ -50,7 +50,7 @@ TEST_F(DebugCli, AWrongConditionIsAnsweredAtItsPlaceBeforeAnythingIsDone) {
                                           sequence_.path("out")};
     const CliResult result = run_cli(arguments);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, HasSubstr("column 9: there is no name \"inlirs\"; did you mean inliers?"));
+    EXPECT_THAT(result.err, HasSubstr("column 9: there is no name 'inlirs'; did you mean inliers?"));
     EXPECT_THAT(result.err, HasSubstr("\n          ^"));
     EXPECT_FALSE(fs::exists(sequence_.path("out")));
   }

@@ -42,7 +42,7 @@ TEST(RemovalCheck, WithoutRemovalItIsWhatMethodNoneFinds) {
 
 TEST(RemovalCheck, WithTheTrueMaskItIsWhatTheOracleFinds) {
   OpenOptions options;
-  options.frames = 5;
+  options.frames = 12;
   const auto source = open_sequence("generated:walking_static", options);
   const auto run = run_sequence(*source, config_of("oracle", 1));
   bool differs = false;

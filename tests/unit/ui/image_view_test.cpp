@@ -103,7 +103,7 @@ TEST(PixelTextTest, ReadsRedGreenBlue) {
   const cv::Mat colour(1, 1, CV_8UC3, cv::Scalar(10, 20, 30));
   EXPECT_EQ(pixel_text(colour, 0, 0), "30\n20\n10");
   EXPECT_EQ(pixel_text(cv::Mat(1, 1, CV_16UC1, cv::Scalar(5000)), 0, 0), "5000");
-  EXPECT_EQ(pixel_text(cv::Mat(1, 1, CV_32FC1, cv::Scalar(0.125)), 0, 0), "0.125");
+  EXPECT_EQ(pixel_text(cv::Mat(1, 1, CV_32FC1, cv::Scalar(0.25)), 0, 0), "0.25");
   EXPECT_EQ(pixel_text(cv::Mat(1, 1, CV_16SC1, cv::Scalar(-7)), 0, 0), "-7");
 }
 
