@@ -146,7 +146,7 @@ struct BundleConfig {
 };
 
 struct RunConfig {
-  std::string method = "paper";  ///< stillpoint, paper, none; or oracle, which is told what moves
+  std::string method = "stillpoint";  ///< stillpoint, paper, none; or oracle, which is told what moves
   int threads = 2;               ///< worker threads; any number gives the same bytes
   int seed = 1;                  ///< of generated sequences
   int check_removal = 0;  ///< 1: each pose is also solved without removal, and with the true mask where known

@@ -116,7 +116,7 @@ TEST(View, ComesBackAsItWasLeft) {
     EXPECT_FALSE(result.by_signal);
     const std::string now = sequence.folder.read("config/stillpoint/settings.json");
     EXPECT_THAT(now, HasSubstr(sequence.path()));
-    EXPECT_THAT(now, HasSubstr("forward_mask"));
+    EXPECT_THAT(now, HasSubstr("depth_motion"));
     if (!left.empty()) {
       EXPECT_EQ(now, left);
     }

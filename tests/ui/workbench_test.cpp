@@ -159,12 +159,12 @@ TEST_F(WorkbenchTest, PanelsAreHiddenMaximisedAndBroughtBack) {
   EXPECT_TRUE(workbench.actions().run("reset_layout"));
   render(workbench, *session);
   EXPECT_EQ(workbench.layout(), before);
-  // The forward mask lies in the upper half, a quarter from the left.
+  // What method `stillpoint` finds lies in the middle of the upper half.
   offscreen_.send(MouseMoved{500, 300});
   render(workbench, *session);
   strike(offscreen_, Key::kM);
   render(workbench, *session);
-  EXPECT_EQ(workbench.maximised(), "forward_mask");
+  EXPECT_EQ(workbench.maximised(), "depth_motion");
   strike(offscreen_, Key::kM);
   render(workbench, *session);
   EXPECT_EQ(workbench.maximised(), "");

@@ -69,7 +69,7 @@ void replace_panel(LayoutNode& root, std::string_view panel, const std::string& 
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
 
 /// What a newcomer sees of a run by this method.
-[[nodiscard]] LayoutNode default_layout(std::string_view method = "paper");
+[[nodiscard]] LayoutNode default_layout(std::string_view method = "stillpoint");
 
 /// A layout for one kind of work.
 struct NamedLayout {
