@@ -176,10 +176,10 @@ TEST_F(WorkbenchTest, SplittersAreDragged) {
   render(workbench, *session);
   const LayoutNode before = workbench.layout();
   // Between the first two tiles of the upper row.
-  offscreen_.send(MouseMoved{321.0F, 300.0F});
+  offscreen_.send(MouseMoved{372.0F, 300.0F});
   offscreen_.send(MouseButton{0, true, {}});
   render(workbench, *session);
-  offscreen_.send(MouseMoved{371.0F, 300.0F});
+  offscreen_.send(MouseMoved{422.0F, 300.0F});
   render(workbench, *session);
   offscreen_.send(MouseButton{0, false, {}});
   render(workbench, *session);
