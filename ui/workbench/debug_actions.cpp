@@ -35,7 +35,6 @@ void Workbench::add_debug_actions() {
                   .group = "Debug",
                   .icon = icon,
                   .keys = key.key == Key::kNone ? std::vector<KeyChord>{} : std::vector{key},
-                  .repeats = true,
                   .enabled = [this, target] { return can_go() && target().has_value(); },
                   .run = [this, target] { go_to(*target()); }});
   };
