@@ -52,8 +52,6 @@ void run(const RunArguments& arguments) {
     fmt::print("{}", condition_help());
     return;
   }
-  // Only the list of names does without one.
-  if (arguments.sequence.empty()) throw CLI::RequiredError("SEQUENCE");
   const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
   const auto source = arguments.frames.open(arguments.sequence, config);
@@ -111,7 +109,8 @@ void add_run_command(CLI::App& app) {
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* command =
       app.add_subcommand("run", "Run odometry over a sequence: trajectory, figures and per-frame data");
-  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND");
+  const CLI::Option* sequence =
+      command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND");
   command->add_option("--out", arguments->out,
                       "Folder for trajectory, frames.csv, summary.json, config and map");
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
@@ -123,7 +122,11 @@ void add_run_command(CLI::App& app) {
       "3. `help` lists what it may be made of");
   arguments->config.add_to(*command, true);
   arguments->frames.add_to(*command);
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments, sequence] {
+    // Only the list of names does without one.
+    if (sequence->count() == 0 && arguments->break_at != "help") throw CLI::RequiredError("SEQUENCE");
+    run(*arguments);
+  });
 }
 
 }  // namespace stillpoint
