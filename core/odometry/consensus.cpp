@@ -113,16 +113,15 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
   best.cost = std::numeric_limits<double>::infinity();
   if (observations.empty()) return best;
   const std::vector<double> weights = weights_by_place(camera, observations);
-  const auto offer = [&](const Pose& pose, bool sampled) {
+  const auto offer = [&](const Pose& pose) {
     const double cost = cost_of(camera, observations, weights, pose, best.cost);
     if (cost >= best.cost) return;
     best.camera_from_world = pose;
     best.cost = cost;
-    best.sampled = sampled;
   };
   for (const Pose& guess : guesses) {
-    offer(guess, false);
-    offer(polished(camera, observations, guess), false);
+    offer(guess);
+    offer(polished(camera, observations, guess));
   }
 
   std::vector<std::size_t> with_depth;
@@ -140,7 +139,7 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
     const Pose rough = align_three(world, in_camera);
     if (cost_of(camera, observations, weights, rough, kPromising * best.cost) >= kPromising * best.cost)
       continue;
-    offer(polished(camera, observations, rough), true);
+    offer(polished(camera, observations, rough));
   }
   for (const PoseObservation& o : observations) {
     best.inlier.push_back(truncated(camera, o, best.camera_from_world) < 1.0);

@@ -12,8 +12,7 @@ struct Consensus {
   Pose camera_from_world = Pose::Identity();
   std::vector<std::uint8_t> inlier;  ///< one an observation
   int inliers = 0;
-  double cost = 0.0;     ///< truncated squares, weighted by place; 0 to 1, less is better
-  bool sampled = false;  ///< a sample beat every guess
+  double cost = 0.0;  ///< truncated squares, weighted by place; 0 to 1, less is better
 };
 
 /// Finds the pose that explains the scene tightly, among the guesses given and poses from samples of three

@@ -36,7 +36,6 @@ WorkbenchHost idle_host() {
   return {.go_to_frame = [](int) {},
           .play = [](bool) {},
           .speed = [](double) {},
-          .configure = [](const Config&) {},
           .open = [](const std::string&) {},
           .request = [](const SessionRequest&) {}};
 }

@@ -15,11 +15,10 @@ namespace stillpoint {
 
 /// What a person asks for in a panel; the session carries it out.
 struct PanelActions {
-  std::optional<int> go_to_frame;                                   ///< 0 to frame_count - 1
-  std::vector<std::pair<std::string, std::string>> set_parameters;  ///< key, value as set_parameter takes it
-  std::vector<SessionRequest> requests;                             ///< in order
-  bool compare_frames = false;                                      ///< FrameView::before is wanted
-  std::optional<LaneFigure> worst_by;                               ///< what "worst" is to go by from now on
+  std::optional<int> go_to_frame;        ///< 0 to frame_count - 1
+  std::vector<SessionRequest> requests;  ///< in order
+  bool compare_frames = false;           ///< FrameView::before is wanted
+  std::optional<LaneFigure> worst_by;    ///< what "worst" is to go by from now on
 };
 
 /// Something a panel can have done, by menu, key and palette, whether or not it is drawn.

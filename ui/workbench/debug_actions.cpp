@@ -136,7 +136,8 @@ void Workbench::add_layout_actions() {
                   .icon = icons::kLayout,
                   .keys = {{static_cast<Key>(digit++), kCtrl}},
                   .run = [this, make = layout.make] {
-                    const std::string method = session_ == nullptr ? Config().run.method : session_->config.run.method;
+                    const std::string method =
+                        session_ == nullptr ? Config().run.method : session_->config.run.method;
                     after_frame_ = [this, make, method] { set_layout(make(method)); };
                   }});
 }

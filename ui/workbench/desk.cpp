@@ -67,17 +67,14 @@ WorkbenchHost Desk::host() {
   return {.go_to_frame = ask([](Session& session, int frame) { session.request_frame(frame); }),
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
-          .configure =
-              [this](const Config& config) {
-                options_.config = config;
-                ++configured_;
-                if (session_) session_->request_config(config);
-              },
           .open = [this](const std::string& where) { open(where); },
           .request =
               [this](SessionRequest wanted) {
                 // What is opened next is run as this one is.
-                if (const auto* all = std::get_if<request::RunAll>(&wanted)) options_.config = all->config;
+                if (const auto* all = std::get_if<request::RunAll>(&wanted)) {
+                  options_.config = all->config;
+                  ++configured_;
+                }
                 if (session_) session_->request(std::move(wanted));
               },
           .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};

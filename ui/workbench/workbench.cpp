@@ -310,14 +310,6 @@ void Workbench::carry_out(const PanelActions& wanted) {
   compare_frames_ |= wanted.compare_frames;
   if (host_.request)
     for (const SessionRequest& wish : wanted.requests) host_.request(wish);
-  if (wanted.set_parameters.empty() || !host_.configure) return;
-  Config config = session_->config;
-  try {
-    for (const auto& [key, value] : wanted.set_parameters) set_parameter(config, key + "=" + value);
-    host_.configure(config);
-  } catch (const std::exception& error) {
-    say(error.what(), true);
-  }
 }
 
 void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour) {

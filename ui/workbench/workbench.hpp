@@ -22,7 +22,6 @@ struct WorkbenchHost {
   std::function<void(int)> go_to_frame{};
   std::function<void(bool)> play{};
   std::function<void(double)> speed{};             ///< frames a second, while playing
-  std::function<void(const Config&)> configure{};  ///< run with this config
   std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
   std::function<void(SessionRequest)> request{};   ///< what panels ask of the session
   std::function<void(bool)> compare{};             ///< whether FrameView::before is wanted; told each frame

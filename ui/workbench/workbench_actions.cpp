@@ -132,7 +132,8 @@ void Workbench::add_view_actions() {
                 .icon = icons::kLayout,
                 .keys = {{Key::kR, kCtrlShift}},
                 .run = [this] {
-                  const std::string method = session_ == nullptr ? Config().run.method : session_->config.run.method;
+                  const std::string method =
+                      session_ == nullptr ? Config().run.method : session_->config.run.method;
                   after_frame_ = [this, method] { set_layout(default_layout(method)); };
                 }});
 }
