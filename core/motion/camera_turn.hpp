@@ -23,7 +23,7 @@ struct CameraTurn {
 
 struct CameraTurnOptions {
   double sigma = 1e-3;            ///< noise of a bearing, in units of the focal length
-  double least_sigma = 4e-4;  ///< the same at its best, by which parallax is told from noise
+  double least_sigma = 4e-4;      ///< the same at its best, by which parallax is told from noise
   int samples = 60;               ///< directions tried
   double turns_only_share = 0.6;  ///< so many must agree with rotation alone …
   double between_share = 0.12;    ///< … and at most so many may disagree by little, as parallax does

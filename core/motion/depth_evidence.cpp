@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "core/motion/carrier.hpp"
 
@@ -28,10 +29,18 @@ float nearest_depth(const cv::Mat& depth, int x, int y, float expected) {
     const float* row = depth.ptr<float>(y + dy) + x;
     for (int dx = -1; dx <= 1; ++dx) {
       const float difference = std::abs(row[dx] - expected);
-      if (row[dx] > 0 && difference < best_difference) best = row[dx], best_difference = difference;
+      const bool better = (row[dx] > 0) & (difference < best_difference);
+      best = better ? row[dx] : best;
+      best_difference = better ? difference : best_difference;
     }
   }
   return best;
+}
+
+/// Measured less expected depth, in standard deviations of both; NaN where nothing was measured.
+float depth_residual(float measured, float expected, float z) {
+  const float a = depth_sigma(z), b = depth_sigma(measured);
+  return measured > 0 ? (measured - expected) / std::sqrt(a * a + b * b) : kUnknown;
 }
 
 float median_of(std::vector<float>& values) {
@@ -48,31 +57,37 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
   evidence.depth_residual = cv::Mat(size, CV_32FC1, cv::Scalar(kUnknown));
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
   cv::Mat brightness(size, CV_32FC1, cv::Scalar(kUnknown));
-  const Carrier carry(current.camera, reference.reference_from_current);
+  Carrier carried(current.camera, reference.reference_from_current);
   const auto limit = static_cast<float>(config.depth_sigmas);
-  for (int y = 0; y < size.height; ++y)
+  const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
+  for (int y = 0; y < size.height; ++y) {
+    const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
+    auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
+         *differences = brightness.ptr<float>(y);
+    carried.carry_row(y, depth);
     for (int x = 0; x < size.width; ++x) {
-      const float z = current.depth.at<float>(y, x);
-      if (z <= 0) continue;
-      const Carried there = carry(x, y, z);
-      if (!there.inside) continue;
-      const float measured =
-          nearest_depth(reference.view->depth, cvRound(there.u), cvRound(there.v), there.z);
-      if (measured <= 0) continue;
-      const float sigma = std::hypot(depth_sigma(z), depth_sigma(measured));
-      const float residual = (measured - there.z) / sigma;
-      evidence.depth_residual.at<float>(y, x) = residual;
-      float& odds = evidence.log_odds.at<float>(y, x);
+      if (!carried.inside(x)) continue;
+      const float u = carried.u(x), v = carried.v(x), expected = carried.z(x);
+      const int column = cvRound(u), row = cvRound(v);
+      // Only what does not fit at its own pixel is sought beside it.
+      float measured = then.ptr<float>(row)[column];
+      float residual = depth_residual(measured, expected, depth[x]);
+      if (!(std::abs(residual) <= limit)) {
+        measured = nearest_depth(then, column, row, expected);
+        residual = depth_residual(measured, expected, depth[x]);
+        if (measured <= 0) continue;
+      }
+      residuals[x] = residual;
       if (residual > limit) {
-        odds = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residual - limit));
+        log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residual - limit));
       } else if (residual < -limit) {
-        if (there.z - measured < kStepBackLimit) odds = reference.old ? kSteppedBack : kStepsBack;
+        if (expected - measured < kStepBackLimit) log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
       } else {
-        odds = kSameDepth;
-        brightness.at<float>(y, x) =
-            current.gray.at<float>(y, x) - bilinear(reference.view->gray, there.u, there.v);
+        log_odds[x] = kSameDepth;
+        differences[x] = gray[x] - bilinear(gray_then, u, v);
       }
     }
+  }
   return brightness;
 }
 
@@ -89,9 +104,10 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   // Exposure may have changed between the two: the median difference is taken off; what spreads about it is
   // noise.
   std::vector<float> values;
-  for (int i = 0; i < static_cast<int>(brightness.total()); i += 3)
-    if (const float b = brightness.at<float>(i / brightness.cols, i % brightness.cols); !std::isnan(b))
-      values.push_back(b);
+  values.reserve(brightness.total() / 3 + 1);
+  const auto* differences = brightness.ptr<float>();
+  for (std::size_t i = 0; i < brightness.total(); i += 3)
+    if (!std::isnan(differences[i])) values.push_back(differences[i]);
   const float shift = median_of(values);
   for (float& value : values) value = std::abs(value - shift);
   const float sigma = std::max(kMinIntensitySigma, 1.4826F * median_of(values));
@@ -100,20 +116,20 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   const auto limit = static_cast<float>(config.intensity_sigmas) * sigma;
   const auto share = static_cast<float>(config.gradient_share);
   evidence.intensity_residual = cv::Mat(brightness.size(), CV_32FC1, cv::Scalar(kUnknown));
-  for (int y = 0; y < brightness.rows; ++y)
+  for (int y = 0; y < brightness.rows; ++y) {
+    const auto *difference = brightness.ptr<float>(y), *gradient = current.gradient.ptr<float>(y);
+    auto *residuals = evidence.intensity_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y);
     for (int x = 0; x < brightness.cols; ++x) {
-      const float b = brightness.at<float>(y, x);
-      if (std::isnan(b)) continue;
-      const float gradient = current.gradient.at<float>(y, x);
-      const float residual = std::max(0.0F, std::abs(b - shift) - share * gradient);
-      evidence.intensity_residual.at<float>(y, x) = residual;
+      if (std::isnan(difference[x])) continue;
+      const float residual = std::max(0.0F, std::abs(difference[x] - shift) - share * gradient[x]);
+      residuals[x] = residual;
       if (config.use_brightness == 0) continue;
-      float& odds = evidence.log_odds.at<float>(y, x);
       if (residual > limit)
-        odds += kOtherBrightness * std::min(2.0F, residual / limit);
-      else if (gradient > 3.0F * sigma && residual < sigma)
-        odds += kSameTexture;
+        log_odds[x] += kOtherBrightness * std::min(2.0F, residual / limit);
+      else if (gradient[x] > 3.0F * sigma && residual < sigma)
+        log_odds[x] += kSameTexture;
     }
+  }
   return evidence;
 }
 
@@ -124,34 +140,38 @@ cv::Mat carry_memory(const RgbdView& current, const MotionMemory& memory, const 
   constexpr float kDepthShare = 0.02F;
   constexpr float kArrived = 1.5F;  // log-odds that a mover's step carries at most
   cv::Mat prior = cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  const Carrier carry(current.camera, previous_from_current);
+  cv::Mat most_near;  // of what is remembered within reach: mostly nothing, and then nothing need be sought
+  const int side = 2 * kReach + 1;
+  cv::dilate(memory.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  Carrier carried(current.camera, previous_from_current);
   const auto keep = static_cast<float>(config.memory), firm = static_cast<float>(config.firm_log_odds);
-  for (int y = 0; y < prior.rows; ++y)
+  const cv::Mat& depth_then = memory.view->depth;
+  for (int y = 0; y < prior.rows; ++y) {
+    const auto* depth = current.depth.ptr<float>(y);
+    auto* out = prior.ptr<float>(y);
+    carried.carry_row(y, depth);
     for (int x = 0; x < prior.cols; ++x) {
-      const float z = current.depth.at<float>(y, x);
-      if (z <= 0) continue;
-      const Carried there = carry(x, y, z);
-      if (!there.inside) continue;
-      const int u = cvRound(there.u), v = cvRound(there.v);
-      const float tolerance = kLikeDepth + kDepthShare * z;
-      if (std::abs(memory.view->depth.at<float>(v, u) - there.z) < tolerance) {
-        const float odds = memory.log_odds.at<float>(v, u);
-        prior.at<float>(y, x) = odds > firm ? odds : keep * odds;
+      if (!carried.inside(x)) continue;
+      const int u = cvRound(carried.u(x)), v = cvRound(carried.v(x));
+      const float expected = carried.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
+      if (std::abs(depth_then.ptr<float>(v)[u] - expected) < tolerance) {
+        const float odds = memory.log_odds.ptr<float>(v)[u];
+        out[x] = odds > firm ? odds : keep * odds;
         continue;
       }
+      if (most_near.ptr<float>(v)[u] <= 0) continue;
       // A surface that was not here before came from beside, most likely: it is taken to move if what is
       // there does, but not firmly.
       float odds = 0.0F;
-      for (int dy = -kReach; dy <= kReach; ++dy)
-        for (int dx = -kReach; dx <= kReach; ++dx) {
-          const int px = u + dx, py = v + dy;
-          if (px < 0 || py < 0 || px >= prior.cols || py >= prior.rows) continue;
-          const float near = memory.log_odds.at<float>(py, px);
-          if (near > odds && std::abs(memory.view->depth.at<float>(py, px) - there.z) < 0.5F * tolerance)
+      for (int py = std::max(0, v - kReach); py <= std::min(prior.rows - 1, v + kReach); ++py)
+        for (int px = std::max(0, u - kReach); px <= std::min(prior.cols - 1, u + kReach); ++px) {
+          const float near = memory.log_odds.ptr<float>(py)[px];
+          if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < 0.5F * tolerance)
             odds = near;
         }
-      prior.at<float>(y, x) = std::min(keep * odds, kArrived);
+      out[x] = std::min(keep * odds, kArrived);
     }
+  }
   return prior;
 }
 

@@ -19,27 +19,38 @@ constexpr float kDoubt = 1.0F;                         // log-odds: registration
 constexpr int kHole = 8;                               // small px: half of what a mover may have unmeasured
 constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
+/// One value for each pixel, by its patch; `none` where it lies in no patch.
+template <typename T>
+cv::Mat paint_patches(const cv::Mat& labels, const std::vector<T>& of_patch, T none) {
+  cv::Mat image(labels.size(), cv::DataType<T>::type);
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    auto* out = image.ptr<T>(y);
+    for (int x = 0; x < labels.cols; ++x)
+      out[x] = label[x] >= 0 ? of_patch[static_cast<std::size_t>(label[x])] : none;
+  }
+  return image;
+}
+
 /// The pixels of moving patches.
 cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
-  cv::Mat mask = cv::Mat::zeros(labels.size(), CV_8UC1);
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x);
-          label >= 0 && segments[static_cast<std::size_t>(label)].moving)
-        mask.at<uchar>(y, x) = 255;
-  return mask;
+  std::vector<uchar> of_patch;
+  for (const Segment& segment : segments) of_patch.push_back(segment.moving ? 255 : 0);
+  return paint_patches<uchar>(labels, of_patch, 0);
 }
 
 /// Adds what one reference says of each pixel. Where its patch was measured as a whole, that it looks the
 /// same says nothing more: a slow mover's pixels hardly change.
 void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
+  std::vector<std::uint8_t> measured_whole;
+  for (const PatchMotion& patch : reference.patches) measured_whole.push_back(patch.log_odds != 0.0F);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* says = reference.log_odds.ptr<float>(y);
     auto* sum = evidence.ptr<float>(y);
     for (int x = 0; x < labels.cols; ++x) {
-      const bool measured = says[x] < 0 && label[x] >= 0 && !reference.patches.empty() &&
-                            reference.patches[static_cast<std::size_t>(label[x])].log_odds != 0.0F;
+      const bool measured = says[x] < 0 && label[x] >= 0 && !measured_whole.empty() &&
+                            measured_whole[static_cast<std::size_t>(label[x])] != 0;
       if (!measured) sum[x] += says[x];
     }
   }
@@ -56,12 +67,7 @@ cv::Mat evidence_of_patches(const DepthMotionTrace& trace, const DepthMotionConf
           std::clamp(static_cast<float>(config.patch_share) * (reference.patches[i].log_odds - kDoubt),
                      -kMostStill, kMostMoved);
     }
-  cv::Mat image = cv::Mat::zeros(trace.labels.size(), CV_32FC1);
-  for (int y = 0; y < image.rows; ++y)
-    for (int x = 0; x < image.cols; ++x)
-      if (const int label = trace.labels.at<int>(y, x); label >= 0)
-        image.at<float>(y, x) = of_patch[static_cast<std::size_t>(label)];
-  return image;
+  return paint_patches(trace.labels, of_patch, 0.0F);
 }
 
 /// Memory and evidence together. What is firmly known to move is let go but slowly: people who stop go on.
@@ -110,9 +116,10 @@ bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y,
 /// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
 /// sensor's shadow beside a mover is background, and stays out.
 void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
+  const cv::Rect movers = cv::boundingRect(mask);
   std::vector<cv::Point> inside;
-  for (int y = 0; y < mask.rows; ++y)
-    for (int x = 0; x < mask.cols; ++x)
+  for (int y = movers.y; y < movers.br().y; ++y)
+    for (int x = movers.x; x < movers.br().x; ++x)
       if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
         inside.emplace_back(x, y);
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
@@ -134,6 +141,7 @@ uchar like_neighbour(const cv::Mat& small_mask, const cv::Mat& small_depth, int 
 /// The small mask at full size, its outline fitted to the depth image.
 cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
   constexpr int kReach = 5;  // px: the ragged rim of an outline is no wider
+  if (cv::countNonZero(small_mask) == 0) return cv::Mat::zeros(full_depth.size(), CV_8UC1);
   cv::Mat low, high, mask;
   cv::erode(small_mask, low, cv::Mat());
   cv::dilate(small_mask, high, cv::Mat());
@@ -162,27 +170,46 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   return mask;
 }
 
+/// What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
+/// firm, or memory would creep along every surface a mover touches.
+void remember_judgement(DepthMotionTrace& trace, const DepthMotionConfig& config) {
+  const auto limit = static_cast<float>(config.moving_log_odds);
+  for (int y = 0; y < trace.labels.rows; ++y) {
+    const auto* label = trace.labels.ptr<int>(y);
+    auto* log_odds = trace.log_odds.ptr<float>(y);
+    for (int x = 0; x < trace.labels.cols; ++x) {
+      if (label[x] < 0) continue;
+      const Segment& segment = trace.segments[static_cast<std::size_t>(label[x])];
+      const float odds = log_odds[x];
+      const bool agrees = segment.moving && odds > segment.log_odds;
+      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
+      log_odds[x] = std::min(joined, std::max({odds, segment.evidence, limit}));
+    }
+  }
+}
+
 }  // namespace
 
-DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& full_depth,
-                                     const std::vector<ReferenceView>& references, const MotionMemory* memory,
-                                     const Pose& previous_from_current, const DepthMotionConfig& config) {
+DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
+                                     const cv::Mat& full_depth, const std::vector<ReferenceView>& references,
+                                     const MotionMemory* memory, const Pose& previous_from_current,
+                                     const DepthMotionConfig& config) {
   DepthMotionTrace trace;
+  trace.labels = std::move(patches.labels);
+  trace.segments = std::move(patches.segments);
   Stopwatch watch;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
   trace.ms.memory = watch.lap();
-  trace.segments = segment_surfaces(current, config, trace.labels);
-  const double segments_ms = watch.lap();
   cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
   for (ReferenceView reference : references) {
-    PatchMotions patches;
+    PatchMotions measured;
     if (reference.old) {
-      patches = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
-      reference.reference_from_current = patches.reference_from_current;
+      measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+      reference.reference_from_current = measured.reference_from_current;
     }
     trace.references.push_back(compare_with_reference(current, reference, config));
-    trace.references.back().patches = std::move(patches.patches);
+    trace.references.back().patches = std::move(measured.patches);
     trace.references.back().reference = reference;
     add_pixels(trace.references.back(), trace.labels, evidence);
     trace.references.back().ms = watch.lap();
@@ -192,7 +219,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   trace.log_odds = with_memory(trace.prior, evidence, config);
 
   judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
-  trace.ms.segments = segments_ms + watch.lap();
+  trace.ms.segments = watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);
   fill_unmeasured(current.depth, kHole, trace.small_mask);
@@ -207,19 +234,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& ful
   trace.ms.mask = watch.lap();
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 
-  // What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
-  // firm, or memory would creep along every surface a mover touches.
-  const auto limit = static_cast<float>(config.moving_log_odds);
-  for (int y = 0; y < trace.labels.rows; ++y)
-    for (int x = 0; x < trace.labels.cols; ++x) {
-      const int label = trace.labels.at<int>(y, x);
-      if (label < 0) continue;
-      const Segment& segment = trace.segments[static_cast<std::size_t>(label)];
-      float& odds = trace.log_odds.at<float>(y, x);
-      const bool agrees = segment.moving && odds > segment.log_odds;
-      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
-      odds = std::min(joined, std::max({odds, segment.evidence, limit}));
-    }
+  remember_judgement(trace, config);
   return trace;
 }
 

@@ -43,7 +43,7 @@ struct ReferenceEvidence {
   double ms = 0.0;                   ///< wall time of the comparison; for reading only
 };
 
-/// A patch of one surface, and how likely it moves.
+/// A patch of one surface (segment_surfaces), and how likely it moves.
 struct Segment {
   cv::Point2f centre;  ///< px, small image
   float depth = 0.0F;  ///< m
@@ -53,10 +53,16 @@ struct Segment {
   bool moving = false;
 };
 
+/// The patches of one view.
+struct SurfacePatches {
+  cv::Mat labels;  ///< CV_32SC1: the patch of each pixel, -1 where there is no depth
+  std::vector<Segment> segments;
+};
+
 /// What each step took, ms of wall time. For reading only: no result depends on it.
 struct DepthMotionTimes {
   double memory = 0.0;    ///< carrying along what is remembered
-  double segments = 0.0;  ///< patches and their judgement
+  double segments = 0.0;  ///< the patches' judgement
   double mask = 0.0;      ///< painting, cleaning and fitting the outline
 };
 
@@ -83,10 +89,12 @@ struct MotionMemory {
 };
 
 /// A pure function of its arguments.
+/// @param patches of the current view, as segment_surfaces gives them
 /// @param references earlier frames with depth; none gives an empty mask and a note
 /// @param memory of the frame before, with the motion to it; null where there is none
 /// @param full_depth CV_32FC1, m: the frame's own, to which the mask's outline is fitted
-[[nodiscard]] DepthMotionTrace detect_depth_motion(const RgbdView& current, const cv::Mat& full_depth,
+[[nodiscard]] DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
+                                                   const cv::Mat& full_depth,
                                                    const std::vector<ReferenceView>& references,
                                                    const MotionMemory* memory,
                                                    const Pose& previous_from_current,

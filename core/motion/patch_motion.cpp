@@ -22,7 +22,7 @@ constexpr double kDepthReach = 5.0;     // standard deviations: beyond, it is an
 
 struct Sums {
   double n = 0, gx = 0, gy = 0, b = 0, gxx = 0, gxy = 0, gyy = 0, gxb = 0, gyb = 0, bb = 0;
-  double depth_n = 0, depth_step = 0;
+  double depth_step = 0;
 };
 
 /// A patch's shift and how well it is known.
@@ -34,43 +34,31 @@ struct Measured {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
 };
 
-/// Whether a pixel's four neighbours lie on its own surface. Across an outline the gradient is of two things
-/// that parallax parts.
-bool within_surface(const cv::Mat& depth, int x, int y) {
-  const float* row = depth.ptr<float>(y) + x;
-  const float z = row[0], above = depth.ptr<float>(y - 1)[x], below = depth.ptr<float>(y + 1)[x];
-  const auto same = [z](float other) { return other > 0 && same_surface(z, other); };
-  return same(row[-1]) && same(row[1]) && same(above) && same(below);
-}
-
-std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, const Carrier& carry,
+/// Sums over the pixels of each patch that lie within their surface here and in the reference. Across an
+/// outline the gradient is of two things that parallax parts.
+std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
                          const cv::Mat& labels, std::size_t patches) {
   std::vector<Sums> sums(patches);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
-    const auto* depth = current.depth.ptr<float>(y);
-    const auto *above = current.gray.ptr<float>(y - 1), *row = current.gray.ptr<float>(y),
-               *below = current.gray.ptr<float>(y + 1);
+    const auto* within = current.within_surface.ptr<uchar>(y);
+    const auto *slope_x = current.slope_x.ptr<float>(y), *slope_y = current.slope_y.ptr<float>(y),
+               *gray = current.gray.ptr<float>(y);
+    carried.carry_row(y, current.depth.ptr<float>(y));
     for (int x = 1; x + 1 < labels.cols; ++x) {
-      if (label[x] < 0 || !within_surface(current.depth, x, y)) continue;
-      const Carried there = carry(x, y, depth[x]);
-      if (!there.inside) continue;
-      const int u = cvRound(there.u), v = cvRound(there.v);
-      const float measured = reference.depth.at<float>(v, u);
-      if (measured <= 0) continue;
-      const float step = measured - there.z;
-      if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(there.z)) continue;
-      if (!within_surface(reference.depth, u, v)) continue;
-      const auto* r = reference.gray.ptr<float>(v) + u;
-      const float *r_above = reference.gray.ptr<float>(v - 1) + u,
-                  *r_below = reference.gray.ptr<float>(v + 1) + u;
-      const double gx = 0.25 * (row[x + 1] - row[x - 1] + r[1] - r[-1]);
-      const double gy = 0.25 * (below[x] - above[x] + r_below[0] - r_above[0]);
-      const double b = row[x] - bilinear(reference.gray, there.u, there.v);
+      if (within[x] == 0 || label[x] < 0 || !carried.inside(x)) continue;
+      const float expected = carried.z(x);
+      const int u = cvRound(carried.u(x)), v = cvRound(carried.v(x));
+      if (reference.within_surface.ptr<uchar>(v)[u] == 0) continue;
+      const float step = reference.depth.ptr<float>(v)[u] - expected;
+      if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(expected)) continue;
+      const double gx = slope_x[x] + reference.slope_x.ptr<float>(v)[u];
+      const double gy = slope_y[x] + reference.slope_y.ptr<float>(v)[u];
+      const double b = gray[x] - bilinear(reference.gray, carried.u(x), carried.v(x));
       Sums& s = sums[static_cast<std::size_t>(label[x])];
       s.n += 1, s.gx += gx, s.gy += gy, s.b += b, s.bb += b * b;
       s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
-      s.depth_n += 1, s.depth_step += step;
+      s.depth_step += step;
     }
   }
   return sums;
@@ -107,8 +95,8 @@ std::vector<Measured> measure(const RgbdView& current, const std::vector<Segment
     m.covariance = information.inverse();
     m.shift = m.covariance * Eigen::Vector2d(s.gxb, s.gyb) / (kNoiseSpread * noise);
     const double z = segments[i].depth, sigma = depth_sigma(static_cast<float>(z));
-    m.step = s.depth_step / s.depth_n;
-    m.step_variance = 9.0 * sigma * sigma / s.depth_n + std::pow(kDepthSlack * std::max(1.0, z * z), 2);
+    m.step = s.depth_step / s.n;
+    m.step_variance = 9.0 * sigma * sigma / s.n + std::pow(kDepthSlack * std::max(1.0, z * z), 2);
     m.place =
         reference_from_current * current.camera.back_project({segments[i].centre.x, segments[i].centre.y}, z);
   }
@@ -139,26 +127,50 @@ Eigen::Matrix3d information_of(const Measured& m) {
   return information;
 }
 
+/// A patch's part of the normal equations.
+struct TwistTerm {
+  double vote = 0.0;
+  Eigen::Matrix<double, 3, 6> j;
+  Eigen::Vector3d off;  // shift and step
+  Eigen::Matrix3d information;
+  Matrix6d h;
+  Vector6d g;
+};
+
+std::vector<TwistTerm> twist_terms(const Camera& camera, const std::vector<Measured>& measured,
+                                   const std::vector<double>& votes) {
+  std::vector<TwistTerm> terms;
+  terms.reserve(measured.size());
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const Measured& m = measured[i];
+    if (!m.valid || votes[i] <= 0) continue;
+    TwistTerm& term = terms.emplace_back();
+    term.vote = votes[i];
+    term.j = by_twist(camera, m.place);
+    term.information = information_of(m);
+    const Eigen::Matrix<double, 6, 3> weighted = term.j.transpose() * term.information;
+    term.h = weighted * term.j;
+    term.off = {m.shift.x(), m.shift.y(), m.step};
+    term.g = weighted * term.off;
+  }
+  return terms;
+}
+
 /// The twist most patches share: iteratively reweighted least squares (Geman-McClure), from the pose given.
 /// Strict from the first round: all patches together may be met by a slide and a turn that belong to none of
 /// them.
-Vector6d common_twist(const Camera& camera, const std::vector<Measured>& measured,
-                      const std::vector<double>& votes) {
+Vector6d common_twist(const std::vector<TwistTerm>& terms) {
   Vector6d twist = Vector6d::Zero();
   for (const double strictness : {12.0, 8.0, 6.0, 6.0, 6.0}) {
     Matrix6d h = Matrix6d::Zero();
     h.diagonal() << 2500, 2500, 2500, 1e4, 1e4, 1e4;  // the pose given is right to centimetres
     Vector6d g = Vector6d::Zero();
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      const Measured& m = measured[i];
-      if (!m.valid || votes[i] <= 0) continue;
-      const auto j = by_twist(camera, m.place);
-      const Eigen::Matrix3d information = information_of(m);
-      const Eigen::Vector3d r = residual_of(m, j, twist);
-      const double off = 1.0 + r.dot(information * r) / strictness;
-      const double weight = votes[i] / (off * off);
-      h += weight * j.transpose() * information * j;
-      g += weight * j.transpose() * information * Eigen::Vector3d(m.shift.x(), m.shift.y(), m.step);
+    for (const TwistTerm& term : terms) {
+      const Eigen::Vector3d r = term.off - term.j * twist;
+      const double off = 1.0 + r.dot(term.information * r) / strictness;
+      const double weight = term.vote / (off * off);
+      h += weight * term.h;
+      g += weight * term.g;
     }
     twist = h.ldlt().solve(g);
   }
@@ -246,14 +258,14 @@ PatchMotions measure_patches(const RgbdView& current, const ReferenceView& refer
   }
   std::vector<Measured> measured;
   for (int round = 0; round < kRounds; ++round) {
-    const Carrier carry(current.camera, result.reference_from_current);
+    Carrier carry(current.camera, result.reference_from_current);
     measured = measure(current, segments, gather(current, *reference.view, carry, labels, segments.size()),
                        result.reference_from_current);
     result.measured = static_cast<int>(std::count_if(measured.begin(), measured.end(), [](const Measured& m) {
       return m.valid && m.covariance.trace() < 2 * kTypicalShift * kTypicalShift;
     }));
     if (result.measured < kMinPatches) return result;
-    const Vector6d twist = common_twist(current.camera, measured, votes);
+    const Vector6d twist = common_twist(twist_terms(current.camera, measured, votes));
     // The last measurement is judged against what is left of the twist.
     if (twist.norm() < kSettled || round + 1 == kRounds)
       judge(current.camera, measured, twist, votes, result.patches);

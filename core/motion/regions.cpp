@@ -9,7 +9,11 @@ namespace stillpoint {
 
 LabelledRegions find_regions(const cv::Mat& mask) {
   LabelledRegions found;
-  const int count = cv::connectedComponents(mask, found.labels, 8, CV_32S);
+  const cv::Rect around = cv::boundingRect(mask);
+  found.labels = cv::Mat::zeros(mask.size(), CV_32SC1);
+  if (around.empty()) return found;
+  cv::Mat labels = found.labels(around);
+  const int count = cv::connectedComponents(mask(around), labels, 8, CV_32S);
   // OpenCV's own statistics also go through everything that does not move, at seven times the labelling's
   // cost.
   struct Sums {
@@ -17,10 +21,10 @@ LabelledRegions find_regions(const cv::Mat& mask) {
     std::int64_t x = 0, y = 0;
   };
   std::vector<Sums> sums(static_cast<std::size_t>(count));
-  for (int y = 0; y < mask.rows; ++y) {
+  for (int y = around.y; y < around.br().y; ++y) {
     const unsigned char* moving = mask.ptr(y);
     const int* label = found.labels.ptr<int>(y);
-    for (int x = 0; x < mask.cols; ++x) {
+    for (int x = around.x; x < around.br().x; ++x) {
       if (moving[x] == 0) continue;
       Sums& sum = sums[static_cast<std::size_t>(label[x])];
       sum.left = std::min(sum.left, x);

@@ -6,11 +6,8 @@
 namespace stillpoint {
 namespace {
 
-/// The block's middle measurement, or the next best one of it.
-float block_depth(const cv::Mat& depth, int x0, int y0, int factor) {
-  const int middle = factor / 2;
-  const float centre = depth.at<float>(y0 + middle, x0 + middle);
-  if (centre > 0) return centre;
+/// The first measurement of a block that has none in its middle.
+float any_depth(const cv::Mat& depth, int x0, int y0, int factor) {
   for (int y = y0; y < y0 + factor; ++y)
     for (int x = x0; x < x0 + factor; ++x)
       if (const float z = depth.at<float>(y, x); z > 0) return z;
@@ -28,6 +25,36 @@ cv::Mat steepest_neighbour(const cv::Mat& gray) {
   return range;
 }
 
+/// A quarter of the difference of both neighbours: two images' slopes are averaged by adding theirs.
+void slopes(const cv::Mat& gray, cv::Mat& slope_x, cv::Mat& slope_y) {
+  slope_x = cv::Mat::zeros(gray.size(), CV_32FC1);
+  slope_y = cv::Mat::zeros(gray.size(), CV_32FC1);
+  for (int y = 1; y + 1 < gray.rows; ++y) {
+    const auto *above = gray.ptr<float>(y - 1), *row = gray.ptr<float>(y), *below = gray.ptr<float>(y + 1);
+    auto *sideways = slope_x.ptr<float>(y), *down = slope_y.ptr<float>(y);
+    for (int x = 1; x + 1 < gray.cols; ++x) {
+      sideways[x] = 0.25F * (row[x + 1] - row[x - 1]);
+      down[x] = 0.25F * (below[x] - above[x]);
+    }
+  }
+}
+
+cv::Mat inner_pixels(const cv::Mat& depth) {
+  cv::Mat inner = cv::Mat::zeros(depth.size(), CV_8UC1);
+  const auto same = [](float z, float other) { return (other > 0) & same_surface(z, other); };
+  for (int y = 1; y + 1 < depth.rows; ++y) {
+    const auto *above = depth.ptr<float>(y - 1), *row = depth.ptr<float>(y), *below = depth.ptr<float>(y + 1);
+    auto* out = inner.ptr<uchar>(y);
+    for (int x = 1; x + 1 < depth.cols; ++x) {
+      const float z = row[x];
+      const bool all =
+          (z > 0) & same(z, row[x - 1]) & same(z, row[x + 1]) & same(z, above[x]) & same(z, below[x]);
+      out[x] = all ? 255 : 0;
+    }
+  }
+  return inner;
+}
+
 }  // namespace
 
 RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera, int factor) {
@@ -40,9 +67,17 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
   small.convertTo(view.gray, CV_32F);
   view.gradient = steepest_neighbour(view.gray);
   view.depth = cv::Mat::zeros(size, CV_32FC1);
-  for (int y = 0; y < size.height && !depth.empty(); ++y)
-    for (int x = 0; x < size.width; ++x)
-      view.depth.at<float>(y, x) = block_depth(depth, x * factor, y * factor, factor);
+  const int middle = factor / 2;
+  for (int y = 0; y < size.height && !depth.empty(); ++y) {
+    const auto* row = depth.ptr<float>(y * factor + middle);
+    auto* out = view.depth.ptr<float>(y);
+    for (int x = 0; x < size.width; ++x) {
+      const float centre = row[x * factor + middle];
+      out[x] = centre > 0 ? centre : any_depth(depth, x * factor, y * factor, factor);
+    }
+  }
+  slopes(view.gray, view.slope_x, view.slope_y);
+  view.within_surface = inner_pixels(view.depth);
   view.camera = camera.scaled_to(gray.cols, gray.rows);
   view.camera.fx /= factor, view.camera.fy /= factor;
   view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5,

@@ -10,13 +10,22 @@ namespace stillpoint {
 struct RgbdView {
   cv::Mat gray;      ///< CV_32FC1, grey levels, averaged over each block
   cv::Mat gradient;  ///< CV_32FC1, largest difference to a neighbour, grey levels a pixel
-  cv::Mat depth;   ///< CV_32FC1, m, one measured value of each block (never a mean across an edge); 0 = none
-  Camera camera;   ///< of the small images, without distortion: pixels are near enough
-  int factor = 4;  ///< full-size pixels a side of a block
+  cv::Mat depth;  ///< CV_32FC1, m, one measured value of each block (never a mean across an edge); 0 = none
+  cv::Mat slope_x, slope_y;  ///< CV_32FC1, half the slope of gray, grey levels a pixel: two views' halves add
+                             ///< up to their mean
+  cv::Mat within_surface;    ///< CV_8UC1, 255 where the four neighbours are measured on the same surface
+  Camera camera;             ///< of the small images, without distortion: pixels are near enough
+  int factor = 4;            ///< full-size pixels a side of a block
 };
 
 /// @param gray CV_8UC1; @param depth CV_32FC1 of the same size, m
 [[nodiscard]] RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera,
                                       int factor);
+
+/// Whether two depths (m) that lie side by side belong to one surface.
+[[nodiscard]] inline bool same_surface(float a, float b) {
+  const float nearer = a < b ? a : b;
+  return (a > b ? a - b : b - a) < 0.02F + 0.012F * nearer * nearer;
+}
 
 }  // namespace stillpoint

@@ -1,8 +1,8 @@
 #include "core/motion/segments.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <array>
+#include <limits>
 
 namespace stillpoint {
 namespace {
@@ -29,69 +29,130 @@ std::vector<Segment> seeds(const RgbdView& view, int side) {
   return segments;
 }
 
-/// Distance of a pixel to a patch in units of the patch's side; depth counts by its share of the distance.
-float distance(const Segment& segment, int x, int y, float z, float side) {
-  const float dx = (static_cast<float>(x) - segment.centre.x) / side;
-  const float dy = (static_cast<float>(y) - segment.centre.y) / side;
-  const float dz = segment.depth > 0 ? (z - segment.depth) / (kDepthScale * z) : 2.0F;
-  return dx * dx + dy * dy + dz * dz;
-}
+/// The nine patches that may have the pixels of one row of cells: a patch never wanders far from its seed.
+/// What a patch's distance needs stands at every column, so that whole rows are compared at once.
+class Candidates {
+ public:
+  static constexpr std::size_t kCount = 9;
+  struct Candidate {
+    std::vector<float> x, y, z;
+    std::vector<int> label;
+  };
 
+  Candidates(int width, int side, int columns, int rows)
+      : side_(side), columns_(columns), rows_(rows), width_(static_cast<std::size_t>(width)) {
+    for (Candidate& c : candidates_)
+      c = {std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_),
+           std::vector<int>(width_)};
+  }
+
+  void gather(const std::vector<Segment>& segments, int row) {
+    for (std::size_t k = 0; k < kCount; ++k) {
+      Candidate& candidate = candidates_[k];
+      const int r = row - 1 + static_cast<int>(k) / 3;
+      for (std::size_t x = 0; x < width_; ++x) {
+        const int c = std::min(static_cast<int>(x) / side_, columns_ - 1) - 1 + static_cast<int>(k) % 3;
+        const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
+        constexpr float kNowhere = 1e9F;  // px
+        const Segment* segment = exists ? &segments[static_cast<std::size_t>(r * columns_ + c)] : nullptr;
+        candidate.x[x] = segment ? segment->centre.x : kNowhere;
+        candidate.y[x] = segment ? segment->centre.y : kNowhere;
+        candidate.z[x] = segment ? segment->depth : 0.0F;
+        candidate.label[x] = r * columns_ + c;
+      }
+    }
+  }
+
+  [[nodiscard]] const std::array<Candidate, kCount>& all() const { return candidates_; }
+
+ private:
+  int side_, columns_, rows_;
+  std::size_t width_;
+  std::array<Candidate, kCount> candidates_;
+};
+
+/// Gives each pixel to the nearest patch: by place in units of the patch's side, by depth in shares of the
+/// distance.
 void assign(const RgbdView& view, const std::vector<Segment>& segments, int side, cv::Mat& labels) {
+  constexpr float kNoDepth = 2.0F;  // how far in depth a patch lies that has none yet
   const int columns = (view.depth.cols + side - 1 - side / 2) / side;
   const int rows = static_cast<int>(segments.size()) / std::max(1, columns);
-  for (int y = 0; y < view.depth.rows; ++y)
-    for (int x = 0; x < view.depth.cols; ++x) {
-      const float z = view.depth.at<float>(y, x);
-      int best = -1;
-      float best_distance = std::numeric_limits<float>::max();
-      if (z > 0) {
-        // A patch never wanders far from its seed: only those about the pixel's own cell can have it.
-        const int column = std::min(x / side, columns - 1), row = std::min(y / side, rows - 1);
-        for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r)
-          for (int c = std::max(0, column - 1); c <= std::min(columns - 1, column + 1); ++c) {
-            const int candidate = r * columns + c;
-            const float d =
-                distance(segments[static_cast<std::size_t>(candidate)], x, y, z, static_cast<float>(side));
-            if (d < best_distance) best = candidate, best_distance = d;
-          }
+  Candidates candidates(view.depth.cols, side, columns, rows);
+  const auto width = static_cast<std::size_t>(view.depth.cols);
+  std::vector<float> best(width), column(width);
+  for (std::size_t x = 0; x < width; ++x) column[x] = static_cast<float>(x);
+  const float by_side = 1.0F / static_cast<float>(side);
+  int gathered = -1;
+  for (int y = 0; y < view.depth.rows; ++y) {
+    if (const int row = std::min(y / side, rows - 1); row != gathered)
+      candidates.gather(segments, gathered = row);
+    const auto* depth = view.depth.ptr<float>(y);
+    auto* label = labels.ptr<int>(y);
+    const auto down = static_cast<float>(y);
+    std::fill(best.begin(), best.end(), std::numeric_limits<float>::max());
+    for (const Candidates::Candidate& c : candidates.all())
+      for (std::size_t x = 0; x < width; ++x) {
+        const float dx = (column[x] - c.x[x]) * by_side, dy = (down - c.y[x]) * by_side;
+        const float by_depth = (depth[x] - c.z[x]) / (kDepthScale * depth[x]);
+        const float dz = c.z[x] > 0 ? by_depth : kNoDepth;
+        const float d = dx * dx + dy * dy + dz * dz;
+        const bool nearer = d < best[x];
+        best[x] = nearer ? d : best[x];
+        label[x] = nearer ? c.label[x] : label[x];
       }
-      labels.at<int>(y, x) = best;
-    }
+    for (std::size_t x = 0; x < width; ++x) label[x] = depth[x] > 0 ? label[x] : -1;
+  }
 }
 
-/// How much boundary two patches share on one surface, in pixels: the weight of their agreement.
-std::map<std::pair<int, int>, int> shared_boundaries(const RgbdView& view, const cv::Mat& labels) {
-  std::map<std::pair<int, int>, int> shared;
-  const auto look = [&](int y, int x, int y2, int x2) {
-    const int a = labels.at<int>(y, x), b = labels.at<int>(y2, x2);
-    if (a < 0 || b < 0 || a == b) return;
-    if (same_surface(view.depth.at<float>(y, x), view.depth.at<float>(y2, x2)))
-      ++shared[{std::min(a, b), std::max(a, b)}];
+/// Two patches that touch on one surface, and how many pixels of boundary they share: the weight of their
+/// agreement.
+struct Contact {
+  int a = 0, b = 0;
+  int boundary = 0;
+};
+
+std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
+  std::vector<std::pair<int, int>> touching;
+  const auto look = [&](int a, int b, float za, float zb) {
+    if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
+    touching.emplace_back(std::min(a, b), std::max(a, b));
   };
-  for (int y = 0; y < labels.rows; ++y)
+  for (int y = 0; y < labels.rows; ++y) {
+    const bool last = y + 1 == labels.rows;
+    const auto *label = labels.ptr<int>(y), *label_below = last ? label : labels.ptr<int>(y + 1);
+    const auto *z = view.depth.ptr<float>(y), *z_below = last ? z : view.depth.ptr<float>(y + 1);
     for (int x = 0; x < labels.cols; ++x) {
-      if (x + 1 < labels.cols) look(y, x, y, x + 1);
-      if (y + 1 < labels.rows) look(y, x, y + 1, x);
+      if (x + 1 < labels.cols) look(label[x], label[x + 1], z[x], z[x + 1]);
+      look(label[x], label_below[x], z[x], z_below[x]);
     }
-  return shared;
+  }
+  std::sort(touching.begin(), touching.end());
+  std::vector<Contact> result;
+  for (const auto& [a, b] : touching) {
+    if (result.empty() || result.back().a != a || result.back().b != b) result.push_back({a, b, 0});
+    ++result.back().boundary;
+  }
+  return result;
 }
 
 }  // namespace
 
-std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionConfig& config,
-                                      cv::Mat& labels) {
-  std::vector<Segment> segments = seeds(view, config.segment_px);
-  labels = cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1));
+SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& config) {
+  SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),
+                         seeds(view, config.segment_px)};
+  auto& [labels, segments] = patches;
   for (int round = 0; round < kRounds; ++round) {
     assign(view, segments, config.segment_px, labels);
     std::vector<Sum> sums(segments.size());
-    for (int y = 0; y < labels.rows; ++y)
-      for (int x = 0; x < labels.cols; ++x)
-        if (const int label = labels.at<int>(y, x); label >= 0) {
-          Sum& sum = sums[static_cast<std::size_t>(label)];
-          sum.x += x, sum.y += y, sum.z += view.depth.at<float>(y, x), ++sum.count;
-        }
+    for (int y = 0; y < labels.rows; ++y) {
+      const auto* label = labels.ptr<int>(y);
+      const auto* depth = view.depth.ptr<float>(y);
+      for (int x = 0; x < labels.cols; ++x) {
+        if (label[x] < 0) continue;
+        Sum& sum = sums[static_cast<std::size_t>(label[x])];
+        sum.x += x, sum.y += y, sum.z += depth[x], ++sum.count;
+      }
+    }
     for (std::size_t i = 0; i < segments.size(); ++i) {
       segments[i].pixels = sums[i].count;
       if (sums[i].count == 0) continue;
@@ -100,15 +161,17 @@ std::vector<Segment> segment_surfaces(const RgbdView& view, const DepthMotionCon
       segments[i].depth = static_cast<float>(sums[i].z / n);
     }
   }
-  return segments;
+  return patches;
 }
 
 void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat& labels,
                     const DepthMotionConfig& config, std::vector<Segment>& segments) {
-  for (int y = 0; y < labels.rows; ++y)
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    const auto* odds = log_odds.ptr<float>(y);
     for (int x = 0; x < labels.cols; ++x)
-      if (const int label = labels.at<int>(y, x); label >= 0)
-        segments[static_cast<std::size_t>(label)].evidence += log_odds.at<float>(y, x);
+      if (label[x] >= 0) segments[static_cast<std::size_t>(label[x])].evidence += odds[x];
+  }
   for (Segment& segment : segments) {
     if (segment.pixels > 0) segment.evidence /= static_cast<float>(segment.pixels);
     segment.evidence = std::clamp(segment.evidence, -kMostSay, kMostSay);
@@ -120,9 +183,9 @@ void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat
     float weight;
   };
   std::vector<std::vector<Neighbour>> neighbours(segments.size());
-  for (const auto& [pair, boundary] : shared_boundaries(view, labels)) {
-    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    const float weight = static_cast<float>(config.smoothing) * static_cast<float>(boundary) /
+  for (const Contact& contact : contacts(view, labels)) {
+    const auto a = static_cast<std::size_t>(contact.a), b = static_cast<std::size_t>(contact.b);
+    const float weight = static_cast<float>(config.smoothing) * static_cast<float>(contact.boundary) /
                          static_cast<float>(config.segment_px);
     neighbours[a].push_back({b, weight});
     neighbours[b].push_back({a, weight});

@@ -2,6 +2,7 @@
 
 #include <future>
 
+#include "core/motion/segments.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -31,6 +32,7 @@ PreparedFrame FramePreparer::prepare(const Frame& frame) {
   } else if (config_.run.method == "stillpoint") {
     prepared.view = std::make_shared<const RgbdView>(
         make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
+    prepared.patches = segment_surfaces(*prepared.view, config_.depth_motion);
   }
   prepared.motion_ms = watch.milliseconds();
   features.get();

@@ -8,7 +8,7 @@
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/detect_motion.hpp"
-#include "core/motion/rgbd_view.hpp"
+#include "core/motion/depth_motion.hpp"
 #include "core/odometry/orb_extractor.hpp"
 #include "core/sequence/frame.hpp"
 
@@ -23,6 +23,7 @@ struct PreparedFrame {
   std::shared_ptr<const MotionFrame> motion_frame;  ///< method `paper`: what later frames are compared with
   MotionTrace motion;                               ///< method `paper`: what moves
   std::shared_ptr<const RgbdView> view;             ///< method `stillpoint`: the frame made small
+  SurfacePatches patches;                           ///< … and its surfaces in patches
   double features_ms = 0.0, motion_ms = 0.0;        ///< wall time each took; for reading only
 };
 

@@ -1,5 +1,7 @@
 #include "core/odometry/motion_replay.hpp"
 
+#include "core/motion/segments.hpp"
+
 namespace stillpoint {
 
 MotionReplay::MotionReplay(const Camera& camera, const Config& config) : odometry_(camera, config) {
@@ -8,10 +10,10 @@ MotionReplay::MotionReplay(const Camera& camera, const Config& config) : odometr
 
 void MotionReplay::make_view(const Frame& frame) {
   odometry_.view_.reset();
-  if (frame.has_depth())
-    odometry_.view_ =
-        std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, odometry_.camera_,
-                                                        odometry_.config_.depth_motion.factor));
+  if (!frame.has_depth()) return;
+  const DepthMotionConfig& config = odometry_.config_.depth_motion;
+  odometry_.view_ = std::make_shared<const RgbdView>(
+      make_rgbd_view(frame.gray, frame.depth, odometry_.camera_, config.factor));
 }
 
 void MotionReplay::take(const Frame& frame, const FrameRecord& record, const cv::Mat& log_odds) {
@@ -31,6 +33,8 @@ FrameResult MotionReplay::repeat(const Frame& frame, const FrameRecord& record) 
   result.record.world_from_camera = record.world_from_camera;
   make_view(frame);
   if (record.prior_pose) result.mask = odometry_.remembered_mask(frame, *record.prior_pose, result.record);
+  if (record.motion_pose && odometry_.view_)
+    odometry_.patches_ = segment_surfaces(*odometry_.view_, odometry_.config_.depth_motion);
   if (record.motion_pose) odometry_.detect_by_pose(frame, *record.motion_pose, result);
   odometry_.remember_view(frame, result);
   return result;

@@ -10,11 +10,22 @@
 
 namespace stillpoint {
 
+namespace {
+
+/// Whether any pixel moves by what is remembered: carried along, none moves more.
+bool remembers_motion(const MotionMemory& memory, const DepthMotionConfig& config) {
+  double most = 0.0;
+  cv::minMaxLoc(memory.log_odds, nullptr, &most);
+  return most > config.moving_log_odds;
+}
+
+}  // namespace
+
 cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record) {
   const Stopwatch watch;
   record.prior_pose = predicted;
   cv::Mat mask;
-  if (memory_ && !past_views_.empty()) {
+  if (memory_ && !past_views_.empty() && remembers_motion(*memory_, config_.depth_motion)) {
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
     const cv::Mat prior = carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion);
     cv::resize(prior > config_.depth_motion.moving_log_odds, mask, frame.gray.size(), 0, 0,
@@ -44,9 +55,9 @@ void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world,
   const Pose previous_from_current = past_views_.empty()
                                          ? Pose::Identity()
                                          : past_views_.back().camera_from_world * camera_from_world.inverse();
-  result.depth_motion =
-      detect_depth_motion(*view_, frame.depth, reference_views(frame.index, camera_from_world),
-                          memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
+  result.depth_motion = detect_depth_motion(
+      *view_, std::move(patches_), frame.depth, reference_views(frame.index, camera_from_world),
+      memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
   result.mask = result.depth_motion.mask;
   result.record.mask_share = result.depth_motion.mask_share;
   purge_moving_points(frame, result.mask, camera_from_world);
@@ -62,6 +73,7 @@ void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
          past_views_[1].frame_index <= frame.index - config_.depth_motion.slow_reference)
     past_views_.pop_front();
   view_.reset();
+  patches_ = {};
 }
 
 std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose& camera_from_world) const {

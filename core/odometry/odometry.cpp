@@ -52,6 +52,7 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
     record.ms.features = prepared.features_ms;
     record.ms.motion = prepared.motion_ms;
     view_ = prepared.view;
+    patches_ = std::move(prepared.patches);
     take_mask(frame, prepared, known_mask, result);
     if (config_.run.check_removal != 0 && last_) {
       const Stopwatch beside;

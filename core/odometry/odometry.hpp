@@ -172,6 +172,7 @@ class Odometry {
   std::deque<PastView> past_views_;             // newest last: what method `stillpoint` compares with
   std::optional<MotionMemory> memory_;          // of the newest past view
   std::shared_ptr<const RgbdView> view_;        // of the frame at hand
+  SurfacePatches patches_;                      // … and its surfaces, until its motion is judged
   std::optional<ColourMotionDetector> colour_;  // while frames have no depth
 };
 

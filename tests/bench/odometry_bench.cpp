@@ -3,6 +3,7 @@
 
 #include <opencv2/features2d.hpp>
 
+#include "core/motion/segments.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
@@ -122,8 +123,9 @@ void DepthMotion(benchmark::State& state) {
     references.push_back({view(static_cast<std::size_t>(i)),
                           scene.source->truth(i).world_from_camera->inverse() * world_from_current});
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        detect_depth_motion(*current, scene.last().depth, references, nullptr, Pose::Identity(), config));
+    benchmark::DoNotOptimize(detect_depth_motion(*current, segment_surfaces(*current, config),
+                                                 scene.last().depth, references, nullptr, Pose::Identity(),
+                                                 config));
 }
 BENCHMARK(DepthMotion)->Unit(benchmark::kMillisecond);
 

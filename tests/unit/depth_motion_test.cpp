@@ -64,8 +64,9 @@ DepthMotionTrace detect(const Scene& now, const std::vector<ReferenceView>& refe
                         const MotionMemory* memory = nullptr) {
   cv::Mat gray, depth;
   now.render(gray, depth);
-  return detect_depth_motion(make_rgbd_view(gray, depth, kCamera, 4), depth, references, memory,
-                             Pose::Identity(), {});
+  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  return detect_depth_motion(view, segment_surfaces(view, {}), depth, references, memory, Pose::Identity(),
+                             {});
 }
 
 double overlap(const cv::Mat& mask, const cv::Mat& truth) {
@@ -155,27 +156,29 @@ TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
   const cv::Point middle(cvRound(kCamera.cx + kCamera.fx * (0.30 - 0.06)), cvRound(kCamera.cy));
   const cv::Rect hole(middle.x - 15, middle.y - 15, 30, 30);
   depth(hole).setTo(0);
+  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
   const DepthMotionTrace trace = detect_depth_motion(
-      make_rgbd_view(gray, depth, kCamera, 4), depth,
-      {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)}, nullptr, Pose::Identity(), {});
+      view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
+      nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(trace.mask(hole)), hole.area());
 }
 
 /// The patches of a scene against an earlier one, from a pose that is off by `error`.
-PatchMotions patches_of(const Scene& now, const Scene& before, const Pose& error, cv::Mat& labels,
+PatchMotions patches_of(const Scene& now, const Scene& before, const Pose& error,
                         std::vector<Segment>& segments) {
   const RgbdView view = now.view();
-  segments = segment_surfaces(view, {}, labels);
+  const SurfacePatches patches = segment_surfaces(view, {});
+  segments = patches.segments;
   ReferenceView then = reference(before, now);
   then.reference_from_current = error * then.reference_from_current;
-  return measure_patches(view, then, labels, segments, cv::Mat::zeros(view.depth.size(), CV_32FC1), {});
+  return measure_patches(view, then, patches.labels, segments, cv::Mat::zeros(view.depth.size(), CV_32FC1),
+                         {});
 }
 
 TEST(PatchMotion, ShiftsAreMeasuredAndWeighed) {
   const Scene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
-  cv::Mat labels;
   std::vector<Segment> segments;
-  const PatchMotions motions = patches_of(now, before, Pose::Identity(), labels, segments);
+  const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
   const double expected = -kCamera.fx / 4 * 0.005 / 1.0;  // px: the board was farther left
   int board = 0, wall = 0, board_moves = 0, wall_moves = 0;
   double shift = 0.0;
@@ -198,9 +201,8 @@ TEST(PatchMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
   Pose error = Pose::Identity();
   error.translation() = Eigen::Vector3d(0.008, -0.004, 0.0);
   const Scene now{0.02, 0.105}, before{0.0, 0.100};
-  cv::Mat labels;
   std::vector<Segment> segments;
-  const PatchMotions motions = patches_of(now, before, error, labels, segments);
+  const PatchMotions motions = patches_of(now, before, error, segments);
   // A sideways slide and a turn look alike on a wall: what counts is where the wall's points come to lie.
   for (const double x : {-0.6, 0.0, 0.6}) {
     const Eigen::Vector3d p(x, 0.3, 2.0), there = motions.reference_from_current * p;
@@ -214,15 +216,15 @@ TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
   EXPECT_EQ(cv::countNonZero(alone.mask), 0);
   EXPECT_FALSE(alone.note.empty());
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
-  const DepthMotionTrace blind = detect_depth_motion(make_rgbd_view(gray, none, kCamera, 4), none,
+  const RgbdView view = make_rgbd_view(gray, none, kCamera, 4);
+  const DepthMotionTrace blind = detect_depth_motion(view, segment_surfaces(view, {}), none,
                                                      {reference({}, {})}, nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(blind.mask), 0);
 }
 
 TEST(Segments, NeverCrossADepthEdge) {
   const RgbdView view = Scene{}.view();
-  cv::Mat labels;
-  const auto segments = segment_surfaces(view, {}, labels);
+  const auto [labels, segments] = segment_surfaces(view, {});
   std::vector<std::pair<float, float>> range(segments.size(), {1e9F, 0.0F});
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
