@@ -125,18 +125,33 @@ void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
 }
 
-/// The moving of the 3x3 small pixels about one, for a full-size pixel at depth z: that of the pixel with the
-/// depth most like its own.
-uchar like_neighbour(const cv::Mat& small_mask, const cv::Mat& small_depth, int sx, int sy, float z) {
-  uchar value = 0;
-  float best = std::numeric_limits<float>::max();
-  for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
-    for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
-      const float other = small_depth.at<float>(v, u), difference = std::abs(other - z);
-      if (other > 0 && difference < best) best = difference, value = small_mask.at<uchar>(v, u);
-    }
-  return value;
-}
+/// The measured ones of the 3x3 small pixels about one: by whether they move, full-size pixels there are
+/// judged.
+class Neighbourhood {
+ public:
+  Neighbourhood(const cv::Mat& small_mask, const cv::Mat& small_depth, int sx, int sy) {
+    for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
+      for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
+        if (const float z = small_depth.ptr<float>(v)[u]; z > 0)
+          depth_[count_] = z, moving_[count_++] = small_mask.ptr<uchar>(v)[u];
+      }
+  }
+
+  /// What the pixel with the depth most like z (m) is.
+  [[nodiscard]] uchar most_like(float z) const {
+    uchar value = 0;
+    float best = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < count_; ++i)
+      if (const float difference = std::abs(depth_[i] - z); difference < best)
+        best = difference, value = moving_[i];
+    return value;
+  }
+
+ private:
+  std::array<float, 9> depth_{};
+  std::array<uchar, 9> moving_{};
+  std::size_t count_ = 0;
+};
 
 /// The small mask at full size, its outline fitted to the depth image.
 cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
@@ -148,24 +163,20 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   const cv::Mat edge = low != high;
   cv::resize(small_mask, mask, full_depth.size(), 0, 0, cv::INTER_NEAREST);
   const int f = view.factor;
-  std::vector<cv::Point> inside;
+  std::vector<cv::Point> unmeasured, inside;
   for (int sy = 0; sy < edge.rows; ++sy)
     for (int sx = 0; sx < edge.cols; ++sx) {
-      if (edge.at<uchar>(sy, sx) == 0) continue;
+      if (edge.ptr<uchar>(sy)[sx] == 0) continue;
+      const Neighbourhood about(small_mask, view.depth, sx, sy);
       for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
         for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x) {
-          const float z = full_depth.at<float>(y, x);
-          mask.at<uchar>(y, x) = z > 0 ? like_neighbour(small_mask, view.depth, sx, sy, z) : uchar{0};
+          const float z = full_depth.ptr<float>(y)[x];
+          mask.ptr<uchar>(y)[x] = z > 0 ? about.most_like(z) : uchar{0};
+          if (z <= 0) unmeasured.emplace_back(x, y);
         }
     }
-  for (int sy = 0; sy < edge.rows; ++sy)
-    for (int sx = 0; sx < edge.cols; ++sx) {
-      if (edge.at<uchar>(sy, sx) == 0) continue;
-      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
-        for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x)
-          if (full_depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, full_depth, x, y, kReach))
-            inside.emplace_back(x, y);
-    }
+  for (const cv::Point& p : unmeasured)
+    if (enclosed_by_motion(mask, full_depth, p.x, p.y, kReach)) inside.push_back(p);
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
   return mask;
 }

@@ -23,6 +23,12 @@ constexpr double kDepthReach = 5.0;     // standard deviations: beyond, it is an
 struct Sums {
   double n = 0, gx = 0, gy = 0, b = 0, gxx = 0, gxy = 0, gyy = 0, gxb = 0, gyb = 0, bb = 0;
   double depth_step = 0;
+
+  void operator+=(const Sums& other) {
+    n += other.n, gx += other.gx, gy += other.gy, b += other.b, bb += other.bb;
+    gxx += other.gxx, gxy += other.gxy, gyy += other.gyy, gxb += other.gxb, gyb += other.gyb;
+    depth_step += other.depth_step;
+  }
 };
 
 /// A patch's shift and how well it is known.
@@ -45,6 +51,8 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Car
     const auto *slope_x = current.slope_x.ptr<float>(y), *slope_y = current.slope_y.ptr<float>(y),
                *gray = current.gray.ptr<float>(y);
     carried.carry_row(y, current.depth.ptr<float>(y));
+    Sums s;  // of the patch the row passes through
+    int of = -1;
     for (int x = 1; x + 1 < labels.cols; ++x) {
       if (within[x] == 0 || label[x] < 0 || !carried.inside(x)) continue;
       const float expected = carried.z(x);
@@ -55,11 +63,15 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Car
       const double gx = slope_x[x] + reference.slope_x.ptr<float>(v)[u];
       const double gy = slope_y[x] + reference.slope_y.ptr<float>(v)[u];
       const double b = gray[x] - bilinear(reference.gray, carried.u(x), carried.v(x));
-      Sums& s = sums[static_cast<std::size_t>(label[x])];
+      if (label[x] != of) {
+        if (of >= 0) sums[static_cast<std::size_t>(of)] += s;
+        s = {}, of = label[x];
+      }
       s.n += 1, s.gx += gx, s.gy += gy, s.b += b, s.bb += b * b;
       s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
       s.depth_step += step;
     }
+    if (of >= 0) sums[static_cast<std::size_t>(of)] += s;
   }
   return sums;
 }

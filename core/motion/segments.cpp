@@ -71,36 +71,51 @@ class Candidates {
   std::array<Candidate, kCount> candidates_;
 };
 
-/// Gives each pixel to the nearest patch: by place in units of the patch's side, by depth in shares of the
-/// distance.
-void assign(const RgbdView& view, const std::vector<Segment>& segments, int side, cv::Mat& labels) {
+/// A row's pixels, and the nearest patch found for each so far. Pointers that nothing else points to: the
+/// loop over a row is to work on several pixels at once.
+struct Row {
+  int width = 0;
+  float down = 0.0F, by_side = 0.0F;
+  const float* __restrict depth = nullptr;
+  const float* __restrict by_depth = nullptr;  // 1 / m: what a difference in depth counts
+  float* __restrict best = nullptr;
+  int* __restrict label = nullptr;
+};
+
+/// By place in units of the patch's side, by depth in shares of the distance.
+void offer(const Candidates::Candidate& candidate, const Row& row) {
   constexpr float kNoDepth = 2.0F;  // how far in depth a patch lies that has none yet
+  const float *__restrict cx = candidate.x.data(), *__restrict cy = candidate.y.data(),
+              *__restrict cz = candidate.z.data();
+  const int* __restrict label = candidate.label.data();
+  for (int x = 0; x < row.width; ++x) {
+    const float dx = (static_cast<float>(x) - cx[x]) * row.by_side, dy = (row.down - cy[x]) * row.by_side;
+    const float measured = (row.depth[x] - cz[x]) * row.by_depth[x];
+    const float dz = cz[x] > 0 ? measured : kNoDepth;
+    const float d = dx * dx + dy * dy + dz * dz;
+    const bool nearer = d < row.best[x];
+    row.best[x] = nearer ? d : row.best[x];
+    row.label[x] = nearer ? label[x] : row.label[x];
+  }
+}
+
+/// Gives each pixel to the nearest patch.
+void assign(const RgbdView& view, const cv::Mat& by_depth, const std::vector<Segment>& segments, int side,
+            cv::Mat& labels) {
   const int columns = (view.depth.cols + side - 1 - side / 2) / side;
   const int rows = static_cast<int>(segments.size()) / std::max(1, columns);
   Candidates candidates(view.depth.cols, side, columns, rows);
-  const auto width = static_cast<std::size_t>(view.depth.cols);
-  std::vector<float> best(width), column(width);
-  for (std::size_t x = 0; x < width; ++x) column[x] = static_cast<float>(x);
-  const float by_side = 1.0F / static_cast<float>(side);
+  std::vector<float> best(static_cast<std::size_t>(view.depth.cols));
   int gathered = -1;
   for (int y = 0; y < view.depth.rows; ++y) {
     if (const int row = std::min(y / side, rows - 1); row != gathered)
       candidates.gather(segments, gathered = row);
-    const auto* depth = view.depth.ptr<float>(y);
-    auto* label = labels.ptr<int>(y);
-    const auto down = static_cast<float>(y);
     std::fill(best.begin(), best.end(), std::numeric_limits<float>::max());
-    for (const Candidates::Candidate& c : candidates.all())
-      for (std::size_t x = 0; x < width; ++x) {
-        const float dx = (column[x] - c.x[x]) * by_side, dy = (down - c.y[x]) * by_side;
-        const float by_depth = (depth[x] - c.z[x]) / (kDepthScale * depth[x]);
-        const float dz = c.z[x] > 0 ? by_depth : kNoDepth;
-        const float d = dx * dx + dy * dy + dz * dz;
-        const bool nearer = d < best[x];
-        best[x] = nearer ? d : best[x];
-        label[x] = nearer ? c.label[x] : label[x];
-      }
-    for (std::size_t x = 0; x < width; ++x) label[x] = depth[x] > 0 ? label[x] : -1;
+    const Row row{view.depth.cols,          static_cast<float>(y),  1.0F / static_cast<float>(side),
+                  view.depth.ptr<float>(y), by_depth.ptr<float>(y), best.data(),
+                  labels.ptr<int>(y)};
+    for (const Candidates::Candidate& candidate : candidates.all()) offer(candidate, row);
+    for (int x = 0; x < row.width; ++x) row.label[x] = row.depth[x] > 0 ? row.label[x] : -1;
   }
 }
 
@@ -141,8 +156,9 @@ SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& c
   SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),
                          seeds(view, config.segment_px)};
   auto& [labels, segments] = patches;
+  const cv::Mat by_depth = 1.0F / (kDepthScale * view.depth);  // 0 where there is none
   for (int round = 0; round < kRounds; ++round) {
-    assign(view, segments, config.segment_px, labels);
+    assign(view, by_depth, segments, config.segment_px, labels);
     std::vector<Sum> sums(segments.size());
     for (int y = 0; y < labels.rows; ++y) {
       const auto* label = labels.ptr<int>(y);
