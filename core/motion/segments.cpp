@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace stillpoint {
 namespace {
 
 constexpr int kRounds = 3;            // SLIC has settled by then
 constexpr float kDepthScale = 0.05F;  // share of the distance that weighs as much as a patch's side
+constexpr float kNearest = 1e-3F;     // m
 constexpr int kRelaxations = 15;
 constexpr float kMostSay = 2.5F;  // log-odds: the surest patch does not outvote its neighbours
 
@@ -29,28 +32,28 @@ std::vector<Segment> seeds(const RgbdView& view, int side) {
   return segments;
 }
 
+constexpr int kLanes = cv::v_float32x4::nlanes;
+
 /// The nine patches that may have the pixels of one row of cells: a patch never wanders far from its seed.
-/// What a patch's distance needs stands at every column, so that whole rows are compared at once.
+/// What a patch's distance needs stands at every column, so that several pixels are compared at once.
+struct Candidate {
+  std::vector<float> x, y, z;
+  std::vector<int> label;
+};
+
 class Candidates {
  public:
-  static constexpr std::size_t kCount = 9;
-  struct Candidate {
-    std::vector<float> x, y, z;
-    std::vector<int> label;
-  };
-
-  Candidates(int width, int side, int columns, int rows)
-      : side_(side), columns_(columns), rows_(rows), width_(static_cast<std::size_t>(width)) {
-    for (Candidate& c : candidates_)
-      c = {std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_),
-           std::vector<int>(width_)};
+  Candidates(int width, int side, int columns, int rows) : side_(side), columns_(columns), rows_(rows) {
+    const auto n = static_cast<std::size_t>(width);
+    for (Candidate& c : all_)
+      c = {std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<int>(n)};
   }
 
   void gather(const std::vector<Segment>& segments, int row) {
-    for (std::size_t k = 0; k < kCount; ++k) {
-      Candidate& candidate = candidates_[k];
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+      Candidate& candidate = all_[k];
       const int r = row - 1 + static_cast<int>(k) / 3;
-      for (std::size_t x = 0; x < width_; ++x) {
+      for (std::size_t x = 0; x < candidate.x.size(); ++x) {
         const int c = std::min(static_cast<int>(x) / side_, columns_ - 1) - 1 + static_cast<int>(k) % 3;
         const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
         constexpr float kNowhere = 1e9F;  // px
@@ -63,59 +66,62 @@ class Candidates {
     }
   }
 
-  [[nodiscard]] const std::array<Candidate, kCount>& all() const { return candidates_; }
+  [[nodiscard]] const std::array<Candidate, 9>& all() const { return all_; }
 
  private:
   int side_, columns_, rows_;
-  std::size_t width_;
-  std::array<Candidate, kCount> candidates_;
+  std::array<Candidate, 9> all_;
 };
 
-/// A row's pixels, and the nearest patch found for each so far. Pointers that nothing else points to: the
-/// loop over a row is to work on several pixels at once.
+/// A row's pixels, as many as fill the lanes, and the nearest patch found for each so far.
 struct Row {
-  int width = 0;
-  float down = 0.0F, by_side = 0.0F;
-  const float* __restrict depth = nullptr;
-  const float* __restrict by_depth = nullptr;  // 1 / m: what a difference in depth counts
-  float* __restrict best = nullptr;
-  int* __restrict label = nullptr;
+  std::vector<float> x, depth, by_depth;  // by_depth, 1 / m: what a difference in depth counts
+  std::vector<float> distance;
+  std::vector<int> label;
 };
 
-/// By place in units of the patch's side, by depth in shares of the distance.
-void offer(const Candidates::Candidate& candidate, const Row& row) {
-  constexpr float kNoDepth = 2.0F;  // how far in depth a patch lies that has none yet
-  const float *__restrict cx = candidate.x.data(), *__restrict cy = candidate.y.data(),
-              *__restrict cz = candidate.z.data();
-  const int* __restrict label = candidate.label.data();
-  for (int x = 0; x < row.width; ++x) {
-    const float dx = (static_cast<float>(x) - cx[x]) * row.by_side, dy = (row.down - cy[x]) * row.by_side;
-    const float measured = (row.depth[x] - cz[x]) * row.by_depth[x];
-    const float dz = cz[x] > 0 ? measured : kNoDepth;
-    const float d = dx * dx + dy * dy + dz * dz;
-    const bool nearer = d < row.best[x];
-    row.best[x] = nearer ? d : row.best[x];
-    row.label[x] = nearer ? label[x] : row.label[x];
+/// Weighs a patch against the nearest so far: by place in units of the patch's side, by depth in shares of
+/// the distance.
+void offer(const Candidate& candidate, float y, float side, Row& row) {
+  const cv::v_float32x4 no_depth = cv::v_setall_f32(2.0F);  // how far in depth a patch lies that has none yet
+  const cv::v_float32x4 zero = cv::v_setzero_f32(), down = cv::v_setall_f32(y),
+                        by_side = cv::v_setall_f32(1.0F / side);
+  for (std::size_t x = 0; x < row.x.size(); x += kLanes) {
+    const cv::v_float32x4 z = cv::v_load(&candidate.z[x]);
+    const cv::v_float32x4 dx = (cv::v_load(&row.x[x]) - cv::v_load(&candidate.x[x])) * by_side;
+    const cv::v_float32x4 dy = (down - cv::v_load(&candidate.y[x])) * by_side;
+    const cv::v_float32x4 dz =
+        cv::v_select(z > zero, (cv::v_load(&row.depth[x]) - z) * cv::v_load(&row.by_depth[x]), no_depth);
+    const cv::v_float32x4 d = dx * dx + dy * dy + dz * dz, best = cv::v_load(&row.distance[x]);
+    const cv::v_float32x4 nearer = d < best;
+    cv::v_store(&row.distance[x], cv::v_select(nearer, d, best));
+    cv::v_store(&row.label[x], cv::v_select(cv::v_reinterpret_as_s32(nearer), cv::v_load(&candidate.label[x]),
+                                            cv::v_load(&row.label[x])));
   }
 }
 
 /// Gives each pixel to the nearest patch.
-void assign(const RgbdView& view, const cv::Mat& by_depth, const std::vector<Segment>& segments, int side,
-            cv::Mat& labels) {
+void assign(const RgbdView& view, const std::vector<Segment>& segments, int side, cv::Mat& labels) {
   const int columns = (view.depth.cols + side - 1 - side / 2) / side;
   const int rows = static_cast<int>(segments.size()) / std::max(1, columns);
-  Candidates candidates(view.depth.cols, side, columns, rows);
-  std::vector<float> best(static_cast<std::size_t>(view.depth.cols));
+  const int width = view.depth.cols, padded = (width + kLanes - 1) / kLanes * kLanes;
+  Candidates candidates(padded, side, columns, rows);
+  const auto n = static_cast<std::size_t>(padded);
+  Row row{std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<float>(n),
+          std::vector<int>(n)};
+  std::iota(row.x.begin(), row.x.end(), 0.0F);
   int gathered = -1;
   for (int y = 0; y < view.depth.rows; ++y) {
-    if (const int row = std::min(y / side, rows - 1); row != gathered)
-      candidates.gather(segments, gathered = row);
-    std::fill(best.begin(), best.end(), std::numeric_limits<float>::max());
-    const Row row{view.depth.cols,          static_cast<float>(y),  1.0F / static_cast<float>(side),
-                  view.depth.ptr<float>(y), by_depth.ptr<float>(y), best.data(),
-                  labels.ptr<int>(y)};
-    for (const Candidates::Candidate& candidate : candidates.all()) offer(candidate, row);
-    for (int x = 0; x < row.width; ++x) row.label[x] = row.depth[x] > 0 ? row.label[x] : -1;
+    if (const int r = std::min(y / side, rows - 1); r != gathered) candidates.gather(segments, gathered = r);
+    const auto* depth = view.depth.ptr<float>(y);
+    std::copy(depth, depth + width, row.depth.begin());
+    for (std::size_t x = 0; x < n; ++x)
+      row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
+    std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
+    for (const Candidate& candidate : candidates.all())
+      offer(candidate, static_cast<float>(y), static_cast<float>(side), row);
+    auto* label = labels.ptr<int>(y);
+    for (int x = 0; x < width; ++x) label[x] = depth[x] > 0 ? row.label[static_cast<std::size_t>(x)] : -1;
   }
 }
 
@@ -156,9 +162,8 @@ SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& c
   SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),
                          seeds(view, config.segment_px)};
   auto& [labels, segments] = patches;
-  const cv::Mat by_depth = 1.0F / (kDepthScale * view.depth);  // 0 where there is none
   for (int round = 0; round < kRounds; ++round) {
-    assign(view, by_depth, segments, config.segment_px, labels);
+    assign(view, segments, config.segment_px, labels);
     std::vector<Sum> sums(segments.size());
     for (int y = 0; y < labels.rows; ++y) {
       const auto* label = labels.ptr<int>(y);
