@@ -56,6 +56,8 @@ class Carrier {
   [[nodiscard]] float u(int x) const { return u_[static_cast<std::size_t>(x)]; }
   [[nodiscard]] float v(int x) const { return v_[static_cast<std::size_t>(x)]; }
   [[nodiscard]] float z(int x) const { return z_[static_cast<std::size_t>(x)]; }
+  /// z() of the whole row; of a pixel without depth it means nothing.
+  [[nodiscard]] const float* expected_depth() const { return z_.data(); }
 
  private:
   static constexpr float kNearest = 0.1F;  // m

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/carrier.hpp"
@@ -43,6 +44,20 @@ float depth_residual(float measured, float expected, float z) {
   return measured > 0 ? (measured - expected) / std::sqrt(a * a + b * b) : kUnknown;
 }
 
+/// The same of a row.
+void depth_residuals(const float* measured, const float* expected, const float* z, int width, float* out) {
+  const cv::v_float32x4 base = cv::v_setall_f32(kDepthSigma), growth = cv::v_setall_f32(kDepthSigmaGrowth),
+                        unknown = cv::v_setall_f32(kUnknown), zero = cv::v_setzero_f32();
+  const auto sigma = [&](const cv::v_float32x4& depth) { return base + growth * depth * depth; };
+  int x = 0;
+  for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
+    const cv::v_float32x4 m = cv::v_load(measured + x), a = sigma(cv::v_load(z + x)), b = sigma(m);
+    const cv::v_float32x4 residual = (m - cv::v_load(expected + x)) / cv::v_sqrt(a * a + b * b);
+    cv::v_store(out + x, cv::v_select(m > zero, residual, unknown));
+  }
+  for (; x < width; ++x) out[x] = depth_residual(measured[x], expected[x], z[x]);
+}
+
 float median_of(std::vector<float>& values) {
   if (values.empty()) return 0.0F;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -60,40 +75,41 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
   Carrier carried(current.camera, reference.reference_from_current);
   const auto limit = static_cast<float>(config.depth_sigmas);
   const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
+  std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is carried to
   for (int y = 0; y < size.height; ++y) {
     const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
     auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
          *differences = brightness.ptr<float>(y);
     carried.carry_row(y, depth);
+    for (int x = 0; x < size.width; ++x)
+      measured[static_cast<std::size_t>(x)] =
+          carried.inside(x) ? then.ptr<float>(cvRound(carried.v(x)))[cvRound(carried.u(x))] : 0.0F;
+    depth_residuals(measured.data(), carried.expected_depth(), depth, size.width, residuals);
     for (int x = 0; x < size.width; ++x) {
       if (!carried.inside(x)) continue;
       const float u = carried.u(x), v = carried.v(x), expected = carried.z(x);
-      const int column = cvRound(u), row = cvRound(v);
       // Only what does not fit at its own pixel is sought beside it.
-      float measured = then.ptr<float>(row)[column];
-      float residual = depth_residual(measured, expected, depth[x]);
-      if (!(std::abs(residual) <= limit)) {
-        measured = nearest_depth(then, column, row, expected);
-        residual = depth_residual(measured, expected, depth[x]);
-        if (measured <= 0) continue;
+      if (!(std::abs(residuals[x]) <= limit)) {
+        const float beside = nearest_depth(then, cvRound(u), cvRound(v), expected);
+        residuals[x] = depth_residual(beside, expected, depth[x]);
+        if (beside <= 0) continue;
+        if (residuals[x] > limit) {
+          log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residuals[x] - limit));
+          continue;
+        }
+        if (residuals[x] < -limit) {
+          if (expected - beside < kStepBackLimit) log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
+          continue;
+        }
       }
-      residuals[x] = residual;
-      if (residual > limit) {
-        log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residual - limit));
-      } else if (residual < -limit) {
-        if (expected - measured < kStepBackLimit) log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
-      } else {
-        log_odds[x] = kSameDepth;
-        differences[x] = gray[x] - bilinear(gray_then, u, v);
-      }
+      log_odds[x] = kSameDepth;
+      differences[x] = gray[x] - bilinear(gray_then, u, v);
     }
   }
   return brightness;
 }
 
 }  // namespace
-
-float depth_sigma(float z) { return 0.0012F + 0.0019F * z * z; }
 
 ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
                                          const DepthMotionConfig& config) {

@@ -7,7 +7,6 @@
 
 #include "core/motion/depth_evidence.hpp"
 #include "core/motion/patch_motion.hpp"
-#include "core/motion/regions.hpp"
 #include "core/motion/segments.hpp"
 #include "core/stopwatch.hpp"
 
@@ -98,19 +97,24 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// Whether what a pixel without depth lies in moves: by the nearest measured pixels to its four sides.
+/// Whether what a pixel without depth lies in moves: by the nearest measured pixels to its four sides. Three
+/// of them must, and none may stand still.
 bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
   constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  int moving = 0, still = 0;
-  for (const auto& [dx, dy] : kSides)
-    for (int step = 1; step <= reach; ++step) {
+  int moving = 0, unknown = 0;
+  for (const auto& [dx, dy] : kSides) {
+    bool found = false;
+    for (int step = 1; step <= reach && !found; ++step) {
       const int u = x + step * dx, v = y + step * dy;
       if (u < 0 || v < 0 || u >= mask.cols || v >= mask.rows) break;
-      if (depth.at<float>(v, u) <= 0) continue;
-      ++(mask.at<uchar>(v, u) != 0 ? moving : still);
-      break;
+      if (depth.ptr<float>(v)[u] <= 0) continue;
+      if (mask.ptr<uchar>(v)[u] == 0) return false;
+      found = true;
     }
-  return moving >= 3 && still == 0;
+    ++(found ? moving : unknown);
+    if (unknown > 1) return false;
+  }
+  return moving >= 3;
 }
 
 /// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
@@ -239,9 +243,8 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
     const int side = 2 * config.margin_px + 1;
     cv::dilate(trace.mask, trace.mask, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   }
-  LabelledRegions found = find_regions(trace.mask);
-  trace.regions = std::move(found.regions);
-  trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  trace.mask_share =
+      static_cast<double>(cv::countNonZero(trace.mask)) / static_cast<double>(trace.mask.total());
   trace.ms.mask = watch.lap();
   if (references.empty()) trace.note = "no earlier frame with depth to compare with";
 

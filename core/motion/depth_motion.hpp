@@ -74,9 +74,8 @@ struct DepthMotionTrace {
   cv::Mat log_odds;  ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
   cv::Mat labels;    ///< CV_32SC1: segment of each pixel, -1 = no depth
   std::vector<Segment> segments;
-  cv::Mat small_mask;  ///< CV_8UC1, small
-  cv::Mat mask;        ///< CV_8UC1, full size: 255 = moving
-  std::vector<MotionRegion> regions;
+  cv::Mat small_mask;       ///< CV_8UC1, small
+  cv::Mat mask;             ///< CV_8UC1, full size: 255 = moving
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   std::string note;         ///< why there is no mask; empty when all is well
   DepthMotionTimes ms;
@@ -100,8 +99,9 @@ struct MotionMemory {
                                                    const Pose& previous_from_current,
                                                    const DepthMotionConfig& config);
 
-/// Standard deviation (m) of a Kinect-like sensor's depth at z metres (Khoshelham & Oude Elberink 2012;
-/// Nguyen et al. 2012).
-[[nodiscard]] float depth_sigma(float z);
+/// Standard deviation (m) of a Kinect-like sensor's depth at z metres: so much, and so much more with the
+/// square of the distance (Khoshelham & Oude Elberink 2012; Nguyen et al. 2012).
+constexpr float kDepthSigma = 0.0012F, kDepthSigmaGrowth = 0.0019F;
+[[nodiscard]] inline float depth_sigma(float z) { return kDepthSigma + kDepthSigmaGrowth * z * z; }
 
 }  // namespace stillpoint

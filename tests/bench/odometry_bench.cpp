@@ -121,7 +121,7 @@ void DepthMotion(benchmark::State& state) {
   std::vector<ReferenceView> references;
   for (const int i : {8, 0})
     references.push_back({view(static_cast<std::size_t>(i)),
-                          scene.source->truth(i).world_from_camera->inverse() * world_from_current});
+                          scene.source->truth(i).world_from_camera->inverse() * world_from_current, i == 0});
   for (auto _ : state)
     benchmark::DoNotOptimize(detect_depth_motion(*current, segment_surfaces(*current, config),
                                                  scene.last().depth, references, nullptr, Pose::Identity(),

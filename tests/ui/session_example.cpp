@@ -231,7 +231,6 @@ DepthMotionTrace handmade_depth_motion() {
   trace.small_mask = disc > 0.0;
   trace.mask = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(trace.mask, {192, 120}, 46, 255, cv::FILLED);
-  trace.regions = {{{146, 74, 92, 92}, {192, 120}, 6650}};
   trace.mask_share = 6650.0 / (320.0 * 240.0);
   return trace;
 }

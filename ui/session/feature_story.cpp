@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/motion/homography.hpp"
+#include "core/motion/regions.hpp"
 #include "ui/session/feature_trail.hpp"
 
 namespace stillpoint {
@@ -131,15 +132,10 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
                   "or its margin of {} px.",
                   limits.margin_px));
   }
-  // Boxes overlap; the smallest that holds it is its own.
-  const cv::Point place(cvRound(story.feature.pixel.x), cvRound(story.feature.pixel.y));
-  int smallest = std::numeric_limits<int>::max();
-  for (std::size_t i = 0; i < trace.regions.size(); ++i) {
-    const cv::Rect& box = trace.regions[i].box;
-    if (!box.contains(place) || box.area() >= smallest) continue;
-    smallest = box.area();
-    story.region = static_cast<int>(i) + 1;
-  }
+  if (trace.mask.empty()) return;
+  const int region =
+      find_regions(trace.mask).labels.at<int>(cvRound(story.feature.pixel.y), cvRound(story.feature.pixel.x));
+  if (region > 0) story.region = region;
 }
 
 std::string verdict_of(const FeatureStory& story, const std::string& method) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/motion/homography.hpp"
+#include "core/motion/regions.hpp"
 #include "ui/session/stages.hpp"
 
 namespace stillpoint {
@@ -246,7 +247,7 @@ void add_stillpoint_stages(const FrameView& view, const Config& config, std::vec
   mask.ms = trace.ms.mask;
   add_figure(mask, "Small mask", percent_set(trace.small_mask), "%", 2);
   add_figure(mask, "Mask", 100.0 * trace.mask_share, "%", 2);
-  add_figure(mask, "Regions", static_cast<double>(trace.regions.size()));
+  add_figure(mask, "Regions", static_cast<double>(find_regions(trace.mask).regions.size()));
   mask.note = trace.note;
 }
 
