@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
 constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
-constexpr int kHole = 8;                               // small px: half of what a mover may have unmeasured
+constexpr int kHole = 3;                               // small px: half of what a mover may have unmeasured
 constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
 /// One value for each pixel, by its patch; `none` where it lies in no patch.
@@ -97,24 +97,20 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// Whether what a pixel without depth lies in moves: by the nearest measured pixels to its four sides. Three
-/// of them must, and none may stand still.
+/// Whether a pixel without depth lies in a mover: whether the nearest measured pixels to all four sides do. The
+/// image's end says nothing against it. A gap between a mover and what stands behind it, the sensor's shadow,
+/// is open to one side.
 bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
   constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  int moving = 0, unknown = 0;
-  for (const auto& [dx, dy] : kSides) {
-    bool found = false;
-    for (int step = 1; step <= reach && !found; ++step) {
-      const int u = x + step * dx, v = y + step * dy;
-      if (u < 0 || v < 0 || u >= mask.cols || v >= mask.rows) break;
-      if (depth.ptr<float>(v)[u] <= 0) continue;
-      if (mask.ptr<uchar>(v)[u] == 0) return false;
-      found = true;
+  const cv::Rect image({0, 0}, mask.size());
+  return std::all_of(kSides.begin(), kSides.end(), [&](const std::array<int, 2>& side) {
+    for (int step = 1; step <= reach; ++step) {
+      const cv::Point p(x + step * side[0], y + step * side[1]);
+      if (!image.contains(p)) return true;
+      if (depth.ptr<float>(p.y)[p.x] > 0) return mask.ptr<uchar>(p.y)[p.x] != 0;
     }
-    ++(found ? moving : unknown);
-    if (unknown > 1) return false;
-  }
-  return moving >= 3;
+    return false;
+  });
 }
 
 /// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
@@ -159,7 +155,7 @@ class Neighbourhood {
 
 /// The small mask at full size, its outline fitted to the depth image.
 cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
-  constexpr int kReach = 5;  // px: the ragged rim of an outline is no wider
+  constexpr int kReach = 3;  // px: the ragged rim of an outline is no wider
   if (cv::countNonZero(small_mask) == 0) return cv::Mat::zeros(full_depth.size(), CV_8UC1);
   cv::Mat low, high, mask;
   cv::erode(small_mask, low, cv::Mat());
