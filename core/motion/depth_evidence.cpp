@@ -38,24 +38,36 @@ float nearest_depth(const cv::Mat& depth, int x, int y, float expected) {
   return best;
 }
 
-/// Measured less expected depth, in standard deviations of both; NaN where nothing was measured.
-float depth_residual(float measured, float expected, float z) {
-  const float a = depth_sigma(z), b = depth_sigma(measured);
-  return measured > 0 ? (measured - expected) / std::sqrt(a * a + b * b) : kUnknown;
+/// A pixel as it is expected in the reference, or a row of them.
+struct Expected {
+  const float* depth;  // m, there
+  const float* here;   // m, as measured in the current view
+  const float* slope;  // m a pixel, of its surface
+  float off = 0.0F;    // px, misplacement()
+};
+
+/// Measured less expected depth, in standard deviations of both and of where on a slanted surface the pixel
+/// comes to lie; NaN where nothing was measured.
+float depth_residual(float measured, const Expected& expected, int x) {
+  const float a = depth_sigma(expected.here[x]), b = depth_sigma(measured),
+              c = expected.off * expected.slope[x];
+  return measured > 0 ? (measured - expected.depth[x]) / std::sqrt(a * a + b * b + c * c) : kUnknown;
 }
 
 /// The same of a row.
-void depth_residuals(const float* measured, const float* expected, const float* z, int width, float* out) {
+void depth_residuals(const float* measured, const Expected& expected, int width, float* out) {
   const cv::v_float32x4 base = cv::v_setall_f32(kDepthSigma), growth = cv::v_setall_f32(kDepthSigmaGrowth),
-                        unknown = cv::v_setall_f32(kUnknown), zero = cv::v_setzero_f32();
+                        off = cv::v_setall_f32(expected.off), unknown = cv::v_setall_f32(kUnknown),
+                        zero = cv::v_setzero_f32();
   const auto sigma = [&](const cv::v_float32x4& depth) { return base + growth * depth * depth; };
   int x = 0;
   for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
-    const cv::v_float32x4 m = cv::v_load(measured + x), a = sigma(cv::v_load(z + x)), b = sigma(m);
-    const cv::v_float32x4 residual = (m - cv::v_load(expected + x)) / cv::v_sqrt(a * a + b * b);
+    const cv::v_float32x4 m = cv::v_load(measured + x), a = sigma(cv::v_load(expected.here + x)),
+                          b = sigma(m), c = off * cv::v_load(expected.slope + x);
+    const cv::v_float32x4 residual = (m - cv::v_load(expected.depth + x)) / cv::v_sqrt(a * a + b * b + c * c);
     cv::v_store(out + x, cv::v_select(m > zero, residual, unknown));
   }
-  for (; x < width; ++x) out[x] = depth_residual(measured[x], expected[x], z[x]);
+  for (; x < width; ++x) out[x] = depth_residual(measured[x], expected, x);
 }
 
 float median_of(std::vector<float>& values) {
@@ -63,6 +75,37 @@ float median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// By how much of a pixel slanted surfaces lie beside where they are expected: the pose is not exact, depth
+/// and colour are of different moments, and rows are read one after the other. Of what is not remembered to
+/// move; a median, so that other movers do not count.
+float misplacement(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
+                   const DepthMotionConfig& config) {
+  constexpr int kEvery = 4;  // rows
+  constexpr std::size_t kFewest = 100;
+  constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
+  constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
+  constexpr float kMost = 1.0F;              // px
+  Carrier carried(current.camera, reference.reference_from_current);
+  const cv::Mat& then = reference.view->depth;
+  std::vector<float> squares;  // px²
+  for (int y = kEvery / 2; y < current.depth.rows; y += kEvery) {
+    const auto *depth = current.depth.ptr<float>(y), *slope = current.depth_slope.ptr<float>(y),
+               *remembered = prior.ptr<float>(y);
+    carried.carry_row(y, depth);
+    for (int x = 0; x < current.depth.cols; ++x) {
+      if (!carried.inside(x) || remembered[x] > static_cast<float>(config.moving_log_odds)) continue;
+      const float measured = then.ptr<float>(cvRound(carried.v(x)))[cvRound(carried.u(x))];
+      if (measured <= 0) continue;
+      const float a = depth_sigma(depth[x]), b = depth_sigma(measured), noise = a * a + b * b;
+      const float step = measured - carried.z(x), steep = slope[x] * slope[x];
+      if (steep < noise || std::abs(step) > kStepBackLimit) continue;
+      squares.push_back((step * step / kMedianOfSquare - noise) / steep);
+    }
+  }
+  if (squares.size() < kFewest) return 0.0F;
+  return std::clamp(std::sqrt(std::max(0.0F, median_of(squares))) - kRounding, 0.0F, kMost);
 }
 
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
@@ -81,17 +124,19 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
     auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
          *differences = brightness.ptr<float>(y);
     carried.carry_row(y, depth);
+    const Expected there{carried.expected_depth(), depth, current.depth_slope.ptr<float>(y),
+                         static_cast<float>(evidence.misplacement_px)};
     for (int x = 0; x < size.width; ++x)
       measured[static_cast<std::size_t>(x)] =
           carried.inside(x) ? then.ptr<float>(cvRound(carried.v(x)))[cvRound(carried.u(x))] : 0.0F;
-    depth_residuals(measured.data(), carried.expected_depth(), depth, size.width, residuals);
+    depth_residuals(measured.data(), there, size.width, residuals);
     for (int x = 0; x < size.width; ++x) {
       if (!carried.inside(x)) continue;
       const float u = carried.u(x), v = carried.v(x), expected = carried.z(x);
       // Only what does not fit at its own pixel is sought beside it.
       if (!(std::abs(residuals[x]) <= limit)) {
         const float beside = nearest_depth(then, cvRound(u), cvRound(v), expected);
-        residuals[x] = depth_residual(beside, expected, depth[x]);
+        residuals[x] = depth_residual(beside, there, x);
         if (beside <= 0) continue;
         if (residuals[x] > limit) {
           log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residuals[x] - limit));
@@ -112,8 +157,9 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
 }  // namespace
 
 ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
-                                         const DepthMotionConfig& config) {
+                                         const cv::Mat& prior, const DepthMotionConfig& config) {
   ReferenceEvidence evidence;
+  evidence.misplacement_px = static_cast<double>(misplacement(current, reference, prior, config));
   const cv::Mat brightness = compare_depth(current, reference, config, evidence);
   if (config.use_depth == 0) evidence.log_odds.setTo(0.0F);
 

@@ -7,8 +7,10 @@ namespace stillpoint {
 // The per-pixel part of detect_depth_motion; see there.
 
 /// Carries every pixel of `current` into the reference and compares depth, then brightness.
+/// @param prior CV_32FC1, log-odds remembered of each pixel: how exact the comparison can be is judged by
+/// what is not held to move
 [[nodiscard]] ReferenceEvidence compare_with_reference(const RgbdView& current,
-                                                       const ReferenceView& reference,
+                                                       const ReferenceView& reference, const cv::Mat& prior,
                                                        const DepthMotionConfig& config);
 
 /// The log-odds of the frame before, brought to where they belong now: by the camera's motion for what stands

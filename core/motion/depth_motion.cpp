@@ -97,9 +97,9 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// Whether a pixel without depth lies in a mover: whether the nearest measured pixels to all four sides do. The
-/// image's end says nothing against it. A gap between a mover and what stands behind it, the sensor's shadow,
-/// is open to one side.
+/// Whether a pixel without depth lies in a mover: whether the nearest measured pixels to all four sides do.
+/// The image's end says nothing against it. A gap between a mover and what stands behind it, the sensor's
+/// shadow, is open to one side.
 bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
   constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   const cv::Rect image({0, 0}, mask.size());
@@ -219,7 +219,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
       measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
       reference.reference_from_current = measured.reference_from_current;
     }
-    trace.references.push_back(compare_with_reference(current, reference, config));
+    trace.references.push_back(compare_with_reference(current, reference, trace.prior, config));
     trace.references.back().patches = std::move(measured.patches);
     trace.references.back().reference = reference;
     add_pixels(trace.references.back(), trace.labels, evidence);

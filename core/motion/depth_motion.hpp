@@ -38,6 +38,7 @@ struct ReferenceEvidence {
       depth_residual;  ///< standard deviations: measured less expected depth there; NaN = cannot be compared
   cv::Mat intensity_residual;        ///< grey levels beyond what gradient explains; NaN = cannot be compared
   cv::Mat log_odds;                  ///< of moving; 0 = says nothing
+  double misplacement_px = 0.0;      ///< small px by which surfaces lie beside their place, estimated too
   double intensity_sigma = 0.0;      ///< grey levels, estimated from this pair
   std::vector<PatchMotion> patches;  ///< one a segment; empty where the reference is too young for it
   double ms = 0.0;                   ///< wall time of the comparison; for reading only

@@ -1,6 +1,7 @@
 #include "core/motion/rgbd_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 namespace stillpoint {
@@ -39,20 +40,28 @@ void slopes(const cv::Mat& gray, cv::Mat& slope_x, cv::Mat& slope_y) {
   }
 }
 
-cv::Mat inner_pixels(const cv::Mat& depth) {
-  cv::Mat inner = cv::Mat::zeros(depth.size(), CV_8UC1);
-  const auto same = [](float z, float other) { return (other > 0) & same_surface(z, other); };
+/// Which pixels lie within their surface, and how steep it is there.
+void describe_surface(const cv::Mat& depth, cv::Mat& within, cv::Mat& slope) {
+  within = cv::Mat::zeros(depth.size(), CV_8UC1);
+  slope = cv::Mat::zeros(depth.size(), CV_32FC1);
   for (int y = 1; y + 1 < depth.rows; ++y) {
     const auto *above = depth.ptr<float>(y - 1), *row = depth.ptr<float>(y), *below = depth.ptr<float>(y + 1);
-    auto* out = inner.ptr<uchar>(y);
+    auto* inner = within.ptr<uchar>(y);
+    auto* steepest = slope.ptr<float>(y);
     for (int x = 1; x + 1 < depth.cols; ++x) {
       const float z = row[x];
-      const bool all =
-          (z > 0) & same(z, row[x - 1]) & same(z, row[x + 1]) & same(z, above[x]) & same(z, below[x]);
-      out[x] = all ? 255 : 0;
+      if (z <= 0) continue;
+      bool all = true;
+      float step = 0.0F;
+      for (const float other : {row[x - 1], row[x + 1], above[x], below[x]}) {
+        const bool same = (other > 0) & same_surface(z, other);
+        all &= same;
+        step = std::max(step, same ? std::abs(other - z) : 0.0F);
+      }
+      inner[x] = all ? 255 : 0;
+      steepest[x] = step;
     }
   }
-  return inner;
 }
 
 }  // namespace
@@ -77,7 +86,7 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
     }
   }
   slopes(view.gray, view.slope_x, view.slope_y);
-  view.within_surface = inner_pixels(view.depth);
+  describe_surface(view.depth, view.within_surface, view.depth_slope);
   view.camera = camera.scaled_to(gray.cols, gray.rows);
   view.camera.fx /= factor, view.camera.fy /= factor;
   view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5,

@@ -14,8 +14,10 @@ struct RgbdView {
   cv::Mat slope_x, slope_y;  ///< CV_32FC1, half the slope of gray, grey levels a pixel: two views' halves add
                              ///< up to their mean
   cv::Mat within_surface;    ///< CV_8UC1, 255 where the four neighbours are measured on the same surface
-  Camera camera;             ///< of the small images, without distortion: pixels are near enough
-  int factor = 4;            ///< full-size pixels a side of a block
+  cv::Mat
+      depth_slope;  ///< CV_32FC1, m a pixel: largest step to one of the four neighbours on the same surface
+  Camera camera;    ///< of the small images, without distortion: pixels are near enough
+  int factor = 4;   ///< full-size pixels a side of a block
 };
 
 /// @param gray CV_8UC1; @param depth CV_32FC1 of the same size, m
