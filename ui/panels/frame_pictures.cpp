@@ -165,6 +165,16 @@ ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const Image
   return response;
 }
 
+ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                                PanelsShared& shared, ImVec2 size, const FramePlace& place,
+                                const ColourScale& scale) {
+  size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
+  const ImageResponse response = draw_frame_image(frame, id, content, shared, size, place);
+  ImGui::SameLine();
+  draw_colour_scale(frame, scale, size.y);
+  return response;
+}
+
 std::string missing_motion(const SessionView& session) {
   const FrameView& view = *session.current;
   if (!view.frame.readable()) {
@@ -182,6 +192,23 @@ std::string missing_motion(const SessionView& session) {
   if (!view.motion.rounds.empty()) return {};
   if (!view.motion.note.empty()) return fmt::format("There is no motion mask: {}", view.motion.note);
   return "Motion has not been computed for this frame yet.";
+}
+
+bool draw_missing_motion(const UiFrame& frame, const SessionView& session) {
+  const std::string missing = missing_motion(session);
+  if (!missing.empty()) draw_absent(frame, missing);
+  return !missing.empty();
+}
+
+int round_shown(const FrameView& view, int chosen) {
+  const int last = static_cast<int>(view.motion.rounds.size()) - 1;
+  return chosen < 0 ? last : std::min(chosen, last);
+}
+
+std::string whose_motion(const SessionView& session) {
+  const std::string& method = session.config.run.method;
+  if (method == "paper") return {};
+  return fmt::format(" What the paper's method finds; this run is by {}.", method);
 }
 
 std::string frame_text(const SessionView& session, const Frame& frame) {

@@ -60,6 +60,9 @@ class NamedPanel : public Panel {
   std::string name_, title_;
 };
 
+/// A box to be ticked. @returns whether it was changed
+bool checkbox(const UiFrame& frame, const char* label, bool& on);
+
 /// Controls side by side, on as many lines as they need.
 class Controls {
  public:

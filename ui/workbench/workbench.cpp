@@ -191,12 +191,15 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
   const auto& records = session.run->records;
   const double seconds = records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
-  const std::string where =
-      fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
-                  session.frame_count, seconds, session.config.run.method);
+  const float room = rect.width - title_width - 4.0F * margin;
   ImGui::PushFont(frame.fonts.small);
-  const float width =
-      std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
+  const auto wide = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+  const std::string frame_text = fmt::format("frame {} of {}", session.current->index, session.frame_count),
+                    method = fmt::format("method {}", session.config.run.method);
+  // Where there is no room for all of it, the time goes first.
+  std::string where = fmt::format("{}   {}   {:.3f} s   {}", session.title, frame_text, seconds, method);
+  if (wide(where) > room) where = fmt::format("{}   {}   {}", session.title, frame_text, method);
+  const float width = std::min(wide(where), room);
   draw_clipped_text({rect.x + rect.width - margin - width, rect.y + 0.5F * (heading - ImGui::GetFontSize())},
                     where, width, to_u32(frame.theme.text_dim));
   ImGui::PopFont();
