@@ -17,7 +17,8 @@ constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
 constexpr ImGuiWindowFlags kRootFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse;
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse |
+    ImGuiWindowFlags_NoBackground;  // the canvas is cleared in that colour
 
 void begin_root(const UiFrame& frame, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos({0, 0});
@@ -25,9 +26,7 @@ void begin_root(const UiFrame& frame, ImGuiWindowFlags flags) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0F);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.background));
   ImGui::Begin("##workbench", nullptr, kRootFlags | flags);
-  ImGui::PopStyleColor();
   ImGui::PopStyleVar(3);
 }
 
