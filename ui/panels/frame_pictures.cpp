@@ -137,6 +137,7 @@ void draw_heading(const UiFrame& frame, const ImageResponse& response, const std
   // What stands after a comma is a unit or a range: it goes first.
   std::string shown = heading;
   while (!fits(shown) && shown.find(',') != std::string::npos) shown.resize(shown.rfind(','));
+  shown = cut_to(*font, shown, room);
   draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, shown, frame.theme.text);
   pop_clip();
 }

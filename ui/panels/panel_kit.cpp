@@ -19,9 +19,13 @@ ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 
   return font->CalcTextSizeA(font->FontSize, 1e6F, wrap, text.c_str());
 }
 
+float width_of(const ImFont& font, const std::string& text) {
+  return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
+}
+
 /// Ends lines at spaces alone: ImGui would part 0.81 at its point. A figure keeps its unit.
-std::string wrapped(const UiFrame& frame, const std::string& text, float width) {
-  constexpr std::size_t kLongestUnit = 3;  // bytes, "mm,"
+std::string wrapped(const ImFont& font, const std::string& text, float width) {
+  constexpr std::size_t kLongestUnit = 4;  // bytes, "°)."
   std::string lines, line;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(text.find(' ', at), text.size());
@@ -29,7 +33,7 @@ std::string wrapped(const UiFrame& frame, const std::string& text, float width) 
     const bool figure = end > at && std::isdigit(static_cast<unsigned char>(text[end - 1])) != 0;
     if (end < text.size() && figure && next - end - 1 <= kLongestUnit) end = next;
     const std::string word = text.substr(at, end - at);
-    if (at > 0 && small_extent(frame, line + ' ' + word).x > width)
+    if (at > 0 && width_of(font, line + ' ' + word) > width)
       lines += std::exchange(line, word) + '\n';
     else
       line += (at > 0 ? " " : "") + word;
@@ -134,7 +138,7 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
   }
   if (!legend.empty() && has_legend_) y += line;
   if (!caption.empty() && has_caption_) {
-    const std::string lines = wrapped(frame, caption, width);
+    const std::string lines = wrapped(*frame.fonts.small, caption, width);
     if (draw) small_text(frame, {corner.x, corner.y + y}, lines, frame.theme.text_dim, width);
     y += small_extent(frame, lines, width).y;
   }
@@ -184,6 +188,28 @@ Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& pictur
     best = {size, {size.x + gap, size.y + gap}, columns};
   }
   return best;
+}
+
+std::string cut_to(const ImFont& font, const std::string& text, float width) {
+  if (width_of(font, text) <= width) return text;
+  const std::string ellipsis = "…";
+  std::string cut = text;
+  do {
+    // Never in the middle of a UTF-8 letter.
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U) cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+  } while (!cut.empty() && width_of(font, cut + ellipsis) > width);
+  return cut.empty() ? cut : cut + ellipsis;
+}
+
+void text_in_room(const std::string& text, Rgb colour) {
+  const std::string shown = cut_to(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextColored(to_vec4(colour), "%s", shown.c_str());
+  if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+}
+
+void text_in_lines(const std::string& text) {
+  ImGui::TextWrapped("%s", wrapped(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
 }
 
 void draw_absent(const UiFrame& frame, const std::string& sentence) {

@@ -229,7 +229,7 @@ class ParametersPanel final : public NamedPanel {
       ImGui::SameLine();
       ImGui::PushFont(frame.fonts.strong);
     }
-    ImGui::TextUnformatted(label_of(shown).c_str());
+    text_in_room(label_of(shown), frame.theme.text);
     if (changed) ImGui::PopFont();
     help(shown, usual);
     ImGui::TableNextColumn();
@@ -239,7 +239,7 @@ class ParametersPanel final : public NamedPanel {
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     ImGui::PushFont(frame.fonts.small);
-    ImGui::TextDisabled("%s", range_text(shown).c_str());
+    text_in_room(range_text(shown), frame.theme.text_dim);
     ImGui::PopFont();
     ImGui::TableNextColumn();
     if (changed) {

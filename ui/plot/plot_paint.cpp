@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stillpoint {
 namespace {
@@ -71,10 +72,14 @@ void PlotPaint::axes(const Plot& plot, ImVec2, ImVec2 outer_high) const {
   const ImU32 grid = to_u32(frame_.theme.grid), faint = to_u32(frame_.theme.grid, 0.45F);
   const ImU32 ink = to_u32(frame_.theme.text_dim);
   const float gap = 6.0F * frame_.scale;
+  float lowest = std::numeric_limits<float>::max();
   for (const AxisTick& tick : y_ticks) {
     const float at = std::round(place(x.range.low, tick.value).y);
     list_.AddLine({low.x, at}, {high.x, at}, tick.major ? grid : faint);
     const ImVec2 extent = text_size(tick.label);
+    // In a low plot some lines go without their number.
+    if (lowest - at < 0.9F * extent.y) continue;
+    lowest = at;
     text({low.x - gap - extent.x, at - 0.5F * extent.y}, tick.label, ink);
   }
   for (const AxisTick& tick : x_ticks) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/panel_kit.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -315,20 +316,8 @@ void Workbench::carry_out(const PanelActions& wanted) {
 }
 
 void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
-    list.AddText(at, colour, text.c_str());
-    return;
-  }
-  const char* ellipsis = "…";
-  const float room = width - ImGui::CalcTextSize(ellipsis).x;
-  std::size_t end = text.size();
-  const auto shown = [&] { return ImGui::CalcTextSize(text.c_str(), text.c_str() + end).x; };
-  // Never in the middle of a UTF-8 letter.
-  do {
-    while (end > 0 && (static_cast<unsigned char>(text[--end]) & 0xC0U) == 0x80U) continue;
-  } while (end > 0 && shown() > room);
-  if (end > 0) list.AddText(at, colour, (text.substr(0, end) + ellipsis).c_str());
+  const std::string shown = cut_to(*ImGui::GetFont(), text, width);
+  if (!shown.empty()) ImGui::GetWindowDrawList()->AddText(at, colour, shown.c_str());
 }
 
 }  // namespace stillpoint
