@@ -130,7 +130,7 @@ void draw_heading(const UiFrame& frame, const ImageResponse& response, const std
   push_clip(response);
   const float gap = 5.0F * frame.scale;
   const ImFont* font = frame.fonts.small;
-  const float room = response.panel_max.x - response.panel_min.x - 4.0F * gap;
+  const float room = response.panel_max.x - response.panel_min.x - 3.0F * gap;
   const auto fits = [&](const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str()).x <= room;
   };
