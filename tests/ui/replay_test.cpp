@@ -242,9 +242,9 @@ TEST_F(Replay, AFolderDroppedOnTheStartPageOpens) {
 
 TEST_F(Replay, TwoReplaysGiveTheSameScreenshots) {
   for (const char* name : {"a.png", "b.png"})
-    EXPECT_EQ(
-        play("frame 5\npoint trajectory 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) + "\n"),
-        "");
+    EXPECT_EQ(play("frame 5\npoint trajectory 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) +
+                   "\n"),
+              "");
   const cv::Mat a = cv::imread(out_.path("a.png")), b = cv::imread(out_.path("b.png"));
   ASSERT_EQ(a.size(), cv::Size(1280, 800));
   EXPECT_FALSE(is_blank(a, 50));
