@@ -25,9 +25,9 @@ Config ConfigArguments::config() const {
   return config;
 }
 
-void SequenceArguments::add_to(CLI::App& command) {
+void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
   command.add_option("--camera", camera, "A camera's name or a TOML file; otherwise the folder tells");
-  command.add_option("--frames", frames, "Only so many frames from the first on")
+  command.add_option(frames_option, frames, "Only so many frames of the sequence, from the first on")
       ->check(CLI::Range(1, 10'000'000));
   command.add_option("--seed", seed, "Seed of a generated sequence")->check(CLI::Range(0, 1'000'000'000));
 }

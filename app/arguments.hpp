@@ -30,7 +30,8 @@ struct SequenceArguments {
   int frames = 0;      ///< 0 = all
   int seed = -1;       ///< of generated sequences; negative = the config's
 
-  void add_to(CLI::App& command);
+  /// @param frames_option what sets `frames`, where --frames means something else
+  void add_to(CLI::App& command, const char* frames_option = "--frames");
   /// Whether any was given.
   [[nodiscard]] bool given() const { return !camera.empty() || frames > 0 || seed >= 0; }
   /// What open_sequence is given.

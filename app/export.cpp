@@ -47,14 +47,7 @@ void add_export_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", arguments->out, "Folder for the sequence; made if missing")->required();
   command->add_flag("--force", arguments->force, "Replace a sequence in that folder");
-  command
-      ->add_option("--length", arguments->source.frames,
-                   "Only so many frames of the sequence, from the first on")
-      ->check(CLI::Range(1, 10'000'000));
-  command->add_option("--camera", arguments->source.camera,
-                      "A camera's name or a TOML file; otherwise the folder tells");
-  command->add_option("--seed", arguments->source.seed, "Seed of a generated sequence")
-      ->check(CLI::Range(0, 1'000'000'000));
+  arguments->source.add_to(*command, "--length");
   command->callback([arguments] { export_sequence(*arguments); });
 }
 

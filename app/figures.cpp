@@ -88,7 +88,7 @@ class Figures {
 void figures(const FiguresArguments& arguments) {
   OpenedPlace place = open_place(arguments.place);
   if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
-  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames);
+  const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames, "--frame");
   if (frames.size() != 1)
     throw InputError(
         fmt::format("--frame {}: names {} frames, and figures are of one", arguments.frame, frames.size()));

@@ -25,8 +25,13 @@ Painter::Painter(const PainterOptions& options)
       panels_(make_panels()),
       workbench_(make_panels()) {
   choose(options.panels);
-  workbench_.set_layout(options.layout.empty() ? default_layout(options.method)
-                                               : read_layout(options.layout, workbench_.panel_names()));
+  if (options.layout.empty()) {
+    workbench_.set_layout(default_layout(options.method));
+    return;
+  }
+  const LayoutNode layout = read_layout(options.layout, workbench_.panel_names());
+  take_choices(layout);
+  workbench_.set_layout(layout);
 }
 
 Painter::~Painter() { offscreen_.make_current(); }
@@ -51,6 +56,22 @@ void Painter::choose(const std::string& names) {
                                    kWorkbench, fmt::join(known, ", ")));
   }
   if (picture_count() == 0) throw InputError("--panels: names no panel");
+}
+
+void Painter::take_choices(const LayoutNode& layout) {
+  for (const LayoutNode& child : layout.children) take_choices(child);
+  if (layout.is_panel() && !layout.choices.empty()) choices_[&panel(layout.panel)].want(layout.choices);
+}
+
+std::vector<std::string> Painter::choices_left() const {
+  std::vector<std::string> left;
+  for (const Panel* chosen : panels_chosen_) {
+    const auto choices = choices_.find(chosen);
+    if (choices == choices_.end()) continue;
+    for (const auto& [control, value] : choices->second.left())
+      left.push_back(fmt::format("{}: {}={}", chosen->name(), control, value));
+  }
+  return left;
 }
 
 bool Painter::draws(const std::string& name) const {
@@ -86,8 +107,9 @@ std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
                                                 options_.workbench_size)});
   for (Panel* chosen : panels_chosen_)
     pictures.push_back(
-        {chosen->name(), paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen); },
-                                     options_.panel_size)});
+        {chosen->name(),
+         paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
+                     options_.panel_size)});
   return pictures;
 }
 

@@ -3,6 +3,7 @@
 #include <deque>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -21,7 +22,8 @@ struct PainterOptions {
   std::pair<int, int> workbench_size = {1600, 900};  ///< px
   std::pair<int, int> panel_size = {960, 780};       ///< px
   Look look{};
-  std::string layout{};  ///< the workbench's tiles, a JSON file; empty = the method's default
+  std::string layout{};  ///< the workbench's tiles and what is chosen in each panel, a JSON file; empty = the
+                         ///< method's default tiles, and panels as they are by themselves
   std::string method{};  ///< chooses the default layout
 };
 
@@ -49,6 +51,10 @@ class Painter {
   /// Each picture chosen, of the frame shown.
   [[nodiscard]] std::vector<Picture> paint(const SessionView& view);
 
+  /// Of the layout's choices, those that no control of a panel drawn so far took: misspelt, or of a control
+  /// that was not there. "compensated: look=Wip"
+  [[nodiscard]] std::vector<std::string> choices_left() const;
+
   /// One panel for print, without its buttons, whether it was chosen or not. @param size px
   [[nodiscard]] cv::Mat paint_panel(const SessionView& view, const std::string& name,
                                     std::pair<int, int> size);
@@ -58,6 +64,7 @@ class Painter {
 
  private:
   void choose(const std::string& names);
+  void take_choices(const LayoutNode& layout);
   [[nodiscard]] Panel& panel(const std::string& name) const;
 
   PainterOptions options_;
@@ -66,6 +73,7 @@ class Painter {
   Workbench workbench_;
   bool workbench_chosen_ = false;
   std::vector<Panel*> panels_chosen_;
+  std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 
 /// Writes images beside who draws them: packing takes as long as drawing.

@@ -5,6 +5,7 @@
 #include "app/replaying.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
+#include "ui/shell/warm_up.hpp"
 
 namespace stillpoint {
 namespace {
@@ -19,7 +20,9 @@ struct ReplayArguments {
 void replay_offscreen(const ReplayArguments& arguments) {
   ReplayPlan plan(arguments.file, arguments.sequence, arguments.source, arguments.config);
   plan.prepare_out(arguments.out, arguments.force);
-  Offscreen offscreen({.width = plan.start().size[0], .height = plan.start().size[1], .look = plan.look()});
+  const auto [width, height] = plan.start().size;
+  Offscreen offscreen({.width = width, .height = height, .look = plan.look()});
+  warm_up(offscreen.canvas(), width, height);
   plan.play(replay_shell(offscreen), [] {});
 }
 

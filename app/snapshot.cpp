@@ -151,6 +151,9 @@ void snapshot(const SnapshotArguments& arguments) {
     } catch (const Interrupted&) {  // what was drawn is kept; it is thrown again below
     }
   }
+  if (const auto left = painter.choices_left(); !left.empty())
+    fmt::print(stderr, "stillpoint: warning: {}: no control could take {}\n", arguments.layout,
+               fmt::join(left, ", "));
   fmt::print("{}", pictures.finish(arguments.video));
   throw_if_interrupted();
 }
@@ -190,18 +193,14 @@ void add_snapshot_command(CLI::App& app) {
                                   sizes.panel_size.first, sizes.panel_size.second));
   command->add_option("--scale", arguments->scale, "Of text and spacing")->check(CLI::Range(0.5, 4.0));
   command->add_option("--theme", arguments->theme, "dark or light")->capture_default_str();
-  command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
+  command->add_option(
+      "--layout", arguments->layout,
+      "The workbench's tiles and what is chosen in each panel, a JSON file; single panels take their "
+      "choices from it");
   command->add_flag("--no-baseline", arguments->no_baseline, "Do not run method none beside for comparison");
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");
-  command
-      ->add_option("--length", arguments->place.source.frames,
-                   "Only so many frames of the sequence, from the first on")
-      ->check(CLI::Range(1, 10'000'000));
-  command->add_option("--camera", arguments->place.source.camera,
-                      "A camera's name or a TOML file; otherwise the folder tells");
-  command->add_option("--seed", arguments->place.source.seed, "Seed of a generated sequence")
-      ->check(CLI::Range(0, 1'000'000'000));
+  arguments->place.source.add_to(*command, "--length");
   arguments->place.add_to(*command);
   arguments->place.config.add_to(*command, true);
   command->callback([arguments] { snapshot(*arguments); });

@@ -88,8 +88,8 @@ cv::Mat plot_picture(Painter& painter, const std::vector<Curve>& curves, const A
       kPlotSize);
 }
 
-/// What is worth seeing of a frame, by method.
-std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run) {
+/// What is worth seeing of a frame, by method, with what it is called.
+std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run, const FrameView& frame) {
   using Panels = std::vector<std::pair<std::string, std::string>>;
   if (!run.opened.no_images.empty())
     return Panels{{"features_before", "Features before removal; the image is missing"},
@@ -101,6 +101,11 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run)
   if (method == "none") return {{"input", "Input"}, after};
   if (method == "paper")
     return {before, {"difference", "Difference after compensation"}, {"union_mask", "Motion mask"}, after};
+  if (method == "stillpoint" && !frame.colour_motion.points.empty())
+    return {{"input", "Input"},
+            before,
+            {"colour_motion", "Motion judged by colour alone, as the frame has no depth"},
+            after};
   if (method == "stillpoint")
     return {{"input", "Input"}, before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
   return {before, after};
@@ -150,7 +155,7 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
     const auto view = session->view();
     html += fmt::format("<p><strong>Frame {}</strong>, {:.2f} s: {}.</p>\n<div class=\"grid\">\n",
                         frame.index, view->current->frame.timestamp - start, escaped(frame.why));
-    for (const auto& [panel, caption] : panels_of(run))
+    for (const auto& [panel, caption] : panels_of(run, *view->current))
       html += figure_html(painter.paint_panel(*view, panel, kFramePanel), caption, Packing::kSmall);
     html += "</div>\n";
   }

@@ -218,7 +218,8 @@ TEST(Figures, AreThePapersOfAnySequence) {
             0.0);
 
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "4", "--out", out}), "--force");
-  expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "9", "--out", out}), "frames 0 to 5");
+  expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "9", "--out", out}),
+                      "--frame 9: the sequence has frames 0 to 5");
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "1:3", "--out", out}),
                       "names 2 frames");
   fs::remove(sequence.path("depth.txt"));

@@ -134,6 +134,50 @@ TEST(Panels, AClickInTimingsGoesToTheFrameThere) {
   EXPECT_GE(*frame, 11);
 }
 
+/// A plot of a panel is zoomed, moved and shown whole again by the mouse at a place of it.
+void expect_zoom_and_pan(const std::string& panel, double x, double y) {
+  SCOPED_TRACE(panel);
+  const SessionView session = handmade_example();
+  PanelStage stage(panel, {}, 640, 520);
+  const auto away = [&] {
+    stage.play(session, {MouseMoved{-1e5F, -1e5F}});
+    return stage.render(session);
+  };
+  const cv::Mat whole = away();
+  const MouseMoved there{static_cast<float>(x * whole.cols), static_cast<float>(y * whole.rows)};
+  stage.play(session, {there});
+  // Under the mouse stand a hairline and the values.
+  EXPECT_FALSE(images_agree(stage.render(session), whole, {2, 300.0, 0.0}));
+  const auto wheeled = stage.play(session, {MouseWheel{0.0F, 4.0F, {}}});
+  EXPECT_FALSE(wheeled.go_to_frame);
+  const cv::Mat nearer = away();
+  EXPECT_FALSE(images_agree(nearer, whole, {2, 300.0, 0.0}));
+
+  stage.play(session, {there});
+  const auto dragged = stage.play(session, {MouseButton{1, true, {}}, MouseMoved{there.x - 30.0F, there.y},
+                                            MouseMoved{there.x - 60.0F, there.y}, MouseButton{1, false, {}}});
+  EXPECT_FALSE(dragged.go_to_frame);
+  const cv::Mat beside = away();
+  EXPECT_FALSE(images_agree(beside, nearer, {2, 300.0, 0.0}));
+
+  stage.play(session, {there});
+  stage.play(session, {MouseButton{1, true, {}}, MouseMoved{there.x + 30.0F, there.y},
+                       MouseMoved{there.x + 60.0F, there.y}, MouseButton{1, false, {}}});
+  EXPECT_TRUE(images_agree(away(), nearer, {2, 20.0, 0.0})) << "dragged there and back";
+  // Two clicks in place show everything again.
+  stage.play(session, {there});
+  stage.play(session, {MouseButton{0, true, {}}, MouseButton{0, false, {}}, MouseButton{0, true, {}},
+                       MouseButton{0, false, {}}});
+  EXPECT_TRUE(images_agree(away(), whole, {2, 20.0, 0.0})) << "shown whole again";
+}
+
+TEST(Panels, PlotsAreZoomedByTheWheelAndMovedByTheRightButton) {
+  expect_zoom_and_pan("errors", 0.6, 0.3);
+  expect_zoom_and_pan("errors", 0.6, 0.7);
+  expect_zoom_and_pan("timings", 0.6, 0.25);
+  expect_zoom_and_pan("difference", 0.6, 0.8);
+}
+
 TEST(Panels, HoldingTFlipsToTheTarget) {
   PanelStage stage("compensated", {});
   stage.send(MouseMoved{260.0F, 200.0F});

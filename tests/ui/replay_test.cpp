@@ -161,6 +161,49 @@ expect status tracked
             "");
 }
 
+TEST_F(Replay, ThePlotsOfErrorsAreZoomedAndMoved) {
+  EXPECT_EQ(play(R"(frame 7
+point timeline 0.5 0.1
+wait 0.1
+screenshot whole.png
+point errors 0.6 0.75
+wheel 0 4
+point timeline 0.5 0.1
+wait 0.1
+screenshot nearer.png
+point errors 0.6 0.75
+press right
+point errors 0.55 0.75
+point errors 0.5 0.75
+release right
+point timeline 0.5 0.1
+wait 0.1
+expect frame 7
+screenshot beside.png
+point errors 0.6 0.75
+click left
+click left
+idle
+action last
+idle
+point timeline 0.5 0.1
+wait 0.1
+screenshot again.png
+)",
+                 R"(layout {"rows": [{"panel": "errors", "share": 0.7}, {"panel": "timeline", "share": 0.3}]}
+)"),
+            "");
+  const auto shown = [&](const char* name) {
+    const cv::Mat image = cv::imread(out_.path(name));
+    return image.empty() ? image : cv::Mat(image(cv::Rect(20, 100, image.cols - 40, image.rows / 2)));
+  };
+  const cv::Mat whole = shown("whole.png"), nearer = shown("nearer.png"), beside = shown("beside.png");
+  ASSERT_FALSE(whole.empty());
+  EXPECT_FALSE(images_agree(nearer, whole, {2, 500.0, 0.0}));
+  EXPECT_FALSE(images_agree(beside, nearer, {2, 500.0, 0.0}));
+  EXPECT_TRUE(images_agree(shown("again.png"), whole, {2, 20.0, 0.0}));
+}
+
 TEST_F(Replay, ChoicesInALayoutAreTaken) {
   EXPECT_EQ(play(R"(frame 5
 expect choices errors: Log scale=on
@@ -199,9 +242,9 @@ TEST_F(Replay, AFolderDroppedOnTheStartPageOpens) {
 
 TEST_F(Replay, TwoReplaysGiveTheSameScreenshots) {
   for (const char* name : {"a.png", "b.png"})
-    EXPECT_EQ(
-        play("frame 5\npoint trajectory 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) + "\n"),
-        "");
+    EXPECT_EQ(play("frame 5\npoint trajectory 0.5 0.5\nwheel 0 3\nwait 0.3\nscreenshot " + std::string(name) +
+                   "\n"),
+              "");
   const cv::Mat a = cv::imread(out_.path("a.png")), b = cv::imread(out_.path("b.png"));
   ASSERT_EQ(a.size(), cv::Size(1280, 800));
   EXPECT_FALSE(is_blank(a, 50));

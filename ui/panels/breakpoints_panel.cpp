@@ -135,14 +135,16 @@ class BreakpointsPanel final : public NamedPanel {
   }
 
   static void draw_examples(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
-    ImGui::TextDisabled("Play stops where a condition holds. Click one to add it:");
+    ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
+    text_in_lines("Play stops where a condition holds. Click one to add it:");
+    ImGui::PopStyleColor();
     for (const Example& example : kExamples) {
       ImGui::PushID(example.expression);
       ImGui::PushFont(frame.fonts.mono);
       const bool wanted = ImGui::Button(example.expression);
       ImGui::PopFont();
       ImGui::SameLine();
-      ImGui::TextDisabled("%s", example.meaning);
+      text_in_room(example.meaning, frame.theme.text_dim);
       ImGui::PopID();
       if (!wanted) continue;
       append(session, example.expression, actions);
@@ -160,7 +162,7 @@ class BreakpointsPanel final : public NamedPanel {
     };
     ImGui::PushID(static_cast<int>(index));
     bool enabled = view.breakpoint.enabled;
-    if (ImGui::Checkbox("##enabled", &enabled)) replace({view.breakpoint.expression, enabled});
+    if (checkbox(frame, "##enabled", enabled)) replace({view.breakpoint.expression, enabled});
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip(enabled ? "Play stops here" : "Off: play does not stop here");
     ImGui::SameLine();

@@ -18,11 +18,7 @@ class CompensatedPanel final : public NamedPanel {
       : NamedPanel("compensated", "Compensated frame", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    const std::string missing = missing_motion(session);
-    if (!missing.empty()) {
-      draw_absent(frame, missing);
-      return;
-    }
+    if (draw_missing_motion(frame, session)) return;
     bool held = false;
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
@@ -97,11 +93,7 @@ class CompensatedPanel final : public NamedPanel {
     ImageContent content;
     content.texture = &texture;
     content.values = &difference_;
-    ImVec2 size = room_above(frame, footer);
-    size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
-    draw_frame_image(frame, "signed", content, *shared_, size, place);
-    ImGui::SameLine();
-    draw_colour_scale(frame, scale, size.y);
+    draw_scaled_image(frame, "signed", content, *shared_, room_above(frame, footer), place, scale);
     footer.draw(frame);
   }
 

@@ -169,20 +169,7 @@ class DepthMotionPanel final : public NamedPanel {
     content.absent = stage == kMemory ? "Nothing is remembered yet." : "Nothing to show.";
     const ImageResponse response =
         draw_frame_image(frame, heading_of(session, stage).c_str(), content, *shared_, size, place);
-    label(frame, response, heading_of(session, stage), kNames[slot]);
-  }
-
-  /// Writes the heading, or where there is no room for it the name alone.
-  static void label(const UiFrame& frame, const ImageResponse& response, const std::string& heading,
-                    const std::string& name) {
-    push_clip(response);
-    const float gap = 4.0F * frame.scale;
-    const ImFont* font = frame.fonts.small;
-    const float wide = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, heading.c_str()).x + 4.0F * gap;
-    const bool fits = wide < response.panel_max.x - response.panel_min.x;
-    draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, fits ? heading : name,
-               frame.theme.text);
-    pop_clip();
+    draw_heading(frame, response, heading_of(session, stage));
   }
 
   void draw_mask(const UiFrame& frame, const FramePlace& place, ImVec2 size) {
@@ -201,7 +188,7 @@ class DepthMotionPanel final : public NamedPanel {
     push_clip(response);
     draw_outlines(frame, response, outlines_, colour);
     pop_clip();
-    label(frame, response, heading_of(session, kMask), kNames[kMask]);
+    draw_heading(frame, response, heading_of(session, kMask));
   }
 
   /// Each patch in the colour of its log-odds, patches parted by lines.

@@ -19,11 +19,7 @@ class DifferencePanel final : public NamedPanel {
   explicit DifferencePanel(Shared shared) : NamedPanel("difference", "Difference", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    const std::string missing = missing_motion(session);
-    if (!missing.empty()) {
-      draw_absent(frame, missing);
-      return;
-    }
+    if (draw_missing_motion(frame, session)) return;
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
     controls.toggle("Outline what is above", outline_, "Outlines the pixels above the threshold");
@@ -51,7 +47,6 @@ class DifferencePanel final : public NamedPanel {
 
  private:
   void draw_picture(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace, ImVec2 size) {
-    const SessionView& session = place.session;
     ColourScale scale;
     scale.unit = "grey levels";
     // Three times the threshold tells most apart; what is above is as bright as can be.
@@ -59,7 +54,7 @@ class DifferencePanel final : public NamedPanel {
     scale.colour = [&scale](double v) {
       return map_colour(Colormap::kInferno, static_cast<float>(v / scale.high));
     };
-    const Texture& texture = texture_.get(frame, session.current, direction_, [&] {
+    const Texture& texture = texture_.get(frame, place.session.current, direction_, [&] {
       above_ = outlines_of(trace.raw_mask);
       collect_histogram(trace);
       return coloured(trace.difference, scale);
@@ -67,16 +62,13 @@ class DifferencePanel final : public NamedPanel {
     ImageContent content;
     content.texture = &texture;
     content.values = &trace.difference;
-    const float width = size.x - colour_scale_width(frame) - ImGui::GetStyle().ItemSpacing.x;
     const ImageResponse response =
-        draw_frame_image(frame, "difference", content, *shared_, {width, size.y}, place);
+        draw_scaled_image(frame, "difference", content, *shared_, size, place, scale);
     if (outline_) {
       push_clip(response);
       draw_outlines(frame, response, above_, okabe_ito::kSkyBlue);
       pop_clip();
     }
-    ImGui::SameLine();
-    draw_colour_scale(frame, scale, size.y);
   }
 
   void collect_histogram(const DirectionTrace& trace) {
@@ -101,6 +93,7 @@ class DifferencePanel final : public NamedPanel {
         "{}: {:.1f} % of the pixels with data are above Otsu's threshold.",
         frame_text(session, direction_ == 0 ? session.current->frame : session.current->reference),
         100.0 * above_share_);
+    footer.caption += whose_motion(session);
     ImGui::BeginGroup();
     ImGui::PushItemWidth(size.x);
     const ThemeName theme = frame.theme.name;

@@ -144,9 +144,9 @@ class FeaturePanel final : public NamedPanel {
               to_u32(look.colour));
     ImGui::SetCursorScreenPos({at.x + 2.6F * sign, at.y});
     ImGui::PushFont(frame.fonts.strong);
-    ImGui::TextWrapped("%s", story_.verdict.c_str());
+    text_in_lines(story_.verdict);
     ImGui::PopFont();
-    for (const std::string& sentence : story_.because) ImGui::TextWrapped("%s", sentence.c_str());
+    for (const std::string& sentence : story_.because) text_in_lines(sentence);
     for (const Margin& margin : story_.margins) draw_margin(frame, margin);
     ImGui::PushFont(frame.fonts.small);
     if (ImGui::BeginTable("facts", 2, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
@@ -157,7 +157,7 @@ class FeaturePanel final : public NamedPanel {
         ImGui::TableNextColumn();
         ImGui::TextDisabled("%s", name.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", value.c_str());
+        text_in_lines(value);
       }
       ImGui::EndTable();
     }

@@ -15,19 +15,13 @@ class FlowTracksPanel final : public NamedPanel {
   explicit FlowTracksPanel(Shared shared) : NamedPanel("flow_tracks", "Flow tracks", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    const std::string missing = missing_motion(session);
-    if (!missing.empty()) {
-      draw_absent(frame, missing);
-      return;
-    }
+    if (draw_missing_motion(frame, session)) return;
     const FrameView& view = *session.current;
-    const int rounds = static_cast<int>(view.motion.rounds.size());
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
-    controls.round(rounds, round_);
-    const int shown = round_ < 0 ? rounds : std::min(round_ + 1, rounds);
+    controls.round(static_cast<int>(view.motion.rounds.size()), round_);
     controls.slider("##length", length_, 1.0F, 8.0F, "length x%.0f");
-    const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(shown - 1)];
+    const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(round_shown(view, round_))];
     const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;
     const Frame& target = direction_ == 0 ? view.frame : view.reference;
 

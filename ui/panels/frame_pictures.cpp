@@ -130,13 +130,14 @@ void draw_heading(const UiFrame& frame, const ImageResponse& response, const std
   push_clip(response);
   const float gap = 5.0F * frame.scale;
   const ImFont* font = frame.fonts.small;
-  const float room = response.panel_max.x - response.panel_min.x - 4.0F * gap;
+  const float room = response.panel_max.x - response.panel_min.x - 3.0F * gap;
   const auto fits = [&](const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str()).x <= room;
   };
   // What stands after a comma is a unit or a range: it goes first.
   std::string shown = heading;
   while (!fits(shown) && shown.find(',') != std::string::npos) shown.resize(shown.rfind(','));
+  shown = cut_to(*font, shown, room);
   draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, shown, frame.theme.text);
   pop_clip();
 }
@@ -165,6 +166,16 @@ ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const Image
   return response;
 }
 
+ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                                PanelsShared& shared, ImVec2 size, const FramePlace& place,
+                                const ColourScale& scale) {
+  size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
+  const ImageResponse response = draw_frame_image(frame, id, content, shared, size, place);
+  ImGui::SameLine();
+  draw_colour_scale(frame, scale, size.y);
+  return response;
+}
+
 std::string missing_motion(const SessionView& session) {
   const FrameView& view = *session.current;
   if (!view.frame.readable()) {
@@ -182,6 +193,23 @@ std::string missing_motion(const SessionView& session) {
   if (!view.motion.rounds.empty()) return {};
   if (!view.motion.note.empty()) return fmt::format("There is no motion mask: {}", view.motion.note);
   return "Motion has not been computed for this frame yet.";
+}
+
+bool draw_missing_motion(const UiFrame& frame, const SessionView& session) {
+  const std::string missing = missing_motion(session);
+  if (!missing.empty()) draw_absent(frame, missing);
+  return !missing.empty();
+}
+
+int round_shown(const FrameView& view, int chosen) {
+  const int last = static_cast<int>(view.motion.rounds.size()) - 1;
+  return chosen < 0 ? last : std::min(chosen, last);
+}
+
+std::string whose_motion(const SessionView& session) {
+  const std::string& method = session.config.run.method;
+  if (method == "paper") return {};
+  return fmt::format(" What the paper's method finds; this run is by {}.", method);
 }
 
 std::string frame_text(const SessionView& session, const Frame& frame) {

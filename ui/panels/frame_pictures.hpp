@@ -71,11 +71,27 @@ ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const Image
 ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const ImageContent& content,
                                PanelsShared& shared, ImVec2 size, const std::string& heading = {});
 
+/// The same for frame t's or another's values as colours, with their scale beside the picture.
+/// @param size px, of both together
+ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const ImageContent& content,
+                                PanelsShared& shared, ImVec2 size, const FramePlace& place,
+                                const ColourScale& scale);
+
 /// Writes a heading into a picture's upper left corner, cut where there is no room for it.
 void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading);
 
 /// Why the paper's stages are not there for this frame, one sentence; empty when they are.
 [[nodiscard]] std::string missing_motion(const SessionView& session);
+
+/// Says in the panel why the paper's stages are not there. @returns whether they are not
+bool draw_missing_motion(const UiFrame& frame, const SessionView& session);
+
+/// The round shown, from 0: the one chosen, or the last where none is (below 0) or there are not so many.
+[[nodiscard]] int round_shown(const FrameView& view, int chosen);
+
+/// " What the paper's method finds; this run is by stillpoint.": whose work these stages are, where that is
+/// not the run's method; else empty.
+[[nodiscard]] std::string whose_motion(const SessionView& session);
 
 /// "Frame 42, 1.400 s": place and time since the sequence's first frame.
 [[nodiscard]] std::string frame_text(const SessionView& session, const Frame& frame);

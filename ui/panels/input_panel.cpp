@@ -79,11 +79,7 @@ class InputPanel final : public NamedPanel {
     ImageContent content;
     content.texture = &texture;
     content.values = &depth;
-    ImVec2 size = room_above(frame, footer);
-    size.x -= colour_scale_width(frame) + ImGui::GetStyle().ItemSpacing.x;
-    draw_frame_image(frame, "depth", content, *shared_, size, place);
-    ImGui::SameLine();
-    draw_colour_scale(frame, scale, size.y);
+    draw_scaled_image(frame, "depth", content, *shared_, room_above(frame, footer), place, scale);
     footer.draw(frame);
   }
 

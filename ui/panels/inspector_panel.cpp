@@ -140,7 +140,7 @@ class InspectorPanel final : public NamedPanel {
     const std::vector<Column> shown = columns(session);
     if (shown.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
-      ImGui::TextWrapped("Point at an image to read every layer there; P pins the pixel.");
+      text_in_lines("Point at an image to read every layer there; P pins the pixel.");
       ImGui::PopStyleColor();
       if (!wide) draw_record(frame, session, 1);
       return;
@@ -198,7 +198,7 @@ class InspectorPanel final : public NamedPanel {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
-      ImGui::TextWrapped("%s", first.readings[r].name.c_str());
+      text_in_lines(first.readings[r].name);
       ImGui::PopStyleColor();
       for (int i = 0; i < count; ++i) {
         const auto& groups = shown[static_cast<std::size_t>(i)].groups;
@@ -206,7 +206,7 @@ class InspectorPanel final : public NamedPanel {
         const Reading& reading = groups[group].readings[r];
         const Rgb ink = reading.speaks ? role_colour(Role::kWarning, frame.theme.name) : frame.theme.text;
         ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ink));
-        ImGui::TextWrapped("%s", reading.value.c_str());
+        text_in_lines(reading.value);
         ImGui::PopStyleColor();
       }
     }
@@ -247,7 +247,7 @@ class InspectorPanel final : public NamedPanel {
           ImGui::TableNextColumn();
           ImGui::TextDisabled("%s", name.c_str());
           ImGui::TableNextColumn();
-          ImGui::TextWrapped("%s", value.c_str());
+          text_in_lines(value);
         }
       }
       ImGui::EndTable();

@@ -40,15 +40,11 @@ class MaskPanel final : public NamedPanel {
                                             : Role::kUnion) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    const std::string missing = missing_motion(session);
-    if (!missing.empty()) {
-      draw_absent(frame, missing);
-      return;
-    }
+    if (draw_missing_motion(frame, session)) return;
     const FrameView& view = *session.current;
     const bool has_truth = !view.truth.moving.empty();
     draw_controls(frame, view, has_truth);
-    const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(round_of(view))];
+    const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(round_shown(view, round_))];
     const int variant = variant_of(view);
     const Frame& ground = kind_ == MaskKind::kBackward && stage_ != kCarried ? view.reference : view.frame;
     const Texture& tint = tint_.get(frame, session.current, variant, [&] {
@@ -110,12 +106,7 @@ class MaskPanel final : public NamedPanel {
     return beside_.value_or(ImGui::GetContentRegionAvail().x >= kBesideFrom * frame.scale);
   }
 
-  /// The round shown; the last one unless another was chosen.
-  [[nodiscard]] int round_of(const FrameView& view) const {
-    const int last = static_cast<int>(view.motion.rounds.size()) - 1;
-    return round_ < 0 ? last : std::min(round_, last);
-  }
-  [[nodiscard]] int variant_of(const FrameView& view) const { return 3 * round_of(view) + stage_; }
+  [[nodiscard]] int variant_of(const FrameView& view) const { return 3 * round_shown(view, round_) + stage_; }
 
   [[nodiscard]] cv::Mat mask_of(const MotionRound& round) const {
     if (kind_ == MaskKind::kForward) return stage_ == kRaw ? round.forward.raw_mask : round.forward.mask;
@@ -204,12 +195,13 @@ class MaskPanel final : public NamedPanel {
       footer.caption += fmt::format(", threshold {:.0f} grey levels", direction.threshold);
       if (!direction.homography.valid) footer.caption += ", no homography of its own";
     }
-    footer.caption += fmt::format(", round {} of {}.", 1 + round_of(*session.current),
+    footer.caption += fmt::format(", round {} of {}.", 1 + round_shown(*session.current, round_),
                                   session.current->motion.rounds.size());
     if (has_truth) {
       footer.caption += fmt::format(" Precision {}, recall {}, IoU {}.", percent(score_.precision()),
                                     percent(score_.recall()), percent(score_.iou()));
     }
+    footer.caption += whose_motion(session);
     return footer;
   }
 

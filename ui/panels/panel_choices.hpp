@@ -15,6 +15,16 @@ class PanelChoices {
   /// Has controls take these values when they are drawn next.
   void want(Words wanted) { wanted_ = std::move(wanted); }
 
+  /// Told by a control that has no such value.
+  void refuse(const std::string& control, const std::string& value) { refused_[control] = value; }
+
+  /// What was wanted and no control drawn so far could take.
+  [[nodiscard]] Words left() const {
+    Words words = wanted_;
+    words.insert(refused_.begin(), refused_.end());
+    return words;
+  }
+
   /// Told by a control before it is drawn. @returns the value it is to take instead of `now`, if any
   std::optional<std::string> take(const std::string& control, const std::string& now) {
     first_.emplace(control, now);
@@ -38,7 +48,7 @@ class PanelChoices {
   }
 
  private:
-  Words wanted_, first_, now_;
+  Words wanted_, refused_, first_, now_;
 };
 
 }  // namespace stillpoint

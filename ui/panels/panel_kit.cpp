@@ -3,33 +3,49 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <string_view>
+#include <utility>
 
-#include "ui/panels/panel_choices.hpp"
 #include "ui/plot/plot_axis.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr float kSliderWidth = 112.0F;  // design px
-constexpr float kBarWidth = 12.0F;
-constexpr const char* kRoundId = "round";
+constexpr float kBarWidth = 12.0F;  // design px
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
   const ImFont* font = frame.fonts.small;
   return font->CalcTextSizeA(font->FontSize, 1e6F, wrap, text.c_str());
 }
 
+float width_of(const ImFont& font, const std::string& text) {
+  return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
+}
+
+/// Ends lines at spaces alone: ImGui would part 0.81 at its point. A figure keeps its unit.
+std::string wrapped(const ImFont& font, const std::string& text, float width) {
+  constexpr std::size_t kLongestUnit = 4;  // bytes, "°)."
+  std::string lines, line;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t next = std::min(text.find(' ', end + 1), text.size());
+    const bool figure = end > at && std::isdigit(static_cast<unsigned char>(text[end - 1])) != 0;
+    if (end < text.size() && figure && next - end - 1 <= kLongestUnit) end = next;
+    const std::string word = text.substr(at, end - at);
+    if (at > 0 && width_of(font, line + ' ' + word) > width)
+      lines += std::exchange(line, word) + '\n';
+    else
+      line += (at > 0 ? " " : "") + word;
+    at = end + 1;
+  }
+  return lines + line;
+}
+
 void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour, float wrap = 0.0F) {
   ImGui::GetWindowDrawList()->AddText(frame.fonts.small, frame.fonts.small->FontSize,
                                       {std::round(at.x), std::round(at.y)}, to_u32(colour), text.c_str(),
                                       nullptr, wrap);
-}
-
-void tooltip_of_last(const char* tooltip) {
-  if (tooltip != nullptr && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
 }
 
 }  // namespace
@@ -43,126 +59,6 @@ const PairGeometry& PanelsShared::geometry(const SessionView& session) {
   geometry_of_ = session.current;
   geometry_run_ = session.run;
   return geometry_;
-}
-
-// Controls
-// --------------------------------------------------------------------------------------------------------
-
-void Controls::place(float width) {
-  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  if (right_ > 0.0F && right_ + gap + width <= edge) ImGui::SameLine();
-  right_ = ImGui::GetCursorScreenPos().x + width;
-}
-
-float Controls::text_width(const char* label) const { return ImGui::CalcTextSize(label, nullptr, true).x; }
-
-bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
-                      const char* tooltip) {
-  if (!frame_.controls) return false;
-  const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
-  const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
-  float width = 0.0F;
-  for (const std::string& name : names) width += width_of(name) + gap;
-  place(width - gap);
-  const auto shown = [&] {
-    const bool any = chosen >= 0 && chosen < static_cast<int>(names.size());
-    return any ? names[static_cast<std::size_t>(chosen)] : std::string();
-  };
-  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  float right = ImGui::GetCursorScreenPos().x;
-  bool changed = false;
-  // Which round is shown is a matter of the frame, not of taste.
-  const bool kept = frame_.choices != nullptr && std::string_view(id) != kRoundId;
-  if (kept) {
-    const auto wanted = frame_.choices->take(id, shown());
-    const auto found = wanted ? std::find(names.begin(), names.end(), *wanted) : names.end();
-    if (found != names.end()) {
-      chosen = static_cast<int>(found - names.begin());
-      changed = true;
-    }
-  }
-  ImGui::PushID(id);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
-  for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-    // A choice wider than its panel goes on in the next line rather than out of sight.
-    const float next = right + width_of(names[static_cast<std::size_t>(i)]);
-    if (i > 0 && next <= edge) {
-      ImGui::SameLine();
-    } else if (i > 0) {
-      right = ImGui::GetCursorScreenPos().x;
-    }
-    right += width_of(names[static_cast<std::size_t>(i)]) + gap;
-    const bool on = i == chosen;
-    if (on) {
-      const Rgb ground = mix(frame_.theme.raised, frame_.theme.accent, 0.45F);
-      ImGui::PushStyleColor(ImGuiCol_Button, to_vec4(ground));
-      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, to_vec4(ground));
-    }
-    if (ImGui::Button(names[static_cast<std::size_t>(i)].c_str()) && !on) {
-      chosen = i;
-      changed = true;
-    }
-    if (on) ImGui::PopStyleColor(2);
-    tooltip_of_last(tooltip);
-  }
-  ImGui::PopStyleVar();
-  ImGui::PopID();
-  if (kept) frame_.choices->note(id, shown());
-  right_ = right - gap;
-  return changed;
-}
-
-bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
-  if (!frame_.controls) return false;
-  place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
-  bool changed = false;
-  if (frame_.choices != nullptr) {
-    if (const auto wanted = frame_.choices->take(label, on ? "on" : "off")) {
-      on = *wanted == "on";
-      changed = true;
-    }
-  }
-  changed = ImGui::Checkbox(label, &on) || changed;
-  if (frame_.choices != nullptr) frame_.choices->note(label, on ? "on" : "off");
-  tooltip_of_last(tooltip);
-  return changed;
-}
-
-bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
-  if (!frame_.controls) return false;
-  const float name = text_width(label);
-  place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
-  ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
-  bool changed = false;
-  const auto words = [&] { return fmt::format("{:.4g}", value); };
-  if (frame_.choices != nullptr) {
-    const auto wanted = frame_.choices->take(label, words());
-    const float number = wanted ? std::strtof(wanted->c_str(), nullptr) : value;
-    changed = wanted && std::isfinite(number);
-    if (changed) value = std::clamp(number, low, high);
-  }
-  changed = ImGui::SliderFloat(label, &value, low, high, format) || changed;
-  if (frame_.choices != nullptr) frame_.choices->note(label, words());
-  return changed;
-}
-
-void Controls::round(int rounds, int& chosen) {
-  if (rounds < 2) return;
-  std::vector<std::string> names{"Round 1"};
-  for (int i = 2; i <= rounds; ++i) names.push_back(std::to_string(i));
-  int shown = chosen < 0 ? rounds - 1 : std::min(chosen, rounds - 1);
-  if (choice(kRoundId, names, shown, "Each round leaves out what the one before took for moving"))
-    chosen = shown == rounds - 1 ? -1 : shown;
-}
-
-bool Controls::button(const char* label, const char* tooltip, bool* held) {
-  if (!frame_.controls) return false;
-  place(text_width(label) + 2.0F * ImGui::GetStyle().FramePadding.x);
-  const bool pressed = ImGui::Button(label);
-  if (held != nullptr) *held = ImGui::IsItemActive();
-  tooltip_of_last(tooltip);
-  return pressed;
 }
 
 // Legends and captions
@@ -242,8 +138,9 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
   }
   if (!legend.empty() && has_legend_) y += line;
   if (!caption.empty() && has_caption_) {
-    if (draw) small_text(frame, {corner.x, corner.y + y}, caption, frame.theme.text_dim, width);
-    y += small_extent(frame, caption, width).y;
+    const std::string lines = wrapped(*frame.fonts.small, caption, width);
+    if (draw) small_text(frame, {corner.x, corner.y + y}, lines, frame.theme.text_dim, width);
+    y += small_extent(frame, lines, width).y;
   }
   return y;
 }
@@ -291,6 +188,28 @@ Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& pictur
     best = {size, {size.x + gap, size.y + gap}, columns};
   }
   return best;
+}
+
+std::string cut_to(const ImFont& font, const std::string& text, float width) {
+  if (width_of(font, text) <= width) return text;
+  const std::string ellipsis = "…";
+  std::string cut = text;
+  do {
+    // Never in the middle of a UTF-8 letter.
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U) cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+  } while (!cut.empty() && width_of(font, cut + ellipsis) > width);
+  return cut.empty() ? cut : cut + ellipsis;
+}
+
+void text_in_room(const std::string& text, Rgb colour) {
+  const std::string shown = cut_to(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextColored(to_vec4(colour), "%s", shown.c_str());
+  if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+}
+
+void text_in_lines(const std::string& text) {
+  ImGui::TextWrapped("%s", wrapped(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
 }
 
 void draw_absent(const UiFrame& frame, const std::string& sentence) {

@@ -60,6 +60,9 @@ class NamedPanel : public Panel {
   std::string name_, title_;
 };
 
+/// A box to be ticked. @returns whether it was changed
+bool checkbox(const UiFrame& frame, const char* label, bool& on);
+
 /// Controls side by side, on as many lines as they need.
 class Controls {
  public:
@@ -139,6 +142,15 @@ struct Tiling {
   [[nodiscard]] ImVec2 corner(ImVec2 start, int index) const;
 };
 [[nodiscard]] Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& picture);
+
+/// A text as it fits into `width` px: whole, or cut and ended by an ellipsis. "" where not even that fits.
+[[nodiscard]] std::string cut_to(const ImFont& font, const std::string& text, float width);
+
+/// One line in the current font as far as there is room for it; the mouse over it shows it whole.
+void text_in_room(const std::string& text, Rgb colour);
+
+/// Lines in the current font that end at spaces alone, and never between a figure and its unit.
+void text_in_lines(const std::string& text);
 
 /// Says in the middle of what is left what is missing.
 void draw_absent(const UiFrame& frame, const std::string& sentence);

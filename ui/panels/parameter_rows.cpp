@@ -41,8 +41,13 @@ std::string value_text(const Parameter& parameter) {
   return fmt::format("{}", *std::get<double*>(parameter.value));
 }
 
+bool is_switch(const Parameter& parameter) {
+  return std::holds_alternative<int*>(parameter.value) && parameter.min == 0.0 && parameter.max == 1.0;
+}
+
 std::string range_text(const Parameter& parameter) {
   if (!parameter.choices.empty()) return fmt::format("one of {}", parameter.choices.size());
+  if (is_switch(parameter)) return "off or on";
   return fmt::format("{}{}{:g} to {:g}", parameter.unit, parameter.unit.empty() ? "" : ", ", parameter.min,
                      parameter.max);
 }

@@ -16,6 +16,8 @@ namespace stillpoint {
 /// "depth_motion" as a heading: "Depth motion".
 [[nodiscard]] std::string heading_of(const std::string& section);
 [[nodiscard]] std::string value_text(const Parameter& parameter);
+/// Whether it is off (0) or on (1), and nothing between.
+[[nodiscard]] bool is_switch(const Parameter& parameter);
 /// "px, 1 to 64"
 [[nodiscard]] std::string range_text(const Parameter& parameter);
 

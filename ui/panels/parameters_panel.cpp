@@ -66,7 +66,7 @@ class ParametersPanel final : public NamedPanel {
     ImGui::SetNextItemWidth(std::min(150.0F * frame.scale, 0.5F * ImGui::GetContentRegionAvail().x));
     ImGui::InputTextWithHint("##filter", "Search", filter_.data(), filter_.size());
     ImGui::SameLine();
-    ImGui::Checkbox("Changed only", &only_changed_);
+    checkbox(frame, "Changed only", only_changed_);
     Controls controls(frame);
     if (controls.button("Compare with…", "Another method or preset, as a second run beside this one"))
       ImGui::OpenPopup("compare with");
@@ -229,17 +229,17 @@ class ParametersPanel final : public NamedPanel {
       ImGui::SameLine();
       ImGui::PushFont(frame.fonts.strong);
     }
-    ImGui::TextUnformatted(label_of(shown).c_str());
+    text_in_room(label_of(shown), frame.theme.text);
     if (changed) ImGui::PopFont();
     help(shown, usual);
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-1.0F);
-    edit(shown);
+    edit(frame, shown);
     help(shown, usual);
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     ImGui::PushFont(frame.fonts.small);
-    ImGui::TextDisabled("%s", range_text(shown).c_str());
+    text_in_room(range_text(shown), frame.theme.text_dim);
     ImGui::PopFont();
     ImGui::TableNextColumn();
     if (changed) {
@@ -263,7 +263,7 @@ class ParametersPanel final : public NamedPanel {
                       parameter.unit.c_str(), range_text(parameter).c_str());
   }
 
-  static void edit(const Parameter& parameter) {
+  static void edit(const UiFrame& frame, const Parameter& parameter) {
     if (auto* const* text = std::get_if<std::string*>(&parameter.value)) {
       if (!ImGui::BeginCombo("##value", (*text)->c_str())) return;
       for (const std::string& choice : parameter.choices)
@@ -271,10 +271,10 @@ class ParametersPanel final : public NamedPanel {
       ImGui::EndCombo();
       return;
     }
-    if (auto* const* flag = std::get_if<int*>(&parameter.value);
-        flag != nullptr && parameter.min == 0.0 && parameter.max == 1.0) {
-      bool on = **flag != 0;
-      if (ImGui::Checkbox("##value", &on)) **flag = on ? 1 : 0;
+    if (is_switch(parameter)) {
+      int& flag = *std::get<int*>(parameter.value);
+      bool on = flag != 0;
+      if (checkbox(frame, "##value", on)) flag = on ? 1 : 0;
       return;
     }
     // A wide range is gone through by factors, so that small values can be hit too.

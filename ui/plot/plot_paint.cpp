@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stillpoint {
 namespace {
@@ -23,6 +24,13 @@ std::vector<Stroke> strokes_of(SeriesStyle style) {
 
 bool is_broken(SeriesStyle style) {
   return style == SeriesStyle::kDashed || style == SeriesStyle::kDotted || style == SeriesStyle::kDashDot;
+}
+
+/// Whether a line turns by more than 60° at `at`.
+bool is_sharp(ImVec2 before, ImVec2 at, ImVec2 after) {
+  constexpr float kCosine = 0.5F;
+  const ImVec2 in{at.x - before.x, at.y - before.y}, out{after.x - at.x, after.y - at.y};
+  return in.x * out.x + in.y * out.y < kCosine * std::hypot(in.x, in.y) * std::hypot(out.x, out.y);
 }
 
 std::string with_unit(const std::string& label, const std::string& unit) {
@@ -49,16 +57,29 @@ void PlotPaint::text(ImVec2 at, const std::string& words, ImU32 colour) const {
                 colour, words.c_str());
 }
 
+void PlotPaint::label(ImVec2 at, const std::string& words, Rgb colour) const {
+  const float gap = 2.0F * frame_.scale;
+  const ImVec2 extent = text_size(words);
+  if (!words.empty())
+    list_.AddRectFilled({at.x - gap, at.y}, {at.x + extent.x + gap, at.y + extent.y},
+                        to_u32(frame_.theme.plot, 0.8F), gap);
+  text(at, words, to_u32(colour));
+}
+
 void PlotPaint::ground(const Plot&) const { list_.AddRectFilled(low, high, to_u32(frame_.theme.plot), 2.0F); }
 
 void PlotPaint::axes(const Plot& plot, ImVec2, ImVec2 outer_high) const {
   const ImU32 grid = to_u32(frame_.theme.grid), faint = to_u32(frame_.theme.grid, 0.45F);
   const ImU32 ink = to_u32(frame_.theme.text_dim);
   const float gap = 6.0F * frame_.scale;
+  float lowest = std::numeric_limits<float>::max();
   for (const AxisTick& tick : y_ticks) {
     const float at = std::round(place(x.range.low, tick.value).y);
     list_.AddLine({low.x, at}, {high.x, at}, tick.major ? grid : faint);
     const ImVec2 extent = text_size(tick.label);
+    // In a low plot some lines go without their number.
+    if (lowest - at < 0.9F * extent.y) continue;
+    lowest = at;
     text({low.x - gap - extent.x, at - 0.5F * extent.y}, tick.label, ink);
   }
   for (const AxisTick& tick : x_ticks) {
@@ -127,9 +148,25 @@ void PlotPaint::line(const PlotSeries& series, const std::vector<PlotSample>& sa
       for (std::size_t k = 1; k < run.size(); ++k)
         dashed(run[k - 1], run[k], colour, width, phase, series.style);
     } else {
-      list_.AddPolyline(run.data(), static_cast<int>(run.size()), colour, ImDrawFlags_None, width);
+      joined(run, colour, width);
     }
   }
+}
+
+void PlotPaint::joined(const std::vector<ImVec2>& run, ImU32 colour, float width) const {
+  // ImGui mitres its joints: at sharp turns, as in a spike, the line before and after becomes thin and the
+  // tip overshoots. There the line ends, and goes on under a round joint.
+  std::size_t begin = 0;
+  const auto draw_to = [&](std::size_t end) {
+    list_.AddPolyline(run.data() + begin, static_cast<int>(end - begin) + 1, colour, ImDrawFlags_None, width);
+    begin = end;
+  };
+  for (std::size_t i = 1; i + 1 < run.size(); ++i) {
+    if (!is_sharp(run[i - 1], run[i], run[i + 1])) continue;
+    draw_to(i);
+    list_.AddCircleFilled(run[i], 0.5F * width, colour);
+  }
+  draw_to(run.size() - 1);
 }
 
 void PlotPaint::series(const PlotSeries& series) const {
@@ -168,8 +205,8 @@ void PlotPaint::level(const PlotLevel& level) const {
   const ImVec2 extent = text_size(level.name);
   // Near the upper edge the name goes below the line.
   const float above = at - extent.y - 1.0F;
-  text({high.x - extent.x - 4.0F * frame_.scale, above < low.y ? at + 1.0F : above}, level.name,
-       to_u32(level.colour));
+  label({high.x - extent.x - 4.0F * frame_.scale, above < low.y ? at + 1.0F : above}, level.name,
+        level.colour);
 }
 
 void PlotPaint::mark(const PlotLevel& mark) const {
@@ -179,7 +216,7 @@ void PlotPaint::mark(const PlotLevel& mark) const {
   const ImVec2 extent = text_size(mark.name);
   const bool to_the_left = at + extent.x + 8.0F * frame_.scale > high.x;
   const float gap = 4.0F * frame_.scale;
-  text({to_the_left ? at - extent.x - gap : at + gap, low.y + gap}, mark.name, to_u32(mark.colour));
+  label({to_the_left ? at - extent.x - gap : at + gap, low.y + gap}, mark.name, mark.colour);
 }
 
 void PlotPaint::cursor(double at_x) const {

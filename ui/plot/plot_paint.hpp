@@ -35,7 +35,11 @@ class PlotPaint {
  private:
   [[nodiscard]] ImVec2 place(double value_x, double value_y) const;
   void text(ImVec2 at, const std::string& words, ImU32 colour) const;
+  /// Text that reads on whatever is drawn there.
+  void label(ImVec2 at, const std::string& words, Rgb colour) const;
   void line(const PlotSeries& series, const std::vector<PlotSample>& samples) const;
+  /// A whole line, as wide at its sharpest turn as elsewhere.
+  void joined(const std::vector<ImVec2>& run, ImU32 colour, float width) const;
   void dashed(ImVec2 from, ImVec2 to, ImU32 colour, float width, float& phase,
               SeriesStyle style = SeriesStyle::kDashed) const;
   void swatch(ImVec2 at, const PlotSeries& series) const;

@@ -23,7 +23,8 @@ class Overlay {
   Overlay(const UiFrame& frame, ImVec2 low, ImVec2 high)
       : frame_(frame), list_(*ImGui::GetWindowDrawList()), low_(low), high_(high), scale_(frame.scale) {}
 
-  void legend(const SceneData& scene) const {
+  /// As many lines as there is room for. @returns its lower right corner
+  ImVec2 legend(const SceneData& scene) const {
     struct Entry {
       std::string name;
       Rgb colour;
@@ -41,13 +42,16 @@ class Overlay {
     if (std::any_of(scene.points.begin(), scene.points.end(), removed)) {
       entries.push_back({"removed points", role_colour(Role::kRemoved, theme), 0.0F});
     }
-    if (entries.empty()) return;
-    float widest = 0.0F;
-    for (const Entry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
     const float font = frame_.fonts.small->FontSize, line = font + 4.0F * scale_;
     const ImVec2 corner{low_.x + 8.0F * scale_, low_.y + 8.0F * scale_};
-    backdrop(corner, {corner.x + widest + 46.0F * scale_,
-                      corner.y + line * static_cast<float>(entries.size()) + 8.0F * scale_});
+    const float room = std::max(high_.y - corner.y - 12.0F * scale_, 0.0F);
+    entries.resize(std::min(entries.size(), static_cast<std::size_t>(room / line)));
+    if (entries.empty()) return corner;
+    float widest = 0.0F;
+    for (const Entry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
+    const ImVec2 end{corner.x + widest + 46.0F * scale_,
+                     corner.y + line * static_cast<float>(entries.size()) + 8.0F * scale_};
+    backdrop(corner, end);
     const float left = corner.x + 8.0F * scale_;
     float top = corner.y + 5.0F * scale_;
     for (const Entry& entry : entries) {
@@ -64,9 +68,11 @@ class Overlay {
       text({left + 26.0F * scale_, top}, entry.name, frame_.theme.text);
       top += line;
     }
+    return end;
   }
 
   void error_scale(float most_m) const {
+    if (high_.y - low_.y < kErrorScaleRoom * scale_) return;
     // The axes' directions stand below it.
     const float room = high_.y - low_.y - 130.0F * scale_;
     const float height = std::clamp(room, 24.0F * scale_, 110.0F * scale_), width = 10.0F * scale_;
@@ -87,12 +93,16 @@ class Overlay {
     text({corner.x + width + 5.0F * scale_, corner.y + height - half}, "0", frame_.theme.text);
   }
 
-  void scale_bar(double metres_per_pixel) const {
+  /// @param legend the legend's lower right corner, beside which it goes where it cannot go below
+  void scale_bar(double metres_per_pixel, ImVec2 legend) const {
     const double metres = scale_bar_length(metres_per_pixel, 120.0 * static_cast<double>(scale_));
     const auto length = static_cast<float>(metres / metres_per_pixel);
-    const float y = std::round(high_.y - 14.0F * scale_), x = low_.x + 12.0F * scale_, tick = 4.0F * scale_;
+    const float y = std::round(high_.y - 14.0F * scale_), tick = 4.0F * scale_;
     const ImU32 ink = to_u32(frame_.theme.text_dim);
     const float font = frame_.fonts.small->FontSize;
+    const bool below = y - font - 6.0F * scale_ > legend.y;
+    const float x = (below ? low_.x : legend.x) + 12.0F * scale_;
+    if (x + length > high_.x - (below ? 0.0F : kAxesRoom * scale_)) return;
     backdrop({x - 4.0F * scale_, y - font - 6.0F * scale_}, {x + length + 4.0F * scale_, y + 6.0F * scale_});
     list_.AddLine({x, y}, {x + length, y}, ink, scale_);
     list_.AddLine({x, y - tick}, {x, y + tick}, ink, scale_);
@@ -101,8 +111,12 @@ class Overlay {
          frame_.theme.text_dim);
   }
 
-  void axes(const SceneView& view) const {
-    const ImVec2 middle{high_.x - 38.0F * scale_, high_.y - 38.0F * scale_};
+  void axes(const SceneView& view, bool with_errors) const {
+    const float height = high_.y - low_.y;
+    if (height < kAxesRoom * scale_) return;
+    // Where they cannot stand below the errors' scale they stand beside it.
+    const bool beside = with_errors && height < (kErrorScaleRoom + kAxesRoom) * scale_;
+    const ImVec2 middle{high_.x - (beside ? 72.0F + 38.0F : 38.0F) * scale_, high_.y - 38.0F * scale_};
     const Eigen::Matrix3d view_from_world = view.world_from_view.toRotationMatrix().transpose();
     std::array<int, 3> order{0, 1, 2};
     // The axis that points away is drawn first, so that the nearer ones cross over it.
@@ -139,6 +153,8 @@ class Overlay {
     list_.AddText(frame_.fonts.small, frame_.fonts.small->FontSize, {std::round(at.x), std::round(at.y)},
                   to_u32(colour), words.c_str());
   }
+
+  static constexpr float kErrorScaleRoom = 76.0F, kAxesRoom = 80.0F;  // design px, from top to bottom
 
   const UiFrame& frame_;
   ImDrawList& list_;
@@ -229,10 +245,10 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
 
   const Overlay overlay(frame, low, high);
   list.PushClipRect(low, high, true);
-  overlay.legend(scene);
+  const ImVec2 legend = overlay.legend(scene);
   if (!scene.errors.empty()) overlay.error_scale(scene.error_scale_m);
-  overlay.scale_bar(2.0 * view.distance * std::tan(0.5 * view.fov_y) / response.viewport.height);
-  overlay.axes(view);
+  overlay.scale_bar(2.0 * view.distance * std::tan(0.5 * view.fov_y) / response.viewport.height, legend);
+  overlay.axes(view, !scene.errors.empty());
   if (response.pose) {
     const ScenePath& path = scene.paths[response.pose->path];
     const auto seen = project(view, response.viewport, path.positions[response.pose->index].cast<double>());

@@ -32,43 +32,43 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-[[noreturn]] void refuse(std::string_view text) {
-  throw InputError(fmt::format("--frames {}: expected frames like 10, 20:40:5 or -1, with commas between",
+[[noreturn]] void refuse(std::string_view option, std::string_view text) {
+  throw InputError(fmt::format("{} {}: expected frames like 10, 20:40:5 or -1, with commas between", option,
                                in_quotes(text)));
 }
 
-int number_or(std::string_view part, int otherwise, std::string_view whole) {
+int number_or(std::string_view part, int otherwise, std::string_view option, std::string_view whole) {
   if (part.empty()) return otherwise;
   const auto number = whole_number(part);
-  if (!number) refuse(whole);
+  if (!number) refuse(option, whole);
   return *number;
 }
 
-void add_range(std::string_view part, int count, std::set<int>& frames) {
+void add_range(std::string_view option, std::string_view part, int count, std::set<int>& frames) {
   const auto pieces = split(part, ':');
-  if (pieces.size() > 3 || part.empty()) refuse(part);
+  if (pieces.size() > 3 || part.empty()) refuse(option, part);
   const auto from_end = [count](int frame) { return frame < 0 ? count + frame : frame; };
   if (pieces.size() == 1) {
-    const int frame = from_end(number_or(part, 0, part));
+    const int frame = from_end(number_or(part, 0, option, part));
     if (frame < 0 || frame >= count)
-      throw InputError(fmt::format("--frames {}: the sequence has frames 0 to {}", part, count - 1));
+      throw InputError(fmt::format("{} {}: the sequence has frames 0 to {}", option, part, count - 1));
     frames.insert(frame);
     return;
   }
-  const int begin = from_end(number_or(pieces[0], 0, part));
-  const int end = std::min(from_end(number_or(pieces[1], count, part)), count);
-  const int step = pieces.size() == 3 ? number_or(pieces[2], 1, part) : 1;
-  if (step < 1) refuse(part);
+  const int begin = from_end(number_or(pieces[0], 0, option, part));
+  const int end = std::min(from_end(number_or(pieces[1], count, option, part)), count);
+  const int step = pieces.size() == 3 ? number_or(pieces[2], 1, option, part) : 1;
+  if (step < 1) refuse(option, part);
   if (begin < 0 || begin >= end)
-    throw InputError(fmt::format("--frames {}: names none of the frames 0 to {}", part, count - 1));
+    throw InputError(fmt::format("{} {}: names none of the frames 0 to {}", option, part, count - 1));
   for (int frame = begin; frame < end; frame += step) frames.insert(frame);
 }
 
 }  // namespace
 
-std::vector<int> parse_frame_ranges(std::string_view text, int frame_count) {
+std::vector<int> parse_frame_ranges(std::string_view text, int frame_count, std::string_view option) {
   std::set<int> frames;
-  for (const std::string_view part : split(text, ',')) add_range(part, frame_count, frames);
+  for (const std::string_view part : split(text, ',')) add_range(option, part, frame_count, frames);
   return {frames.begin(), frames.end()};
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "ui/shell/warm_up.hpp"
 #include "ui/shell/window_input.hpp"
 
 namespace stillpoint {
@@ -139,6 +140,9 @@ Window::Window(const WindowOptions& options) {
   glfwSetWindowUserPointer(window_, this);
   connect_input();
   connect_clipboard();
+  tell_display_scale();
+  const auto [width, height] = framebuffer_size();
+  warm_up(*canvas_, std::max(width, 1), std::max(height, 1));
   last_frame_s_ = glfwGetTime();
 }
 
@@ -201,14 +205,17 @@ void Window::show_cursor() {
   glfwSetCursor(window_, cursor);
 }
 
-UiFrame Window::draw_unshown(const FrameFunction& function) {
-  context_->make_current();
-  const auto [width, height] = framebuffer_size();
-  const auto [ratio_x, ratio_y] = pixel_ratio(window_);
+void Window::tell_display_scale() {
   float content_x = 1.0F, content_y = 1.0F;
   glfwGetWindowContentScale(window_, &content_x, &content_y);
   // Where windows are scaled by the system the two agree; on X11 only the content scale speaks.
-  canvas_->set_display_scale(std::max(content_x, ratio_x));
+  canvas_->set_display_scale(std::max(content_x, pixel_ratio(window_)[0]));
+}
+
+UiFrame Window::draw_unshown(const FrameFunction& function) {
+  context_->make_current();
+  const auto [width, height] = framebuffer_size();
+  tell_display_scale();
   const double now = glfwGetTime();
   const double delta_s = now - last_frame_s_;
   last_frame_s_ = now;

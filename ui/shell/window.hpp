@@ -57,6 +57,7 @@ class Window {
   [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
  private:
+  void tell_display_scale();
   UiFrame draw_unshown(const FrameFunction& function);
   void wait(double seconds) const;
   void connect_input();

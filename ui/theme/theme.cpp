@@ -118,8 +118,9 @@ void apply_theme(const Theme& theme, float scale) {
   set(ImGuiCol_ScrollbarGrabHovered, mix(theme.hovered, theme.text_dim, 0.4F));
   set(ImGuiCol_ScrollbarGrabActive, theme.accent);
   set(ImGuiCol_CheckMark, theme.accent);
-  set(ImGuiCol_SliderGrab, theme.accent);
-  set(ImGuiCol_SliderGrabActive, mix(theme.accent, theme.text, 0.3F));
+  // Numbers are written over it.
+  set(ImGuiCol_SliderGrab, mix(theme.raised, theme.accent, 0.5F));
+  set(ImGuiCol_SliderGrabActive, mix(theme.raised, theme.accent, 0.75F));
   set(ImGuiCol_Button, theme.raised);
   set(ImGuiCol_ButtonHovered, theme.hovered);
   set(ImGuiCol_ButtonActive, mix(theme.hovered, theme.accent, 0.4F));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "ui/panels/panel_kit.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 
@@ -111,30 +112,56 @@ void Workbench::draw_shortcuts() {
   if (!shortcuts_open_) return;
   const float scale = frame_->scale;
   ImGui::SetNextWindowFocus();
-  if (begin_overlay(*frame_, "##keys", {560.0F * scale, 600.0F * scale}, 0.12F)) {
+  if (begin_overlay(*frame_, "##keys", {920.0F * scale, 570.0F * scale}, 0.08F)) {
     ImGui::PushFont(frame_->fonts.heading);
     ImGui::TextUnformatted("Keys");
     ImGui::PopFont();
-    for (const std::string& group : actions_.groups()) {
-      bool first = true;
-      for (const Action& action : actions_.all()) {
-        if (action.group != group || action.keys.empty()) continue;
-        if (first) ImGui::TextDisabled("%s", group.c_str());
-        first = false;
-        ImGui::Indent();
-        ImGui::TextUnformatted(action.title.c_str());
-        ImGui::SameLine(400.0F * scale);
-        ImGui::PushFont(frame_->fonts.mono);
-        ImGui::TextColored(to_vec4(frame_->theme.accent), "%s", key_text(action).c_str());
-        ImGui::PopFont();
-        ImGui::Unindent();
-      }
-    }
-    ImGui::TextDisabled(
-        "On images: wheel zooms, drag pans, double click fits; on plots click goes to a frame.");
+    text_in_lines(
+        "On images: wheel zooms, drag pans, double click fits. On plots: wheel zooms, right drag pans, a "
+        "click "
+        "goes to the frame there.");
+    // What does not fit is scrolled to.
+    ImGui::BeginChild("list");
+    draw_shortcut_list(ImGui::GetContentRegionAvail().x > 760.0F * scale ? 2 : 1);
+    ImGui::EndChild();
   }
   ImGui::End();
   if (is_key_pressed(Key::kEscape) || ImGui::IsMouseClicked(0)) shortcuts_open_ = false;
+}
+
+void Workbench::draw_shortcut_list(int columns) const {
+  std::vector<const Action*> lines;  // null before the first action of each group
+  for (const std::string& group : actions_.groups()) {
+    const std::size_t before = lines.size();
+    for (const Action& action : actions_.all()) {
+      if (action.group != group || action.keys.empty()) continue;
+      if (lines.size() == before) lines.push_back(nullptr);
+      lines.push_back(&action);
+    }
+  }
+  const auto wanted = static_cast<std::size_t>(columns);
+  const std::size_t rows = (lines.size() + wanted - 1) / wanted;
+  if (!ImGui::BeginTable("keys", 2 * columns, ImGuiTableFlags_SizingStretchProp)) return;
+  for (int i = 0; i < 2 * columns; ++i)
+    ImGui::TableSetupColumn(fmt::format("{}", i).c_str(), ImGuiTableColumnFlags_WidthStretch,
+                            i % 2 == 0 ? 1.0F : 0.4F);
+  for (std::size_t row = 0; row < rows; ++row) {
+    ImGui::TableNextRow();
+    for (std::size_t place = row; place < row + rows * wanted; place += rows) {
+      ImGui::TableNextColumn();
+      const bool there = place < lines.size();
+      if (there && lines[place] == nullptr)
+        ImGui::TextDisabled("%s", lines[place + 1]->group.c_str());
+      else if (there)
+        text_in_room("    " + lines[place]->title, frame_->theme.text);
+      ImGui::TableNextColumn();
+      if (!there || lines[place] == nullptr) continue;
+      ImGui::PushFont(frame_->fonts.mono);
+      ImGui::TextColored(to_vec4(frame_->theme.accent), "%s", key_text(*lines[place]).c_str());
+      ImGui::PopFont();
+    }
+  }
+  ImGui::EndTable();
 }
 
 void Workbench::draw_open_dialog() {

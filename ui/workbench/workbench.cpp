@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/panels/panel_kit.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -17,7 +18,8 @@ constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
 constexpr ImGuiWindowFlags kRootFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse;
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse |
+    ImGuiWindowFlags_NoBackground;  // the canvas is cleared in that colour
 
 void begin_root(const UiFrame& frame, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos({0, 0});
@@ -25,9 +27,7 @@ void begin_root(const UiFrame& frame, ImGuiWindowFlags flags) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0F);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, to_vec4(frame.theme.background));
   ImGui::Begin("##workbench", nullptr, kRootFlags | flags);
-  ImGui::PopStyleColor();
   ImGui::PopStyleVar(3);
 }
 
@@ -191,12 +191,15 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
   const auto& records = session.run->records;
   const double seconds = records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
-  const std::string where =
-      fmt::format("{}   frame {} of {}   {:.3f} s   method {}", session.title, session.current->index,
-                  session.frame_count, seconds, session.config.run.method);
+  const float room = rect.width - title_width - 4.0F * margin;
   ImGui::PushFont(frame.fonts.small);
-  const float width =
-      std::min(ImGui::CalcTextSize(where.c_str()).x, rect.width - title_width - 4.0F * margin);
+  const auto wide = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+  const std::string frame_text = fmt::format("frame {} of {}", session.current->index, session.frame_count),
+                    method = fmt::format("method {}", session.config.run.method);
+  // Where there is no room for all of it, the time goes first.
+  std::string where = fmt::format("{}   {}   {:.3f} s   {}", session.title, frame_text, seconds, method);
+  if (wide(where) > room) where = fmt::format("{}   {}   {}", session.title, frame_text, method);
+  const float width = std::min(wide(where), room);
   draw_clipped_text({rect.x + rect.width - margin - width, rect.y + 0.5F * (heading - ImGui::GetFontSize())},
                     where, width, to_u32(frame.theme.text_dim));
   ImGui::PopFont();
@@ -313,20 +316,8 @@ void Workbench::carry_out(const PanelActions& wanted) {
 }
 
 void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
-    list.AddText(at, colour, text.c_str());
-    return;
-  }
-  const char* ellipsis = "…";
-  const float room = width - ImGui::CalcTextSize(ellipsis).x;
-  std::size_t end = text.size();
-  const auto shown = [&] { return ImGui::CalcTextSize(text.c_str(), text.c_str() + end).x; };
-  // Never in the middle of a UTF-8 letter.
-  do {
-    while (end > 0 && (static_cast<unsigned char>(text[--end]) & 0xC0U) == 0x80U) continue;
-  } while (end > 0 && shown() > room);
-  if (end > 0) list.AddText(at, colour, (text.substr(0, end) + ellipsis).c_str());
+  const std::string shown = cut_to(*ImGui::GetFont(), text, width);
+  if (!shown.empty()) ImGui::GetWindowDrawList()->AddText(at, colour, shown.c_str());
 }
 
 }  // namespace stillpoint

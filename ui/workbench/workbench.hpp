@@ -118,6 +118,7 @@ class Workbench {
   void draw_palette();
   void draw_palette_list();
   void draw_shortcuts();
+  void draw_shortcut_list(int columns) const;
   void draw_open_dialog();
   void draw_start_page(const LayoutRect& area);
   void draw_opening();
