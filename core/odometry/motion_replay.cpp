@@ -9,9 +9,8 @@ MotionReplay::MotionReplay(const Camera& camera, const Config& config) : odometr
 void MotionReplay::make_view(const Frame& frame) {
   odometry_.view_.reset();
   if (frame.has_depth())
-    odometry_.view_ =
-        std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, odometry_.camera_,
-                                                        odometry_.config_.depth_motion.factor));
+    odometry_.view_ = std::make_shared<const RgbdView>(
+        make_rgbd_view(frame.gray, frame.depth, odometry_.camera_, odometry_.config_.depth_motion.factor));
 }
 
 void MotionReplay::take(const Frame& frame, const FrameRecord& record, const cv::Mat& log_odds) {
@@ -32,8 +31,24 @@ FrameResult MotionReplay::repeat(const Frame& frame, const FrameRecord& record) 
   make_view(frame);
   if (record.prior_pose) result.mask = odometry_.remembered_mask(frame, *record.prior_pose, result.record);
   if (record.motion_pose) odometry_.detect_by_pose(frame, *record.motion_pose, result);
+  // The run found that too little was left without what moves, removed nothing and forgot it.
+  if (as_the_run_ && record.mask_share == 0.0 && result.record.mask_share > 0.0) {
+    result.mask.release();
+    result.depth_motion.log_odds.setTo(0);
+    result.record.mask_share = 0.0;
+  }
   odometry_.remember_view(frame, result);
   return result;
+}
+
+std::optional<MotionReplay> MotionReplay::continued_with(const Config& config,
+                                                         const std::vector<PastFrame>& before) const {
+  std::optional<Odometry> odometry = odometry_.continued_with(config, before);
+  if (!odometry) return std::nullopt;
+  MotionReplay other = *this;
+  other.odometry_ = std::move(*odometry);
+  other.as_the_run_ = false;
+  return other;
 }
 
 }  // namespace stillpoint

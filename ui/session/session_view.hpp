@@ -39,6 +39,7 @@ struct FrameView {
 struct RunView {
   std::string name;                  ///< "none", "paper", …
   std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
+  std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
   Trajectory trajectory;             ///< estimated poses so far
   TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
 };

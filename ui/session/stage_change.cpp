@@ -141,7 +141,8 @@ std::optional<StageChange> stage_change(const FrameView& view, const Camera& cam
     StageInfo place = stage;
     if (rounds) --place.round;
     if (place.round >= static_cast<int>(other.motion.rounds.size()) ||
-        place.reference >= static_cast<int>(other.depth_motion.references.size()))
+        place.reference >= static_cast<int>(std::max(other.depth_motion.references.size(),
+                                                     other.colour_motion.references.size())))
       return std::nullopt;
     StagePicture before = stage_pictures(other, camera, config, place, backward).output;
     if (before.image.empty() || now.output.image.empty() || before.image.size() != now.output.image.size() ||

@@ -80,7 +80,8 @@ class Workbench {
     char query[128] = "";
     int chosen = 0;
   };
-  struct OpenDialog {
+  /// A question for a path.
+  struct PathDialog {
     bool open = false, opened_now = false;
     char path[1024] = "";
   };
@@ -118,7 +119,11 @@ class Workbench {
   void draw_palette();
   void draw_palette_list();
   void draw_shortcuts();
+  [[nodiscard]] bool ask_for_path(PathDialog& dialog, const char* title, const char* what,
+                                  const char* button);
   void draw_open_dialog();
+  void draw_hand_on_dialog();
+  void draw_exporting();
   void draw_start_page(const LayoutRect& area);
   void draw_opening();
   void draw_error();
@@ -142,7 +147,7 @@ class Workbench {
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
   Palette palette_;
-  OpenDialog open_dialog_;
+  PathDialog open_dialog_, hand_on_dialog_;
   bool shortcuts_open_ = false;
   double speed_ = 30.0;  // frames a second
 
