@@ -30,9 +30,9 @@ std::size_t first_shown(const std::vector<StageInfo>& stages) {
 }
 
 /// A frame's way through its method, one stage at a time: what it takes, makes, takes in time and changes.
-class StagesPanel final : public NamedPanel {
+class StagesPanel final : public FramePanel {
  public:
-  explicit StagesPanel(Shared shared) : NamedPanel("stages", "Stages", std::move(shared)) {}
+  explicit StagesPanel(Shared shared) : FramePanel("stages", "Stages", std::move(shared)) {}
 
   [[nodiscard]] std::vector<PanelCommand> commands() override {
     const auto step = [this](int by) {

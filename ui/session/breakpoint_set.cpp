@@ -10,7 +10,7 @@ void BreakpointSet::set(const std::vector<Breakpoint>& all) {
   views_.clear();
   conditions_.clear();
   for (const Breakpoint& breakpoint : all) {
-    views_.push_back({.breakpoint = breakpoint, .error = {}, .error_column = 0, .note = {}, .hits = {}});
+    views_.push_back({.breakpoint = breakpoint, .error = {}, .error_column = 0, .hits = {}});
     conditions_.emplace_back();
     try {
       conditions_.back().emplace(breakpoint.expression);

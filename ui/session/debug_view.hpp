@@ -49,8 +49,8 @@ struct BreakpointView {
   Breakpoint breakpoint;
   std::string error;      ///< one sentence; empty when the expression can be read
   int error_column = 0;   ///< from 0, into the expression
-  std::string note;       ///< what it names and no frame processed has, one sentence; empty when nothing
   std::vector<int> hits;  ///< processed frames at which it holds, ascending
+  std::string note{};     ///< what it names and no frame processed has, one sentence; empty when nothing
 };
 
 /// A second run beside the session's own, with another configuration.
@@ -83,6 +83,7 @@ struct DebugView {
   std::vector<RemovalError> removal;         ///< by frame; empty where there is no truth
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
+  std::optional<Config> previewed;           ///< the config `preview` was made with
   bool preview_whole = false;           ///< false: its features' matches and its pose are the run's still
   double preview_ms = 0.0;              ///< what computing it took
   std::optional<ExportView> exporting;  ///< what is being written now

@@ -121,6 +121,7 @@ void Session::preview_step() {
     debug_.preview = run_->preview(index, config);
     preview_due_ = false;
   }
+  debug_.previewed = config;
   debug_.preview_whole = !motion_alone;
   debug_.preview_ms = options_.keep_times ? watch.milliseconds() : 0.0;
   publish();

@@ -197,7 +197,7 @@ std::shared_ptr<const FrameView> ShownRun::motion_preview(int index, const Confi
   FrameView view = images_of(index, config, std::move(extras));
   std::optional<FrameRecord> record;
   if (is_own(index)) record = with_mask(track_.record(index), view.mask);
-  return hold(std::move(view), std::move(record));
+  return with_history(std::move(view), std::move(record));
 }
 
 std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& config) {
@@ -209,7 +209,13 @@ std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& conf
     extras = {index, std::move(result.motion), std::move(result.depth_motion),
               std::move(result.colour_motion), std::move(result.mask)};
   }
-  return hold(images_of(index, config, std::move(extras)), std::move(record));
+  return with_history(images_of(index, config, std::move(extras)), std::move(record));
+}
+
+std::shared_ptr<const FrameView> ShownRun::with_history(FrameView view,
+                                                        std::optional<FrameRecord> record) const {
+  if (record) view.history = history_of(view.index, [this](int past) { return track_.record(past); });
+  return hold(std::move(view), std::move(record));
 }
 
 }  // namespace stillpoint

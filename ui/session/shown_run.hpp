@@ -71,6 +71,8 @@ class ShownRun {
     return index >= track_.begins_at() && index < track_.processed();
   }
   [[nodiscard]] std::optional<FrameResult> motion_again(int index, const Config& config);
+  [[nodiscard]] std::shared_ptr<const FrameView> with_history(FrameView view,
+                                                              std::optional<FrameRecord> record) const;
   void keep(Extras extras);
 
   const FrameSource* source_;

@@ -114,6 +114,7 @@ class Workbench {
   void draw_tiles(const LayoutRect& area);
   void draw_splitters(const PlacedLayout& placed);
   void draw_tile(const std::string& name, const LayoutRect& rect);
+  [[nodiscard]] const SessionView& previewed();
   void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
@@ -167,6 +168,7 @@ class Workbench {
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
   const SessionView* session_ = nullptr;
+  std::unique_ptr<const SessionView> previewed_;      // as panels of the frame shown draw its preview
   bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 

@@ -128,6 +128,14 @@ std::vector<std::uint8_t> bytes_of(FrameRecord record) {
   return bytes.bytes();
 }
 
+/// A run that can be looked at, without a session about it.
+struct ShownRunFixture {
+  ShownRunFixture(const FrameSource& source, const Config& config)
+      : frames(source), run(source, frames, RunTrack(source, config)) {}
+  FrameCache frames;
+  ShownRun run;
+};
+
 TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
   for (const char* method : {"none", "paper", "stillpoint", "oracle"}) {
     config_.run.method = method;
@@ -150,6 +158,114 @@ TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
       }
     }
   }
+}
+
+/// True masks, one a frame: a square that stands for what moves.
+void write_masks(const SmallSequence& sequence) {
+  std::string list;
+  cv::Mat mask = cv::Mat::zeros(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1);
+  mask(cv::Rect(40, 40, 60, 60)).setTo(255);
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string file = fmt::format("mask/{}.png", i);
+    sequence.folder.write(file, mask);
+    list += fmt::format("{:.4f} {}\n", SmallSequence::stamp(i), file);
+  }
+  sequence.folder.write("mask.txt", list);
+}
+
+TEST_F(SessionDebug, BreakpointsKnowTheTrueMasks) {
+  write_masks(folder_);
+  source_ = open_sequence(folder_.path());
+  config_.run.method = "oracle";
+  const auto told = session();
+  told->request(request::GoTo{5});
+  told->request(request::Breakpoints{{{"mask_iou > 99%", true}, {"mask_recall < 50%", true}}});
+  EXPECT_THAT(debug(*told).breakpoints[0].hits, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(debug(*told).breakpoints[1].hits, ::testing::IsEmpty());
+  // A ghost has its own masks; before it branches off they are the run's.
+  Config none = config_;
+  none.run.method = "none";
+  told->request(request::AddGhost{none, "none", 3});
+  const auto& scores = debug(*told).ghosts[0].run->scores;
+  ASSERT_EQ(scores.size(), 6U);
+  EXPECT_EQ(scores[2].mask.iou(), 1.0);
+  EXPECT_EQ(scores[4].mask.iou(), 0.0);
+}
+
+TEST_F(SessionDebug, AFinishedRunsMasksAreScoredAsTheyWere) {
+  write_masks(folder_);
+  config_.run.method = "oracle";
+  const TemporaryFolder out;
+  {
+    Session first(std::shared_ptr<const FrameSource>(open_sequence(folder_.path())), config_,
+                  {.baseline = false});
+    first.request(request::GoTo{3});
+    first.request(request::ExportSession{out.path("run")});
+    ASSERT_EQ(first.view()->message, "");
+  }
+  const OpenedRun run = open_run(out.path("run"));
+  SessionOptions options;
+  options.recorded = run.recorded;
+  Session other(run.source, run.recorded->run.config, options);
+  other.request(request::Breakpoints{{{"mask_iou > 99%", true}}});
+  EXPECT_THAT(debug(other).breakpoints[0].hits, ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(debug(other).breakpoints[0].note, "");
+}
+
+TEST_F(SessionDebug, ABreakpointSaysWhatNoFrameHas) {
+  const auto s = session();
+  s->request(request::GoTo{4});
+  s->request(request::Breakpoints{{{"mask_iou < 50% || step > 2", true}, {"inliers > 0", true}}});
+  EXPECT_THAT(debug(*s).breakpoints[0].note, ::testing::AllOf(HasSubstr("step"), HasSubstr("mask_iou")));
+  EXPECT_EQ(debug(*s).breakpoints[1].note, "");
+}
+
+TEST_F(SessionDebug, APreviewsMotionStagesComeFirstAndAreThoseOfTheWhole) {
+  config_.run.method = "stillpoint";
+  ShownRunFixture at(*source_, config_);
+  for (int i = 0; i < kFrames; ++i) at.run.process(source_->read(i));
+  for (const int index : {10, 4, 11}) {
+    // Under the run's own config it is what the run had, and the whole what the motion stages were.
+    const auto motion = at.run.motion_preview(index, config_);
+    ASSERT_NE(motion, nullptr) << index;
+    while (!at.run.prepare_preview(index)) {
+    }
+    const auto whole = at.run.preview(index, config_);
+    EXPECT_EQ(cv::norm(motion->mask, whole->mask, cv::NORM_INF), 0.0) << index;
+    EXPECT_EQ(cv::norm(motion->depth_motion.log_odds, whole->depth_motion.log_odds, cv::NORM_INF), 0.0);
+    EXPECT_EQ(bytes_of(*motion->record), bytes_of(*whole->record)) << index;
+    EXPECT_TRUE(computed_alike(*whole->record, at.run.track().record(index)));
+  }
+  // Another method's stages need nothing of the run's.
+  Config paper = config_;
+  paper.run.method = "paper";
+  const auto other = at.run.motion_preview(5, paper);
+  ASSERT_NE(other, nullptr);
+  EXPECT_FALSE(other->motion.rounds.empty());
+  paper.run.method = "oracle";
+  EXPECT_EQ(at.run.motion_preview(5, paper), nullptr);
+}
+
+TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
+  config_.run.method = "stillpoint";
+  config_.depth_motion.moving_log_odds = -3.9;  // all moves: what is left is too little
+  RunTrack track(*source_, config_);
+  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  std::vector<FrameResult> results;
+  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  int harmed = 0;
+  for (int index = 1; index < kFrames; ++index) {
+    const FrameResult& first = results[static_cast<std::size_t>(index)];
+    harmed += first.record.note.find("too little") != std::string::npos ? 1 : 0;
+    if (!track.frames_to_repeat(index)) continue;
+    const FrameResult again = track.repeat_motion(index, read);
+    ASSERT_EQ(again.mask.empty(), first.mask.empty()) << index;
+    if (!first.mask.empty()) {
+      EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
+    }
+    EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
+  }
+  EXPECT_GT(harmed, 0);
 }
 
 TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
@@ -309,6 +425,56 @@ TEST_F(SessionDebug, ExportedFramesShowTheSame) {
   EXPECT_FALSE(part->ground_truth().empty());
   s->request(request::ExportFrames{out.path("part")});
   EXPECT_THAT(s->view()->message, HasSubstr("holds a sequence already"));
+}
+
+TEST_F(SessionDebug, ExportedFramesKeepTheirNumbers) {
+  folder_.folder.write(SmallSequence::colour(4), std::string("no image"));
+  folder_.folder.write(SmallSequence::depth(5), std::string("no image"));
+  const auto s = session();
+  s->request(request::Span{FrameSpan{3, 7}, false});
+  const TemporaryFolder out;
+  s->request(request::ExportFrames{out.path("part")});
+  ASSERT_EQ(s->view()->message, "");
+  EXPECT_THAT(debug(*s).notice, ::testing::AllOf(HasSubstr("5 frames"), HasSubstr("without images: 4")));
+  const auto part = open_sequence(out.path("part"));
+  ASSERT_EQ(part->size(), 5);
+  for (int i = 0; i < 5; ++i) {
+    const Frame frame = part->read(i);
+    EXPECT_NEAR(frame.timestamp, source_->timestamp(i + 3), 1e-6);
+    EXPECT_EQ(frame.readable(), i != 1) << i;
+    EXPECT_EQ(frame.has_depth(), i != 1 && i != 2) << i;
+    EXPECT_EQ(frame.problem.empty(), i != 1 && i != 2) << frame.problem;
+  }
+}
+
+TEST_F(SessionDebug, ExportsGoOnBesideTheSessionAndCanBeStopped) {
+  const auto s = session();
+  std::mutex mutex;
+  std::condition_variable changed;
+  s->start([&] {
+    const std::lock_guard lock(mutex);
+    changed.notify_all();
+  });
+  const auto wait_for = [&](auto&& holds) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*s->view()); });
+  };
+  s->request_frame(kFrames - 1);
+  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.processed == kFrames; }));
+  const TemporaryFolder out;
+  s->request(request::ExportSession{out.path("first")});
+  s->request(request::ExportSession{out.path("second")});
+  EXPECT_TRUE(wait_for([](const SessionView& v) { return !v.message.empty() || !v.debug.notice.empty(); }));
+  s->request_frame(2);  // clears the message, and is done whatever is written meanwhile
+  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.current->index == 2; }));
+  EXPECT_TRUE(wait_for([](const SessionView& v) { return !v.debug.exporting && !v.debug.notice.empty(); }));
+  EXPECT_THAT(s->view()->debug.notice, HasSubstr("12 frames, their run"));
+  EXPECT_EQ(open_run(out.path("first")).recorded->hash, s->view()->debug.run_hash);
+
+  s->request(request::ExportSession{out.path("third")});
+  s->request(request::StopExport{});
+  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.debug.notice.find("Stopped") == 0; }));
+  EXPECT_FALSE(fs::exists(out.path("third")));
 }
 
 TEST_F(SessionDebug, ASessionIsHandedOnAsOneFolder) {
