@@ -184,6 +184,7 @@ class ParametersPanel final : public NamedPanel {
     if (!ImGui::BeginPopup("save")) return;
     ImGui::TextUnformatted("Save these values as");
     ImGui::SetNextItemWidth(kFieldWidth * ImGui::GetFontSize());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint("##preset", "mine.toml", preset_.data(), preset_.size(),
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::BeginDisabled(preset_[0] == '\0');

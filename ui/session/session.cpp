@@ -64,6 +64,8 @@ void Session::process_one() {
                         [&] { return baseline_->process_next([&frame](int) { return frame; }); });
   run_->process(frame);
   if (beside.valid()) beside.get();
+  // Of ghosts that are ahead of a run begun anew, this frame can be compared only now.
+  for (Ghost& ghost : ghosts_) compare(ghost);
   breakpoints_due_ = true;
 }
 

@@ -407,6 +407,19 @@ TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
   EXPECT_EQ(debug(*s).run_hash, run_hash(batch(other, 10).records));
 }
 
+TEST_F(SessionDebug, GhostsAreComparedWithARunThatBeginsAnew) {
+  const auto s = session();
+  s->request(request::GoTo{6});
+  s->request(request::AddGhost{config_, "same", 0});
+  EXPECT_FALSE(debug(*s).ghosts[0].diverged);
+  Config other = config_;
+  other.features.count = 300;
+  s->request(request::RunAll{other});
+  EXPECT_EQ(debug(*s).ghosts[0].diverged, 0);
+  s->request(request::RunAll{config_});
+  EXPECT_FALSE(debug(*s).ghosts[0].diverged);
+}
+
 TEST_F(SessionDebug, ExportedFramesShowTheSame) {
   const auto s = session();
   s->request(request::Span{FrameSpan{3, 6}, false});
