@@ -126,6 +126,8 @@ std::optional<StageChange> stage_change(const FrameView& view, const Camera& cam
   const bool rounds = against == ChangeAgainst::kRoundBefore;
   if (rounds && stage.round < 1) return std::nullopt;
   if (!rounds && view.before == nullptr) return std::nullopt;
+  // Of followed points the figures tell the change; the picture below them is the frame's own.
+  if (of_colour(stage.kind) && now.output.look == PictureLook::kPhoto) return std::nullopt;
   StageChange change;
   const FrameView& other = rounds ? view : *view.before;
   if (of_odometry(stage.kind)) {
