@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -162,6 +163,7 @@ class Session {
   bool breakpoints_due_ = false;
   bool preview_due_ = false;         // the frame shown is to be worked out under debug_.preview_config
   bool motion_preview_due_ = false;  // … and first its motion stages
+  std::chrono::steady_clock::time_point preview_asked_{};  // when it was asked for last
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
   std::unique_ptr<ExportJob> export_;  // the worker's; null while nothing is being written

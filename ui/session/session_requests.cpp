@@ -112,6 +112,7 @@ void Session::carry_out(const request::Preview& wanted) {
   // Until the new one is there, the last one is shown.
   if (!wanted.config) debug_.preview.reset();
   preview_due_ = motion_preview_due_ = wanted.config.has_value();
+  preview_asked_ = std::chrono::steady_clock::now();
 }
 
 void Session::carry_out(const request::RunAll& wanted) {

@@ -13,6 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(150);
+constexpr auto kSliderRests = std::chrono::milliseconds(250);
 
 }  // namespace
 
@@ -105,6 +106,13 @@ void Session::preview_step() {
   const int index = current_->index;
   const Config& config = *debug_.preview_config;
   const bool motion_alone = std::exchange(motion_preview_due_, false);
+  const auto rests = preview_asked_ + kSliderRests;
+  if (!motion_alone && worker_.joinable() && Clock::now() < rests) {
+    // While the slider still moves, the worker is kept free for the next motion stages.
+    std::unique_lock lock(mutex_);
+    asked_.wait_until(lock, rests, [this] { return !requests_.empty() || export_news_; });
+    return;
+  }
   const Stopwatch watch;
   if (motion_alone) {
     // Motion stages come first, and at once: that is what one looks at while a slider moves.

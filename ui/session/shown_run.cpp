@@ -73,8 +73,8 @@ ShownRun::Extras ShownRun::extras_of(int index) {
   }
   FrameResult again;
   if (const auto frames = track_.frames_to_repeat(index)) {
-    frames_->read_ahead(*frames);
-    again = track_.repeat_motion(index, reader());
+    MotionReplay motion = motion_before(index, *frames);
+    again = motion.repeat(frames_->read(index), track_.records()[static_cast<std::size_t>(index)]);
   } else {
     again = process_again(index, track_.config());
   }
@@ -116,15 +116,19 @@ bool ShownRun::prepare_preview(int index) {
   return way.next == index;
 }
 
+const MotionReplay& ShownRun::motion_before(int index, const std::set<int>& frames) {
+  if (!motion_before_ || motion_before_->first != index) {
+    frames_->read_ahead(frames);
+    motion_before_.emplace(index, track_.motion_before(index, reader()));
+  }
+  return motion_before_->second;
+}
+
 std::optional<FrameResult> ShownRun::motion_again(int index, const Config& config) {
   if (!is_own(index) || track_.config().run.method != "stillpoint") return std::nullopt;
   const auto frames = track_.frames_to_repeat(index);
   if (!frames) return std::nullopt;
-  if (!motion_before_ || motion_before_->first != index) {
-    frames_->read_ahead(*frames);
-    motion_before_.emplace(index, track_.motion_before(index, reader()));
-  }
-  const MotionReplay& here = motion_before_->second;
+  const MotionReplay& here = motion_before(index, *frames);
   std::optional<MotionReplay> motion =
       here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
   if (!motion) return std::nullopt;

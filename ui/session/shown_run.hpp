@@ -70,6 +70,8 @@ class ShownRun {
   [[nodiscard]] bool is_own(int index) const {
     return index >= track_.begins_at() && index < track_.processed();
   }
+  /// @param frames those that RunTrack::frames_to_repeat tells
+  [[nodiscard]] const MotionReplay& motion_before(int index, const std::set<int>& frames);
   [[nodiscard]] std::optional<FrameResult> motion_again(int index, const Config& config);
   [[nodiscard]] std::shared_ptr<const FrameView> with_history(FrameView view,
                                                               std::optional<FrameRecord> record) const;
