@@ -31,7 +31,7 @@ void export_sequence(const ExportArguments& arguments) {
   }
   fmt::print("{} frames written to {}\n", exported.written, arguments.out);
   if (!exported.unreadable.empty())
-    fmt::print("left out, as they cannot be read: {}\n", frames_text(exported.unreadable));
+    fmt::print("cannot be read, and have places without images: {}\n", frames_text(exported.unreadable));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ void generate(const GenerateOptions& options) {
   write.threads = options.threads;
   write.progress = ProgressLine();
   write.stop = &stop_requested();
-  const int written = write_sequence(*sequence, options.out, write);
+  const int written = write_sequence(*sequence, options.out, write).frames;
   fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
   if (written < sequence->size())
     fmt::print("stopped early; {}\n", written > 0 ? "what was filmed is a sequence" : "nothing was filmed");

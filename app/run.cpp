@@ -37,11 +37,14 @@ std::optional<Condition> break_condition(const RunArguments& arguments) {
 
 /// Tells where a condition holds. @returns whether it does anywhere
 bool tell_frames(const Condition& condition, const RunResult& result, const RunReport& report) {
-  const auto frames = condition.frames(
-      FrameFigures(result.records, report.evaluation ? &*report.evaluation : nullptr, result.scores));
+  const FrameFigures figures(result.records, report.evaluation ? &*report.evaluation : nullptr,
+                             result.scores);
+  const auto frames = condition.frames(figures);
+  const auto unknown = condition.unknown_figures(figures);
   fmt::print("  {}: ", condition.text());
   if (frames.empty())
-    fmt::print("at no frame\n");
+    fmt::print("at no frame{}\n",
+               unknown.empty() ? "" : fmt::format("; none has {}", fmt::join(unknown, ", ")));
   else
     fmt::print("at {} of {} frames: {}\n", frames.size(), result.records.size(), frames_text(frames));
   return !frames.empty();

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/shared_evidence.hpp"
+#include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
@@ -190,10 +191,12 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
     trace.note = fmt::format("frames of {}x{} are too small to follow points in", size_.width, size_.height);
     return trace;
   }
+  Stopwatch watch;
   cv::Mat gray = image, small;
   if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   cv::resize(gray, small, {size_.width / kSmallerBy, size_.height / kSmallerBy}, 0, 0, cv::INTER_AREA);
   tracks_.advance(small, config_);
+  trace.ms.points = watch.lap();
 
   std::vector<cv::Point2f> now;
   for (const PointTrack& track : tracks_.all()) now.push_back(track.path.back());
@@ -205,15 +208,18 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
     ColourReference reference;
     reference.gap = gap;
     judge(reference, now);
+    reference.ms = watch.lap();
     if (!reference.residuals.empty()) trace.references.push_back(std::move(reference));
   }
   gather_evidence(trace.references);
   const std::vector<float> shared = share_evidence(tracks_.all(), small.size(), config_);
+  trace.ms.evidence = watch.lap();
 
   cv::Mat smaller;
   cv::resize(image, smaller, small.size() / 2, 0, 0, cv::INTER_AREA);
   cv::GaussianBlur(smaller, smaller, {3, 3}, 0);
   trace.evidence = spread_evidence(smaller, tracks_.all(), shared, config_);
+  trace.ms.spread = watch.lap();
   const cv::Mat small_mask = moving_regions(trace.evidence, tracks_.all(), shared, config_);
   cv::resize(small_mask, trace.mask, size_, 0, 0, cv::INTER_LINEAR);
   trace.mask = trace.mask > 127;
@@ -225,6 +231,7 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
   LabelledRegions found = find_regions(trace.mask);
   trace.regions = std::move(found.regions);
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
+  trace.ms.mask = watch.lap();
   if (trace.references.empty())
     trace.note = tracks_.frames() < 2 ? "the first frame has none before it to be compared with"
                                       : "too few points could be followed";

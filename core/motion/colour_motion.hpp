@@ -27,6 +27,7 @@ struct ColourReference {
   std::vector<cv::Point2f> residuals;  ///< px, small image: what the camera's motion leaves unexplained
   std::vector<float> sigmas;           ///< the same by its own noise, standard deviations
   double sigma = 0.0;                  ///< px, small image: noise of the residuals of what stands still
+  double ms = 0.0;                     ///< wall time of the comparison; for reading only
 };
 
 /// A followed point and what is held of it.
@@ -35,6 +36,14 @@ struct ColourPoint {
   int age = 0;            ///< frames it has been followed
   float evidence = 0.0F;  ///< of moving: its own, accumulated
   float shared = 0.0F;    ///< after listening to neighbours that move alike
+};
+
+/// What each step took, ms of wall time. For reading only: no result depends on it.
+struct ColourMotionTimes {
+  double points = 0.0;    ///< following them
+  double evidence = 0.0;  ///< gathering and sharing it
+  double spread = 0.0;    ///< over the image
+  double mask = 0.0;      ///< its regions
 };
 
 /// What colour-only motion detection saw, stage by stage.
@@ -46,6 +55,7 @@ struct ColourMotionTrace {
   std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   std::string note;         ///< why there is no mask, or why it is empty; empty when all is well
+  ColourMotionTimes ms;
 };
 
 /// Sees frames one after the other. A value: a copy goes on as the original would, with the same bytes.

@@ -36,8 +36,24 @@ FrameResult MotionReplay::repeat(const Frame& frame, const FrameRecord& record) 
   if (record.motion_pose && odometry_.view_)
     odometry_.patches_ = segment_surfaces(*odometry_.view_, odometry_.config_.depth_motion);
   if (record.motion_pose) odometry_.detect_by_pose(frame, *record.motion_pose, result);
+  // The run found that too little was left without what moves, removed nothing and forgot it.
+  if (as_the_run_ && record.mask_share == 0.0 && result.record.mask_share > 0.0) {
+    result.mask.release();
+    result.depth_motion.log_odds.setTo(0);
+    result.record.mask_share = 0.0;
+  }
   odometry_.remember_view(frame, result);
   return result;
+}
+
+std::optional<MotionReplay> MotionReplay::continued_with(const Config& config,
+                                                         const std::vector<PastFrame>& before) const {
+  std::optional<Odometry> odometry = odometry_.continued_with(config, before);
+  if (!odometry) return std::nullopt;
+  MotionReplay other = *this;
+  other.odometry_ = std::move(*odometry);
+  other.as_the_run_ = false;
+  return other;
 }
 
 }  // namespace stillpoint

@@ -18,10 +18,16 @@ class MotionReplay {
   /// @returns as Odometry::process, without features and the record's other figures
   [[nodiscard]] FrameResult repeat(const Frame& frame, const FrameRecord& record);
 
+  /// The same place, going on with another config (Odometry::continued_with).
+  [[nodiscard]] std::optional<MotionReplay> continued_with(const Config& config,
+                                                           const std::vector<PastFrame>& before) const;
+  [[nodiscard]] int frames_wanted(const Config& config) const { return odometry_.frames_wanted(config); }
+
  private:
   void make_view(const Frame& frame);
 
   Odometry odometry_;
+  bool as_the_run_ = true;  // with its config
 };
 
 }  // namespace stillpoint

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <utility>
 
+#include "core/run/condition_words.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -27,84 +27,13 @@ namespace {
 using Node = Condition::Node;
 using NodePtr = std::shared_ptr<const Node>;
 using enum FigureUnit;
+using condition_words::fail, condition_words::Kind, condition_words::Token;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSpikeWindow = 60, kSpikeLeast = 8;  // frames
 constexpr int kMaxDepth = 60;                      // of parentheses in each other
-constexpr std::size_t kMaxLength = 2000;           // letters of a condition
-
-// ---- Words ----
-
-enum class Kind : std::uint8_t { number, name, symbol, end };
-
-struct Token {
-  Kind kind = Kind::end;
-  std::string_view text;
-  int column = 0;
-  double number = 0.0;
-};
-
-bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
-
-[[noreturn]] void fail(int column, const std::string& why) {
-  throw ConditionError(fmt::format("column {}: {}", column + 1, why), column);
-}
-
-Token number_at(std::string_view text, std::size_t at) {
-  Token token{Kind::number, {}, static_cast<int>(at), 0.0};
-  const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), token.number);
-  if (error != std::errc() || !std::isfinite(token.number)) fail(token.column, "a number that is too large");
-  token.text = text.substr(at, static_cast<std::size_t>(end - (text.data() + at)));
-  return token;
-}
-
-std::vector<Token> tokens_of(std::string_view text) {
-  if (text.size() > kMaxLength)
-    fail(kMaxLength, fmt::format("a condition has at most {} letters", kMaxLength));
-  std::vector<Token> tokens;
-  for (std::size_t at = 0; at < text.size();) {
-    const char c = text[at];
-    if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      ++at;
-      continue;
-    }
-    Token token{Kind::symbol, text.substr(at, 1), static_cast<int>(at), 0.0};
-    const bool point =
-        c == '.' && at + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 1])) != 0;
-    if (std::isdigit(static_cast<unsigned char>(c)) != 0 || point) {
-      token = number_at(text, at);
-    } else if (begins_name(c)) {
-      std::size_t end = at;
-      while (end < text.size() && in_name(text[end])) ++end;
-      token.kind = Kind::name;
-      token.text = text.substr(at, end - at);
-    } else {
-      const std::string_view two = text.substr(at, 2);
-      for (const std::string_view known : {"||", "&&", "<=", ">=", "==", "!="})
-        if (two == known) token.text = two;
-      if (token.text.size() == 1 && std::string_view("<>!+-*/(),%").find(c) == std::string_view::npos)
-        fail(token.column, fmt::format("{} is not understood{}", in_quotes(token.text),
-                                       c == '=' ? "; equal is written ==" : ""));
-    }
-    tokens.push_back(token);
-    at += token.text.size();
-  }
-  tokens.push_back({Kind::end, {}, static_cast<int>(text.size()), 0.0});
-  return tokens;
-}
 
 // ---- Units ----
-
-struct UnitName {
-  std::string_view name;
-  FigureUnit unit;
-  double factor;
-};
-
-constexpr UnitName kUnits[] = {{"m", metres, 1.0},          {"cm", metres, 0.01}, {"mm", metres, 0.001},
-                               {"deg", degrees, 1.0},       {"px", pixels, 1.0},  {"ms", milliseconds, 1.0},
-                               {"s", milliseconds, 1000.0}, {"%", share, 0.01}};
 
 std::string unit_text(const Node& node) {
   switch (node.unit) {
@@ -165,35 +94,11 @@ double compare(std::string_view symbol, double a, double b) {
 
 bool is_true(double value) { return !std::isnan(value) && value != 0.0; }
 
-/// The known name most like a wrong one: by the edits between them; empty when none is near.
-std::string_view nearest_name(std::string_view wrong, const std::vector<std::string_view>& names) {
-  std::string_view best;
-  std::size_t best_edits = std::max<std::size_t>(2, wrong.size() / 3) + 1;
-  for (const std::string_view name : names) {
-    std::vector<std::size_t> row(name.size() + 1);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = i;
-    for (std::size_t i = 0; i < wrong.size(); ++i) {
-      std::size_t corner = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 0; j < name.size(); ++j) {
-        const std::size_t changed = corner + (wrong[i] != name[j] ? 1 : 0);
-        corner = row[j + 1];
-        row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-      }
-    }
-    if (row.back() < best_edits) {
-      best_edits = row.back();
-      best = name;
-    }
-  }
-  return best;
-}
-
 // ---- Grammar ----
 
 class Parser {
  public:
-  explicit Parser(std::string_view text) : tokens_(tokens_of(text)) {}
+  explicit Parser(std::string_view text) : tokens_(condition_words::tokens_of(text)) {}
 
   NodePtr whole() {
     if (now().kind == Kind::end) fail(0, "there is no condition");
@@ -201,6 +106,9 @@ class Parser {
     if (now().kind != Kind::end) unexpected("&&, || or the end");
     return condition;
   }
+
+  /// The figures named so far.
+  [[nodiscard]] const std::set<int>& columns() const { return columns_; }
 
  private:
   [[nodiscard]] const Token& now() const { return tokens_[at_]; }
@@ -320,7 +228,7 @@ class Parser {
     const Token token = tokens_[at_++];
     Node literal{plain, true, token.column, {}};
     double value = token.number;
-    for (const UnitName& unit : kUnits) {
+    for (const condition_words::UnitName& unit : condition_words::unit_names()) {
       if (!take(unit.name)) continue;
       value *= unit.factor;
       literal.unit = unit.unit;
@@ -337,11 +245,13 @@ class Parser {
   NodePtr figure() {
     const Token token = tokens_[at_++];
     const auto& infos = frame_figure_infos();
-    for (std::size_t i = 0; i < infos.size(); ++i)
-      if (infos[i].name == token.text)
-        return node(
-            infos[i].unit, token.column,
-            [column = static_cast<int>(i)](const FrameFigures& f, int row) { return f.value(row, column); });
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      if (infos[i].name != token.text) continue;
+      const int column = static_cast<int>(i);
+      columns_.insert(column);
+      return node(infos[i].unit, token.column,
+                  [column](const FrameFigures& f, int row) { return f.value(row, column); });
+    }
     std::vector<std::string_view> names;
     for (const FrameFigureInfo& info : infos) names.push_back(info.name);
     unknown(token, "name", names);
@@ -349,7 +259,7 @@ class Parser {
 
   [[noreturn]] static void unknown(const Token& token, const char* what,
                                    const std::vector<std::string_view>& names) {
-    const std::string_view near = nearest_name(token.text, names);
+    const std::string_view near = condition_words::nearest_name(token.text, names);
     fail(token.column, fmt::format("there is no {} {}{}", what, in_quotes(token.text),
                                    near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
@@ -405,11 +315,16 @@ class Parser {
   std::size_t at_ = 0;
   int depth_ = 0;
   bool in_spike_ = false;
+  std::set<int> columns_;
 };
 
 }  // namespace
 
-Condition::Condition(std::string_view text) : text_(text), root_(Parser(text).whole()) {}
+Condition::Condition(std::string_view text) : text_(text) {
+  Parser parser(text);
+  root_ = parser.whole();
+  columns_ = parser.columns();
+}
 
 bool Condition::holds(const FrameFigures& figures, int row) const {
   return is_true(root_->value(figures, row));
@@ -420,6 +335,16 @@ std::vector<int> Condition::frames(const FrameFigures& figures) const {
   for (int row = 0; row < figures.rows(); ++row)
     if (holds(figures, row)) frames.push_back(figures.frame(row));
   return frames;
+}
+
+std::vector<std::string_view> Condition::unknown_figures(const FrameFigures& figures) const {
+  std::vector<std::string_view> unknown;
+  for (const int column : columns_) {
+    bool known = figures.rows() == 0;
+    for (int row = 0; row < figures.rows() && !known; ++row) known = !std::isnan(figures.value(row, column));
+    if (!known) unknown.push_back(frame_figure_infos()[static_cast<std::size_t>(column)].name);
+  }
+  return unknown;
 }
 
 std::string frames_text(const std::vector<int>& frames) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,9 @@ class Condition {
   [[nodiscard]] bool holds(const FrameFigures& figures, int row) const;
   /// Indices of the frames at which it holds, ascending.
   [[nodiscard]] std::vector<int> frames(const FrameFigures& figures) const;
+  /// Names in it of figures that no frame has, such as errors without ground truth: no comparison with them
+  /// holds. None as long as there are no frames.
+  [[nodiscard]] std::vector<std::string_view> unknown_figures(const FrameFigures& figures) const;
   /// The text it was read from.
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -49,6 +53,7 @@ class Condition {
  private:
   std::string text_;
   std::shared_ptr<const Node> root_;
+  std::set<int> columns_;  // of FrameFigures that it names
 };
 
 /// "12-15, 40": frames as people read them, neighbours joined.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/error.hpp"
 #include "core/sequence/write_sequence.hpp"
 
 namespace stillpoint {
@@ -34,15 +33,10 @@ ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& 
                              const std::filesystem::path& folder, bool force,
                              const std::function<void(int done, int total)>& progress,
                              const std::atomic<bool>* stop) {
-  ExportedFrames exported;
-  std::vector<int> readable;
-  for (const int frame : frames)
-    (source.read(frame).readable() ? readable : exported.unreadable).push_back(frame);
-  if (readable.empty())
-    throw InputError(
-        fmt::format("{}: none of the {} frames to export can be read", source.name(), frames.size()));
-  exported.written = write_sequence(Excerpt(source, readable), folder,
-                                    {.force = force, .threads = 2, .progress = progress, .stop = stop});
+  const WrittenSequence written = write_sequence(
+      Excerpt(source, frames), folder, {.force = force, .threads = 2, .progress = progress, .stop = stop});
+  ExportedFrames exported{.written = written.frames, .unreadable = {}};
+  for (const int at : written.unreadable) exported.unreadable.push_back(frames[static_cast<std::size_t>(at)]);
   return exported;
 }
 

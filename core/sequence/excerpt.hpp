@@ -40,13 +40,14 @@ class Excerpt : public FrameSource {
 /// What was exported.
 struct ExportedFrames {
   int written = 0;
-  std::vector<int> unreadable;  ///< frames left out because they cannot be read
+  std::vector<int> unreadable;  ///< of the source's: they keep their places, without images
 };
 
 /// Writes some frames of a sequence as a TUM RGB-D folder (write_sequence) that shows a method the same
 /// images at the same times.
 /// @param stop when it turns true, it ends with the frames at hand
-/// @throws InputError as write_sequence does, and where none of the frames can be read
+/// @param frames at least one
+/// @throws InputError as write_sequence does
 ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& frames,
                              const std::filesystem::path& folder, bool force,
                              const std::function<void(int done, int total)>& progress = {},

@@ -86,42 +86,44 @@ void prepare(const FrameSource& source, const fs::path& folder, bool force) {
 
 std::string image_name(double stamp) { return fmt::format("{:.6f}.png", stamp); }
 
-/// @returns when the depth image was taken, s; nothing where there is none
-std::optional<double> write_frame(const FrameSource& source, int index, const fs::path& folder) {
+struct WrittenFrame {
+  bool readable = false;
+  std::optional<double> depth_stamp;  // s, when the depth image was taken; nothing where there is none
+};
+
+WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder) {
   const Frame frame = source.read(index);
-  if (!frame.readable())
-    throw InputError(fmt::format("frame {} of {}: {}", index, source.name(), frame.problem));
+  WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}};
   const std::string name = image_name(source.timestamp(index));
-  write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
+  if (frame.readable()) write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
   if (source.has_masks())
     if (const FrameTruth truth = source.truth(index); !truth.moving.empty())
       write_png(folder / "mask" / name, truth.moving);
-  if (!frame.has_depth()) return std::nullopt;
+  if (!frame.has_depth()) return written;
   cv::Mat stored;
   frame.depth.convertTo(stored, CV_16U, source.camera().depth_scale);  // rounds to nearest
   write_png(folder / "depth" / image_name(frame.depth_timestamp), stored);
-  return frame.depth_timestamp;
+  written.depth_stamp = frame.depth_timestamp;
+  return written;
 }
 
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
-/// When each frame's depth was taken, of the frames written: those from the first on.
-using DepthStamps = std::vector<std::optional<double>>;
-
-/// All frames, by as many threads as wanted; the first failure ends them and is thrown.
-DepthStamps write_frames(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+/// @returns those that were written: from the first one on
+std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path& folder,
+                                       const WriteOptions& options) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
   int done = 0;
   std::exception_ptr failure;
-  DepthStamps depth_stamps(static_cast<std::size_t>(source.size()));
+  std::vector<WrittenFrame> written(static_cast<std::size_t>(source.size()));
   const auto work = [&] {
     // Whoever has taken a frame writes it, so that none is missing before the last.
     while (!failed && !(options.stop != nullptr && *options.stop)) {
       const int i = next++;
       if (i >= source.size()) break;
       try {
-        depth_stamps[static_cast<std::size_t>(i)] = write_frame(source, i, folder);
+        written[static_cast<std::size_t>(i)] = write_frame(source, i, folder);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, source.size());
@@ -137,8 +139,8 @@ DepthStamps write_frames(const FrameSource& source, const fs::path& folder, cons
   work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);
-  depth_stamps.resize(static_cast<std::size_t>(done));
-  return depth_stamps;
+  written.resize(static_cast<std::size_t>(done));
+  return written;
 }
 
 std::string camera_text(const Camera& c) {
@@ -149,44 +151,75 @@ std::string camera_text(const Camera& c) {
       c.readout_s);
 }
 
-void write_lists(const FrameSource& source, const fs::path& folder, const DepthStamps& depth_stamps) {
-  const auto list = [&](const char* name, auto&& stamp_of) {
-    std::string text = fmt::format("# {} images of {}\n# timestamp filename\n", name, source.name());
-    for (int i = 0; i < source.size(); ++i)
-      if (const std::optional<double> stamp = stamp_of(i);
-          stamp && fs::exists(folder / name / image_name(*stamp)))
-        text += fmt::format("{:.6f} {}/{}\n", *stamp, name, image_name(*stamp));
-    write_text_file(folder / (std::string(name) + ".txt"), text);
-  };
-  const auto of_colour = [&](int i) { return std::optional(source.timestamp(i)); };
-  const auto of_depth = [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    return at < depth_stamps.size() ? depth_stamps[at] : std::nullopt;
-  };
+/// Names the depth image of a frame that has none: one that is not there, and is no other frame's.
+std::string no_depth_name(int index) { return fmt::format("none_{:06}.png", index); }
+
+void write_list(const FrameSource& source, const fs::path& folder, const char* name,
+                const std::vector<std::optional<double>>& stamps) {
+  std::string text = fmt::format("# {} images of {}\n# timestamp filename\n", name, source.name());
+  for (const std::optional<double>& stamp : stamps)
+    if (stamp) text += fmt::format("{:.6f} {}/{}\n", *stamp, name, image_name(*stamp));
+  write_text_file(folder / (std::string(name) + ".txt"), text);
+}
+
+/// A pair a frame, whether or not its images are there: readers that go by pairs count frames by them.
+void write_pairs(const FrameSource& source, const fs::path& folder,
+                 const std::vector<WrittenFrame>& written) {
+  std::string pairs;
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const double stamp = source.timestamp(index);
+    const auto& depth = written[i].depth_stamp;
+    pairs += fmt::format("{0:.6f} rgb/{1} {2:.6f} depth/{3}\n", stamp, image_name(stamp),
+                         depth.value_or(stamp), depth ? image_name(*depth) : no_depth_name(index));
+  }
+  write_text_file(folder / "associations.txt", pairs);
+}
+
+void write_lists(const FrameSource& source, const fs::path& folder,
+                 const std::vector<WrittenFrame>& written) {
+  std::vector<std::optional<double>> colours, depths, masks;
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const double stamp = source.timestamp(static_cast<int>(i));
+    colours.emplace_back(stamp);
+    depths.push_back(written[i].depth_stamp);
+    masks.push_back(fs::exists(folder / "mask" / image_name(stamp)) ? std::optional(stamp) : std::nullopt);
+  }
   write_text_file(folder / "camera.toml", camera_text(source.camera()));
   if (!source.ground_truth().empty())
     write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
-  if (source.has_masks()) list("mask", of_colour);
+  if (source.has_masks()) write_list(source, folder, "mask", masks);
   if (source.has_depth()) {
-    list("depth", of_depth);
-    std::string pairs;
-    for (int i = 0; i < source.size(); ++i)
-      if (const auto stamp = of_depth(i))
-        pairs += fmt::format("{0:.6f} rgb/{1} {2:.6f} depth/{3}\n", source.timestamp(i),
-                             image_name(source.timestamp(i)), *stamp, image_name(*stamp));
-    write_text_file(folder / "associations.txt", pairs);
+    write_list(source, folder, "depth", depths);
+    write_pairs(source, folder, written);
   }
-  list("rgb", of_colour);
+  write_list(source, folder, "rgb", colours);
 }
 
 }  // namespace
 
-int write_sequence(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
+void remove_sequence(const fs::path& folder) {
+  std::error_code ignored;  // what others put there meanwhile stays, and the folder with it
+  clear_sequence(folder);
+  for (const char* name : kImageFolders) fs::remove(folder / name, ignored);
+  fs::remove(folder, ignored);
+}
+
+WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder,
+                               const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
   prepare(source, folder, options.force);
-  const DepthStamps written = write_frames(source, folder, options);
-  if (!written.empty()) write_lists(source, folder, written);
-  return static_cast<int>(written.size());
+  const std::vector<WrittenFrame> frames = write_frames(source, folder, options);
+  WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
+  for (int i = 0; i < written.frames; ++i)
+    if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
+  if (!frames.empty() && written.unreadable.size() == frames.size()) {
+    remove_sequence(folder);
+    throw InputError(
+        fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
+  }
+  if (!frames.empty()) write_lists(source, folder, frames);
+  return written;
 }
 
 }  // namespace stillpoint

@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/run/run_report.hpp"
@@ -29,6 +32,39 @@ void tell(const std::string& what, std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
   fmt::print("{:<44} median {:6.1f} ms, 95 % {:6.1f} ms, worst {:6.1f} ms\n", what, ms[ms.size() / 2],
              ms[ms.size() * 95 / 100], ms.back());
+}
+
+/// What a person waits for while sliders move, from each request until it shows: at ten frames far apart the
+/// motion stages of the first preview, of five later ones, and all that belongs to the last.
+void measure_previews(Session& session, Config config, int count) {
+  session.start();
+  const auto shown_after = [&session](const std::function<bool(const DebugView&)>& is_there) {
+    const Stopwatch watch;
+    while (!is_there(session.view()->debug)) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    return watch.milliseconds();
+  };
+  std::mt19937 random(2);
+  std::vector<double> first, later, whole;
+  for (int i = 0; i < 10; ++i) {
+    session.request(request::Preview{});
+    const int frame = static_cast<int>(random() % static_cast<unsigned>(count));
+    session.request_frame(frame);
+    while (!session.idle() || session.view()->current->index != frame)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    for (int step = 0; step < 6; ++step) {
+      config.motion.ransac_threshold_px = 1.0 + 0.1 * step;
+      config.depth_motion.moving_log_odds = 0.2 + 0.01 * step;
+      const auto before = session.view()->debug.preview;
+      session.request(request::Preview{config});
+      (step == 0 ? first : later).push_back(shown_after([&](const DebugView& debug) {
+        return debug.preview != nullptr && debug.preview != before;
+      }));
+    }
+    whole.push_back(shown_after([](const DebugView& debug) { return debug.preview_whole; }));
+  }
+  tell("preview, the first at a frame", first);
+  tell("preview, later ones", later);
+  tell("… its pose and matches after the last", whole);
 }
 
 void measure(const std::string& where, const std::string& method, int frames) {
@@ -56,7 +92,7 @@ void measure(const std::string& where, const std::string& method, int frames) {
   fmt::print("hash: batch {}, session {}\n", run_hash(run.records), session.view()->debug.run_hash);
 
   std::mt19937 random(1);
-  std::vector<double> jumps, back, previews, plays;
+  std::vector<double> jumps, back;
   const auto timed_go = [&](int frame) {
     const Stopwatch watch;
     session.go_to(frame);
@@ -69,15 +105,9 @@ void measure(const std::string& where, const std::string& method, int frames) {
   session.go_to(middle);
   for (int i = 1; i <= 40 && i <= middle; ++i) back.push_back(timed_go(middle - i));
   tell("one frame back", back);
-  for (int i = 0; i < 20; ++i) {
-    config.motion.ransac_threshold_px = 1.0 + 0.1 * i;
-    config.depth_motion.moving_log_odds = 0.2 + 0.01 * i;
-    session.request(request::Preview{config});
-    previews.push_back(session.view()->debug.preview_ms);
-  }
-  tell("preview under another config, the first too", previews);
-  previews.erase(previews.begin());
-  tell("preview under another config, later ones", previews);
+  malloc_trim(0);
+  fmt::print("resident: {:.0f} MB after going about\n", resident_mb());
+  measure_previews(session, config, count);
 }
 
 }  // namespace

@@ -97,12 +97,30 @@ TEST_F(DebugCli, ExportsFramesThatGiveTheSameRun) {
   EXPECT_THAT(again.err, HasSubstr("holds a sequence already"));
 }
 
-TEST_F(DebugCli, ExportLeavesOutWhatCannotBeRead) {
+TEST_F(DebugCli, WhenKnowsTheTrueMasks) {
+  // The oracle's mask is the true one.
+  const auto generated = [&](const std::string& when, const std::string& out) {
+    return run_cli({"snapshot", "generated:cup", "--length", "2", "--method", "oracle", "--when", when,
+                    "--panels", "union_mask", "--out", sequence_.path(out), "--no-baseline"});
+  };
+  EXPECT_THAT(generated("frame == 1 && !(mask_iou < 99%)", "true").out, HasSubstr("of 1 frames"));
+  EXPECT_THAT(generated("mask_iou < 99%", "wrong").out, HasSubstr("of 0 frames"));
+  const CliResult unknown = run({"--break", "mask_iou < 50%"});
+  EXPECT_EQ(unknown.exit_code, 0);
+  EXPECT_THAT(unknown.out, HasSubstr("at no frame; none has mask_iou"));
+}
+
+TEST_F(DebugCli, ExportKeepsThePlaceOfWhatCannotBeRead) {
   sequence_.folder.write(SmallSequence::colour(2), std::string("no image"));
   const CliResult result =
       run_cli({"export", sequence_.path(), "--frames", "1:4", "--out", sequence_.path("part")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("left out, as they cannot be read: 2"));
+  EXPECT_THAT(result.out, HasSubstr("3 frames written"));
+  EXPECT_THAT(result.out, HasSubstr("cannot be read, and have places without images: 2"));
+  const CliResult part =
+      run_cli({"run", sequence_.path("part"), "--method", "none", "--break", "unreadable"});
+  EXPECT_EQ(part.exit_code, 3) << part.err;
+  EXPECT_THAT(part.out, HasSubstr("at 1 of 3 frames: 1"));
   EXPECT_EQ(run_cli({"export", sequence_.path(), "--frames", "2", "--out", sequence_.path("none")}).exit_code,
             1);
 }

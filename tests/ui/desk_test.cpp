@@ -302,6 +302,48 @@ TEST(Desk, ShellsLeaveNothingBehind) {
   EXPECT_LT(resident_mb() - before, 20.0);
 }
 
+TEST(Desk, WhatIsOpenedMeanwhileRunsWithTheConfigThatWasChosen) {
+  const SmallSequence folder(4);
+  Offscreen offscreen({.width = 500, .height = 400});
+  std::promise<void> gate;
+  const std::shared_future<void> opened(gate.get_future());
+  DeskOptions options = desk_options();
+  options.config.run.method = "none";
+  options.open_place = [opened, &folder](const std::string& where, const Config& config) {
+    if (where == "slow") opened.wait();
+    return untimed(open_sequence(folder.path()), config);
+  };
+  {
+    Desk desk(std::move(options));
+    desk.workbench().set_layout({.panel = "removal"});
+    const auto draw = [&] { offscreen.draw([&](UiFrame& frame) { desk.draw(frame); }); };
+    desk.open("first");
+    EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && desk.view(); }));
+    draw();
+    desk.open("slow");
+    // The panel's button runs all anew with the check: it is found by pressing down the panel's left side.
+    const auto tile = desk.workbench().tile_of("removal");
+    ASSERT_TRUE(tile);
+    for (float y = tile->y; y < tile->y + tile->height && desk.config().run.check_removal == 0; y += 8.0F) {
+      const std::vector<InputEvent> click{MouseMoved{tile->x + 40.0F, y}, MouseButton{0, true, {}},
+                                          MouseButton{0, false, {}}};
+      for (const InputEvent& event : click) {
+        offscreen.send(event);
+        draw();
+      }
+      draw();
+    }
+    ASSERT_EQ(desk.config().run.check_removal, 1);
+    const Session* first = desk.session();
+    gate.set_value();
+    EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && desk.session() != first; }));
+    EXPECT_EQ(desk.view()->config.run.check_removal, 1);
+    EXPECT_EQ(desk.view()->config.run.method, "none");
+    offscreen.make_current();
+  }
+  EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+}
+
 TEST(Desk, OpensBesideTheInterface) {
   Offscreen offscreen({.width = 400, .height = 300});
   std::promise<void> gate;

@@ -178,6 +178,20 @@ TEST(Panels, PlotsAreZoomedByTheWheelAndMovedByTheRightButton) {
   expect_zoom_and_pan("difference", 0.6, 0.8);
 }
 
+TEST(Panels, TimingsHaveTheGhostsBesideTheRun) {
+  PanelStage stage("timings", {}, 640, 420);
+  SessionView session = generated_example();
+  const cv::Mat alone = stage.render(session);
+  auto run = std::make_shared<RunView>(*session.run);
+  for (FrameRecord& record : run->records) record.ms.total *= 2.0;
+  GhostView ghost;
+  ghost.name = "ghost";
+  ghost.from = 4;
+  ghost.run = run;
+  session.debug.ghosts = {ghost};
+  EXPECT_GT(cv::norm(stage.render(session), alone, cv::NORM_INF), 0.0);
+}
+
 TEST(Panels, HoldingTFlipsToTheTarget) {
   PanelStage stage("compensated", {});
   stage.send(MouseMoved{260.0F, 200.0F});

@@ -44,6 +44,14 @@ TEST(Condition, ComparesWhatIsRecorded) {
   EXPECT_THAT(where("80 < inliers"), ElementsAre(9));
 }
 
+TEST(Condition, TellsWhatNoFrameHas) {
+  const FrameFigures figures(ten_records());
+  const Condition condition("rpe > 2 cm || mask_iou < 50% || inliers < 20 || residual > 1");
+  EXPECT_THAT(condition.unknown_figures(figures), ElementsAre("rpe", "mask_iou"));
+  EXPECT_THAT(Condition("inliers < 20").unknown_figures(figures), IsEmpty());
+  EXPECT_THAT(condition.unknown_figures(FrameFigures({})), IsEmpty());
+}
+
 TEST(Condition, KnowsStatesAndTheirOpposites) {
   EXPECT_THAT(where("lost"), ElementsAre(3, 4));
   EXPECT_THAT(where("keyframe"), ElementsAre(0, 4, 8));

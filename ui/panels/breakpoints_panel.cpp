@@ -198,6 +198,8 @@ class BreakpointsPanel final : public NamedPanel {
     draw_buttons(session, index, side, actions);
     if (!view.error.empty())
       draw_error(frame, view.breakpoint.expression, view.error, view.error_column, at.x);
+    else if (!view.note.empty() && view.hits.empty())
+      draw_note(frame, view.note, at.x);
     ImGui::PopID();
   }
 
@@ -237,6 +239,16 @@ class BreakpointsPanel final : public NamedPanel {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ink));
     ImGui::TextWrapped("%s", error.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+  }
+
+  /// Why a condition that can be read may never hold.
+  static void draw_note(const UiFrame& frame, const std::string& note, float field_left) {
+    ImGui::SetCursorScreenPos({field_left, ImGui::GetCursorScreenPos().y});
+    ImGui::PushFont(frame.fonts.small);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextWrapped("%s", note.c_str());
     ImGui::PopStyleColor();
     ImGui::PopFont();
   }

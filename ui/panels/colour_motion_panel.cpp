@@ -14,10 +14,10 @@ constexpr std::array<const char*, kStages> kNames{"Unexplained shifts", "Points"
 
 /// Method `stillpoint`'s stages for a frame without depth: what the camera's motion leaves unexplained of the
 /// followed points, the evidence each has gathered, and what becomes of it over the image.
-class ColourMotionPanel final : public NamedPanel {
+class ColourMotionPanel final : public FramePanel {
  public:
   explicit ColourMotionPanel(Shared shared)
-      : NamedPanel("colour_motion", "Colour motion", std::move(shared)) {}
+      : FramePanel("colour_motion", "Colour motion", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions&) override {
     const std::string missing = missing_stages(session);

@@ -29,6 +29,10 @@ class ComparePanel final : public NamedPanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
+    if (ghosts.empty() && shows_preview(session)) {
+      draw_preview(frame, session, actions);
+      return;
+    }
     if (ghosts.empty()) {
       draw_absent(
           frame,
@@ -51,6 +55,21 @@ class ComparePanel final : public NamedPanel {
   }
 
  private:
+  /// While no second run stands beside it, the frame shown beside its preview.
+  void draw_preview(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
+    const GhostView preview{.name = "preview",
+                            .config = session.debug.previewed.value_or(session.config),
+                            .from = session.current->index,
+                            .busy = false,
+                            .run = session.run,
+                            .current = session.debug.preview,
+                            .diverged = {}};
+    difference_ = {};
+    if (session.current->record != nullptr && preview.current->record != nullptr)
+      difference_ = difference_of(*session.current->record, *preview.current->record);
+    draw_frame_shown(frame, session, preview, actions);
+  }
+
   void draw_table(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
     if (!ImGui::BeginTable("runs", 6, kFlags)) return;

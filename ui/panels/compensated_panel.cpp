@@ -12,10 +12,10 @@ constexpr Key kFlipKey = Key::kT;
 constexpr double kSignedRange = 80.0;  // grey levels at the ends of the signed scale
 
 /// A frame carried into the other's camera, to be held against what the camera saw there.
-class CompensatedPanel final : public NamedPanel {
+class CompensatedPanel final : public FramePanel {
  public:
   explicit CompensatedPanel(Shared shared)
-      : NamedPanel("compensated", "Compensated frame", std::move(shared)) {}
+      : FramePanel("compensated", "Compensated frame", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (draw_missing_motion(frame, session)) return;

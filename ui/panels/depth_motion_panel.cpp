@@ -16,10 +16,10 @@ constexpr std::array<const char*, kStages> kNames{
 
 /// Method `stillpoint`'s stages: what depth and brightness say against an earlier frame, what is remembered,
 /// and what becomes of it on surfaces.
-class DepthMotionPanel final : public NamedPanel {
+class DepthMotionPanel final : public FramePanel {
  public:
   explicit DepthMotionPanel(Shared shared)
-      : NamedPanel("depth_motion", "Depth motion", shared), colour_(make_colour_motion_panel(shared)) {}
+      : FramePanel("depth_motion", "Depth motion", shared), colour_(make_colour_motion_panel(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     // What is judged in colour instead stands where one looks for it.

@@ -14,9 +14,9 @@ namespace stillpoint {
 namespace {
 
 /// Eq. (1) as an image, and the histogram that Otsu's threshold splits.
-class DifferencePanel final : public NamedPanel {
+class DifferencePanel final : public FramePanel {
  public:
-  explicit DifferencePanel(Shared shared) : NamedPanel("difference", "Difference", std::move(shared)) {}
+  explicit DifferencePanel(Shared shared) : FramePanel("difference", "Difference", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (draw_missing_motion(frame, session)) return;

@@ -59,9 +59,9 @@ Facts facts_of(const FeatureStory& story) {
 }
 
 /// One feature: what became of it, why, and where it came from.
-class FeaturePanel final : public NamedPanel {
+class FeaturePanel final : public FramePanel {
  public:
-  explicit FeaturePanel(Shared shared) : NamedPanel("feature", "Feature", std::move(shared)) {}
+  explicit FeaturePanel(Shared shared) : FramePanel("feature", "Feature", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;

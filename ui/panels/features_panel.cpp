@@ -12,10 +12,10 @@ namespace stillpoint {
 namespace {
 
 /// The ORB features: before removal kept and removed, after removal what tracking made of those kept.
-class FeaturesPanel final : public NamedPanel {
+class FeaturesPanel final : public FramePanel {
  public:
   FeaturesPanel(FeatureMoment moment, Shared shared)
-      : NamedPanel(moment == FeatureMoment::kBefore ? "features_before" : "features_after",
+      : FramePanel(moment == FeatureMoment::kBefore ? "features_before" : "features_after",
                    moment == FeatureMoment::kBefore ? "Features before removal" : "Features after removal",
                    std::move(shared)),
         moment_(moment) {}

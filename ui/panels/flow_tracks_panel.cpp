@@ -10,9 +10,9 @@ namespace stillpoint {
 namespace {
 
 /// The corners followed between the two frames, and which of them the homography was taken from.
-class FlowTracksPanel final : public NamedPanel {
+class FlowTracksPanel final : public FramePanel {
  public:
-  explicit FlowTracksPanel(Shared shared) : NamedPanel("flow_tracks", "Flow tracks", std::move(shared)) {}
+  explicit FlowTracksPanel(Shared shared) : FramePanel("flow_tracks", "Flow tracks", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (draw_missing_motion(frame, session)) return;

@@ -11,9 +11,9 @@ namespace stillpoint {
 namespace {
 
 /// What the method is given: the frame, the one it is compared with, and depth.
-class InputPanel final : public NamedPanel {
+class InputPanel final : public FramePanel {
  public:
-  explicit InputPanel(Shared shared) : NamedPanel("input", "Input", std::move(shared)) {}
+  explicit InputPanel(Shared shared) : FramePanel("input", "Input", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;

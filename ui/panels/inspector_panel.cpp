@@ -66,9 +66,9 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
 
 /// A point of the scene as every layer reads it, pins beside it, and the frame's record: every figure with
 /// its unit.
-class InspectorPanel final : public NamedPanel {
+class InspectorPanel final : public FramePanel {
  public:
-  explicit InspectorPanel(Shared shared) : NamedPanel("inspector", "Inspector", std::move(shared)) {}
+  explicit InspectorPanel(Shared shared) : FramePanel("inspector", "Inspector", std::move(shared)) {}
 
   [[nodiscard]] std::vector<PanelCommand> commands() override {
     return {{.name = "pin",

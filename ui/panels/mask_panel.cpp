@@ -30,10 +30,10 @@ std::string percent(std::optional<double> share) {
 }
 
 /// A motion mask of the paper, as it stands after a round: over its frame or alone, beside what truly moves.
-class MaskPanel final : public NamedPanel {
+class MaskPanel final : public FramePanel {
  public:
   MaskPanel(MaskKind kind, Shared shared)
-      : NamedPanel(name_of(kind), title_of(kind), std::move(shared)),
+      : FramePanel(name_of(kind), title_of(kind), std::move(shared)),
         kind_(kind),
         role_(kind == MaskKind::kForward    ? Role::kForward
               : kind == MaskKind::kBackward ? Role::kBackward

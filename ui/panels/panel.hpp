@@ -52,6 +52,8 @@ class Panel {
   [[nodiscard]] virtual const std::string& title() const = 0;
   /// Draws into the current ImGui window or child, filling what is left of it.
   virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
+  /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
+  [[nodiscard]] virtual bool previews() const { return false; }
   /// Valid as long as the panel.
   [[nodiscard]] virtual std::vector<PanelCommand> commands() { return {}; }
 };

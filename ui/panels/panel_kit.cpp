@@ -295,14 +295,13 @@ ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb 
   return size;
 }
 
-void draw_preview_badge(const UiFrame& frame, const SessionView& session, ImVec2 corner) {
-  if (!shows_preview(session)) return;
+void draw_preview_badge(const UiFrame& frame, ImVec2 corner) {
   const std::string text = "Preview";
   const ImVec2 extent = small_extent(frame, text);
-  const float pad = 5.0F * frame.scale, inset = 6.0F * frame.scale;
-  const ImVec2 high{std::round(corner.x - inset), std::round(corner.y + inset + extent.y + pad)};
+  const float pad = 5.0F * frame.scale;
+  const ImVec2 high{std::round(corner.x), std::round(corner.y + extent.y + pad)};
   const ImVec2 low{high.x - extent.x - 2.0F * pad, high.y - extent.y - pad};
-  // Dark ink on the warning's colour reads on any picture and in either theme.
+  // Dark ink on the warning's colour reads in either theme.
   const Rgb ground = role_colour(Role::kWarning, frame.theme.name);
   const Rgb ink = frame.theme.name == ThemeName::kDark ? okabe_ito::kBlack : Rgb{0xFF, 0xFF, 0xFF};
   ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(ground), 3.0F * frame.scale);

@@ -63,6 +63,13 @@ class NamedPanel : public Panel {
 /// A box to be ticked. @returns whether it was changed
 bool checkbox(const UiFrame& frame, const char* label, bool& on);
 
+/// One that shows the frame at hand.
+class FramePanel : public NamedPanel {
+ public:
+  using NamedPanel::NamedPanel;
+  [[nodiscard]] bool previews() const override { return true; }
+};
+
 /// Controls side by side, on as many lines as they need.
 class Controls {
  public:
@@ -181,8 +188,7 @@ void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float hei
 /// Text on a ground of its own that reads on any picture, its upper left corner at `at`. @returns its size.
 ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour);
 
-/// "Preview" in the upper right corner of a picture, while shown_frame() is not what the run made; nothing
-/// otherwise. @param corner the picture's upper right corner
-void draw_preview_badge(const UiFrame& frame, const SessionView& session, ImVec2 corner);
+/// "Preview", beside what is not what the run made. @param corner its upper right corner
+void draw_preview_badge(const UiFrame& frame, ImVec2 corner);
 
 }  // namespace stillpoint

@@ -96,8 +96,12 @@ class ParametersPanel final : public NamedPanel {
     list.ChannelsSetCurrent(1);
     ImGui::SetCursorScreenPos({low.x + pad, low.y + pad});
     ImGui::BeginGroup();
-    const std::string working =
-        shows_preview(session) ? fmt::format(", shown in {:.0f} ms", session.debug.preview_ms) : "";
+    std::string working;
+    if (shows_preview(session)) {
+      working = session.debug.preview_ms > 0.0 ? fmt::format(", shown in {:.0f} ms", session.debug.preview_ms)
+                                               : std::string(", shown");
+      if (!session.debug.preview_whole) working += "; pose and matches follow";
+    }
     ImGui::Text("%d change%s not run with%s", static_cast<int>(pending.size()),
                 pending.size() == 1 ? "" : "s", working.c_str());
     if (ImGui::IsItemHovered()) tell_changes(pending);
@@ -180,6 +184,7 @@ class ParametersPanel final : public NamedPanel {
     if (!ImGui::BeginPopup("save")) return;
     ImGui::TextUnformatted("Save these values as");
     ImGui::SetNextItemWidth(kFieldWidth * ImGui::GetFontSize());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint("##preset", "mine.toml", preset_.data(), preset_.size(),
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::BeginDisabled(preset_[0] == '\0');

@@ -21,7 +21,8 @@ std::string time_text(const StageInfo& stage) {
 /// The stage to begin with: what the method ends its search for motion with.
 std::size_t first_shown(const std::vector<StageInfo>& stages) {
   for (std::size_t i = stages.size(); i-- > 0;)
-    for (const StageKind kind : {StageKind::kUnion, StageKind::kMotionMask, StageKind::kTrueMask})
+    for (const StageKind kind :
+         {StageKind::kUnion, StageKind::kMotionMask, StageKind::kColourMask, StageKind::kTrueMask})
       if (stages[i].kind == kind) return i;
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].kind == StageKind::kRefinement) return i;
@@ -29,9 +30,9 @@ std::size_t first_shown(const std::vector<StageInfo>& stages) {
 }
 
 /// A frame's way through its method, one stage at a time: what it takes, makes, takes in time and changes.
-class StagesPanel final : public NamedPanel {
+class StagesPanel final : public FramePanel {
  public:
-  explicit StagesPanel(Shared shared) : NamedPanel("stages", "Stages", std::move(shared)) {}
+  explicit StagesPanel(Shared shared) : FramePanel("stages", "Stages", std::move(shared)) {}
 
   [[nodiscard]] std::vector<PanelCommand> commands() override {
     const auto step = [this](int by) {

@@ -137,6 +137,7 @@ class TimelinePanel final : public NamedPanel {
     if (!ImGui::BeginPopup("export")) return;
     ImGui::Text("Frames %d to %d as a TUM folder", span.first, span.last);
     ImGui::SetNextItemWidth(22.0F * ImGui::GetFontSize());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint("##folder", "folder, made if missing", folder_.data(),
                                                   folder_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::BeginDisabled(folder_[0] == '\0');

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 
 namespace stillpoint {
@@ -39,6 +41,34 @@ Figures figures_of(std::vector<double> values) {
   return figures;
 }
 
+/// What a ghost run's frames took: its own, from where it branched off.
+struct GhostTimes {
+  std::vector<double> index, total;
+  std::array<Figures, kStages.size()> figures;
+  Figures whole;
+  std::vector<FrameRecord>::size_type records = 0;
+  const RunView* run = nullptr;
+};
+
+GhostTimes times_of(const GhostView& ghost) {
+  GhostTimes times{.index = {},
+                   .total = {},
+                   .figures = {},
+                   .whole = {},
+                   .records = ghost.run->records.size(),
+                   .run = ghost.run.get()};
+  std::array<std::vector<double>, kStages.size()> values;
+  for (const FrameRecord& record : ghost.run->records) {
+    if (record.index < ghost.from) continue;
+    times.index.push_back(record.index);
+    times.total.push_back(record.ms.total);
+    for (std::size_t i = 0; i < kStages.size(); ++i) values[i].push_back(record.ms.*kStages[i].value);
+  }
+  for (std::size_t i = 0; i < kStages.size(); ++i) times.figures[i] = figures_of(std::move(values[i]));
+  times.whole = figures_of(times.total);
+  return times;
+}
+
 /// What each stage takes: stacked frame by frame, and in figures.
 class TimingsPanel final : public NamedPanel {
  public:
@@ -58,6 +88,7 @@ class TimingsPanel final : public NamedPanel {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float row = frame.fonts.text->FontSize + 2.0F * ImGui::GetStyle().CellPadding.y;
     const float table = row * static_cast<float>(kStages.size() + 2) + 2.0F * frame.scale;
+    collect_ghosts(session);
     Footer footer;
     footer.caption =
         "Wall time. Motion and features run beside each other where threads allow, so stages may add up to "
@@ -106,6 +137,14 @@ class TimingsPanel final : public NamedPanel {
     whole_ = figures_of(total_);
   }
 
+  void collect_ghosts(const SessionView& session) {
+    const auto& all = session.debug.ghosts;
+    ghosts_.resize(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (ghosts_[i].run != all[i].run.get() || ghosts_[i].records != all[i].run->records.size())
+        ghosts_[i] = times_of(all[i]);
+  }
+
   void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, bool named,
                     ImVec2 size) {
     Plot plot{.x_label = "frame", .y_label = "time a frame", .y_unit = "ms"};
@@ -114,6 +153,11 @@ class TimingsPanel final : public NamedPanel {
       plot.series.push_back(
           {named ? kStages[i].name : "", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
     plot.series.push_back({"whole frame", index_, total_, frame.theme.text, SeriesStyle::kSteps, 1.5F});
+    for (std::size_t i = 0; i < ghosts_.size(); ++i) {
+      const RunLook look = ghost_look(i, frame.theme.name);
+      plot.series.push_back({shortened(session.debug.ghosts[i].name, 24), ghosts_[i].index, ghosts_[i].total,
+                             look.colour, look.line, 2.0F});
+    }
     plot.levels.push_back({kFrameTime, "30 frames a second", role_colour(Role::kWarning, frame.theme.name)});
     plot.cursor_x = session.current->index + 0.5;
     const double first = index_.front(), last = index_.back();
@@ -125,10 +169,15 @@ class TimingsPanel final : public NamedPanel {
 
   void draw_table(const UiFrame& frame, const SessionView& session) const {
     const FrameRecord* record = session.current->record;
-    if (!ImGui::BeginTable("figures", 5, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchSame))
+    // Beside each mean stands that of every ghost.
+    const int columns = 5 + static_cast<int>(ghosts_.size());
+    if (!ImGui::BeginTable("figures", columns,
+                           ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchSame))
       return;
     ImGui::TableSetupColumn("Stage, ms", ImGuiTableColumnFlags_WidthStretch, 1.6F);
     for (const char* name : {"this frame", "mean", "median", "p99"}) ImGui::TableSetupColumn(name);
+    for (const GhostView& ghost : session.debug.ghosts)
+      ImGui::TableSetupColumn(shortened("mean, " + ghost.name, 24).c_str());
     ImGui::TableHeadersRow();
     const auto cell = [&](double value) {
       ImGui::TableNextColumn();
@@ -136,7 +185,8 @@ class TimingsPanel final : public NamedPanel {
       ImGui::Text("%7.2f", value);
       ImGui::PopFont();
     };
-    const auto row = [&](const char* name, const Rgb& colour, Sign sign, double now, const Figures& figures) {
+    const auto row = [&](const char* name, const Rgb& colour, Sign sign, double now, const Figures& figures,
+                         const std::function<const Figures&(const GhostTimes&)>& of_ghost) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -149,13 +199,19 @@ class TimingsPanel final : public NamedPanel {
       cell(figures.mean);
       cell(figures.median);
       cell(figures.p99);
+      for (std::size_t i = 0; i < ghosts_.size(); ++i) {
+        ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ghost_look(i, frame.theme.name).colour));
+        cell(of_ghost(ghosts_[i]).mean);
+        ImGui::PopStyleColor();
+      }
     };
     for (std::size_t i = 0; i < kStages.size(); ++i) {
       const double now = record != nullptr ? record->ms.*kStages[i].value : std::nan("");
-      row(kStages[i].name, colour_of(i), Sign::kSquare, now, figures_[i]);
+      row(kStages[i].name, colour_of(i), Sign::kSquare, now, figures_[i],
+          [i](const GhostTimes& ghost) -> const Figures& { return ghost.figures[i]; });
     }
     row("Whole frame", frame.theme.text, Sign::kLine, record != nullptr ? record->ms.total : std::nan(""),
-        whole_);
+        whole_, [](const GhostTimes& ghost) -> const Figures& { return ghost.whole; });
     ImGui::EndTable();
   }
 
@@ -163,6 +219,7 @@ class TimingsPanel final : public NamedPanel {
   std::array<std::vector<double>, kStages.size()> tops_;  // ms, each stage added to those before
   std::array<Figures, kStages.size()> figures_;
   Figures whole_;
+  std::vector<GhostTimes> ghosts_;
   PlotView view_;
   const void* run_ = nullptr;
   std::uint64_t revision_ = 0;

@@ -1,5 +1,7 @@
 #include "ui/session/breakpoint_set.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace stillpoint {
@@ -21,7 +23,11 @@ void BreakpointSet::set(const std::vector<Breakpoint>& all) {
 
 void BreakpointSet::update(const FrameFigures& figures) {
   for (std::size_t i = 0; i < views_.size(); ++i)
-    if (conditions_[i]) views_[i].hits = conditions_[i]->frames(figures);
+    if (conditions_[i]) {
+      views_[i].hits = conditions_[i]->frames(figures);
+      const auto unknown = conditions_[i]->unknown_figures(figures);
+      views_[i].note = unknown.empty() ? "" : fmt::format("no frame so far has {}", fmt::join(unknown, ", "));
+    }
 }
 
 std::optional<int> BreakpointSet::stopping_at(int frame) const {

@@ -50,6 +50,7 @@ struct BreakpointView {
   std::string error;      ///< one sentence; empty when the expression can be read
   int error_column = 0;   ///< from 0, into the expression
   std::vector<int> hits;  ///< processed frames at which it holds, ascending
+  std::string note{};     ///< what it names and no frame processed has, one sentence; empty when nothing
 };
 
 /// A second run beside the session's own, with another configuration.
@@ -61,6 +62,13 @@ struct GhostView {
   std::shared_ptr<const RunView> run;  ///< never null
   std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null while not processed
   std::optional<int> diverged;               ///< first frame whose record differs from the session's own run
+};
+
+/// Something being written.
+struct ExportView {
+  std::string folder;
+  std::string what;         ///< "frames", then "run"; empty at first
+  int done = 0, total = 0;  ///< of that
 };
 
 /// The debugger's part of SessionView.
@@ -75,10 +83,13 @@ struct DebugView {
   std::vector<RemovalError> removal;         ///< by frame; empty where there is no truth
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
-  double preview_ms = 0.0;                   ///< what computing it took
-  std::string notice;                        ///< what was written last, one sentence
-  std::string run_hash;                      ///< of all records so far, as `stillpoint run` prints it
-  std::string sequence_hash;                 ///< of the sequence, as sidecar and run folder keep it
+  std::optional<Config> previewed;           ///< the config `preview` was made with
+  bool preview_whole = false;           ///< false: its features' matches and its pose are the run's still
+  double preview_ms = 0.0;              ///< what computing it took
+  std::optional<ExportView> exporting;  ///< what is being written now
+  std::string notice;                   ///< what was written last, one sentence
+  std::string run_hash;                 ///< of all records so far, as `stillpoint run` prints it
+  std::string sequence_hash;            ///< of the sequence, as sidecar and run folder keep it
 };
 
 // Requests. Frames beyond the ends mean the nearest there is.
@@ -126,6 +137,8 @@ struct ExportFrames {
 struct ExportSession {
   std::string folder;
 };
+/// What is being written ends, and is taken away.
+struct StopExport {};
 struct SavePreset {
   Config config;
   std::string file;
@@ -135,6 +148,6 @@ struct SavePreset {
 using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Breakpoints,
                  request::Span, request::Preview, request::RunAll, request::AddGhost, request::RemoveGhost,
-                 request::ExportFrames, request::ExportSession, request::SavePreset>;
+                 request::ExportFrames, request::ExportSession, request::StopExport, request::SavePreset>;
 
 }  // namespace stillpoint

@@ -115,6 +115,11 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
     if (const auto residual = value_at<float>(reference.intensity_residual, small))
       story.margins.push_back({fmt::format("Brightness, {} reference", which), *residual,
                                limits.intensity_sigmas * reference.intensity_sigma, "grey levels"});
+    if (segment == nullptr || static_cast<std::size_t>(*label) >= reference.patches.size()) continue;
+    const PatchMotion& patch = reference.patches[static_cast<std::size_t>(*label)];
+    if (patch.log_odds != 0.0F)
+      story.margins.push_back({fmt::format("Patch's shift, {} reference", which),
+                               static_cast<double>(patch.log_odds), 0.0, "log-odds"});
   }
   if (story.feature.fate != FeatureFate::removed) return;
   if (segment != nullptr && segment->moving) {
@@ -136,6 +141,50 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
   const int region =
       find_regions(trace.mask).labels.at<int>(cvRound(story.feature.pixel.y), cvRound(story.feature.pixel.x));
   if (region > 0) story.region = region;
+}
+
+void tell_colour_motion(const FrameView& view, const Config& config, FeatureStory& story) {
+  constexpr double kReach = 16.0;  // px: a point stands for what lies about it
+  const ColourMotionTrace& trace = view.colour_motion;
+  if (trace.points.empty()) return;
+  const ColourMotionConfig& limits = config.colour_motion;
+  const cv::Point2f& at = story.feature.pixel;
+  const Eigen::Vector2d pixel(at.x, at.y);
+  if (!trace.evidence.empty()) {
+    const Eigen::Vector2d small((pixel.x() + 0.5) * trace.evidence.cols / view.frame.gray.cols - 0.5,
+                                (pixel.y() + 0.5) * trace.evidence.rows / view.frame.gray.rows - 0.5);
+    if (const auto spread = value_at<float>(trace.evidence, small))
+      story.margins.push_back({"Spread evidence", *spread, limits.moving_evidence, ""});
+  }
+  const auto point = followed_point_near(trace, pixel, kReach);
+  if (point) {
+    const ColourPoint& near = trace.points[*point];
+    story.margins.push_back(
+        {"Followed point", static_cast<double>(near.evidence), limits.moving_evidence, ""});
+    story.margins.push_back(
+        {"… with neighbours'", static_cast<double>(near.shared), limits.moving_evidence, ""});
+    for (const ColourReference& reference : trace.references)
+      if (const auto off = unexplained_of(reference, *point))
+        story.margins.push_back(
+            {fmt::format("Unexplained, {} back", reference.gap), *off, limits.sigmas, "σ"});
+  }
+  if (story.feature.fate != FeatureFate::removed) return;
+  for (std::size_t i = 0; i < trace.regions.size() && !story.region; ++i)
+    if (trace.regions[i].box.contains({cvRound(at.x), cvRound(at.y)})) story.region = static_cast<int>(i) + 1;
+  if (!point) {
+    story.because.emplace_back("No followed point lies near it: evidence spread to it over like colours.");
+    return;
+  }
+  const ColourPoint& near = trace.points[*point];
+  const double distance =
+      std::hypot(static_cast<double>(near.at.x) - pixel.x(), static_cast<double>(near.at.y) - pixel.y());
+  const bool by_itself = static_cast<double>(near.evidence) > limits.moving_evidence;
+  const bool with_others = static_cast<double>(near.shared) > limits.moving_evidence;
+  story.because.push_back(fmt::format(
+      "The point followed {:.0f} px away for {} frames {}.", distance, near.age,
+      by_itself     ? "goes where the camera's own motion does not lead"
+      : with_others ? "is held to move by the neighbours that move as it does"
+                    : "is not held to move: evidence spread here from others, over like colours"));
 }
 
 std::string verdict_of(const FeatureStory& story, const std::string& method) {
@@ -201,6 +250,7 @@ FeatureStory explain_feature(const FrameView& view, const RunView& run, const Se
   const PairGeometry pair = pair_geometry(view, run, session.camera, session.config);
   const Eigen::Vector2d pixel(story.feature.pixel.x, story.feature.pixel.y);
   if (method == "stillpoint") tell_depth_motion(view, session.config, pair.small_factor, story);
+  if (method == "stillpoint" && !view.frame.has_depth()) tell_colour_motion(view, session.config, story);
   if (method == "paper") tell_paper(view, story);
   story.verdict = verdict_of(story, method);
   story.mask_edge_px = distance_to_edge(view.mask, story.feature.pixel);
@@ -209,6 +259,28 @@ FeatureStory explain_feature(const FrameView& view, const RunView& run, const Se
   if (story.in_camera && pair.world_from_target) story.in_world = *pair.world_from_target * *story.in_camera;
   tell_static_place(view, pair, session.map_points, story);
   return story;
+}
+
+std::optional<std::size_t> followed_point_near(const ColourMotionTrace& trace, const Eigen::Vector2d& pixel,
+                                               double radius) {
+  std::optional<std::size_t> nearest;
+  double least = radius;
+  for (std::size_t i = 0; i < trace.points.size(); ++i) {
+    const cv::Point2f& at = trace.points[i].at;
+    const double distance =
+        std::hypot(static_cast<double>(at.x) - pixel.x(), static_cast<double>(at.y) - pixel.y());
+    if (distance > least) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+std::optional<double> unexplained_of(const ColourReference& reference, std::size_t point) {
+  const auto at = std::find(reference.points.begin(), reference.points.end(), static_cast<int>(point));
+  const auto k = static_cast<std::size_t>(at - reference.points.begin());
+  if (at == reference.points.end() || k >= reference.sigmas.size()) return std::nullopt;
+  return static_cast<double>(reference.sigmas[k]);
 }
 
 std::optional<double> distance_to_edge(const cv::Mat& mask, const cv::Point2f& pixel, int reach) {

@@ -67,6 +67,14 @@ struct FeatureStory {
 [[nodiscard]] std::optional<int> feature_near(const FrameRecord& record, const Eigen::Vector2d& pixel,
                                               double radius);
 
+/// The followed point nearest to a pixel of the frame, within `radius` px; nothing where there is none.
+[[nodiscard]] std::optional<std::size_t> followed_point_near(const ColourMotionTrace& trace,
+                                                             const Eigen::Vector2d& pixel, double radius);
+
+/// How far the camera's motion against a reference leaves a followed point unexplained, standard deviations;
+/// nothing where it was not seen in both.
+[[nodiscard]] std::optional<double> unexplained_of(const ColourReference& reference, std::size_t point);
+
 /// The feature to tell of when none was chosen: the removed one nearest to the middle of the image, else the
 /// one with the largest residual. Nothing where there are no features.
 [[nodiscard]] std::optional<int> telling_feature(const FrameRecord& record, const cv::Size& image);

@@ -29,6 +29,8 @@ void clear_times(FrameView& view) {
     round.union_ms = round.removal_ms = 0.0;
   }
   view.depth_motion.ms = {};
+  view.colour_motion.ms = {};
+  for (ColourReference& reference : view.colour_motion.references) reference.ms = 0.0;
   for (ReferenceEvidence& evidence : view.depth_motion.references) evidence.ms = 0.0;
 }
 

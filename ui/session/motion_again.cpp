@@ -37,19 +37,23 @@ std::optional<std::set<int>> RunTrack::frames_to_repeat(int index) const {
   return frames;
 }
 
-FrameResult RunTrack::repeat_motion(int index, const ReadFrame& read) const {
+MotionReplay RunTrack::motion_before(int index, const ReadFrame& read) const {
   const int memory = memory_before(index);
-  const std::set<int> frames = frames_to_repeat(index).value();
+  std::set<int> frames = frames_to_repeat(index).value();
+  frames.erase(index);
   MotionReplay replay(source_->camera(), config());
-  FrameResult result;
   for (const int i : frames) {
     const FrameRecord& record = records_[static_cast<std::size_t>(i)];
     if (i <= memory)
       replay.take(read(i), record, i == memory ? memories_.at(i) : cv::Mat());
     else
-      result = replay.repeat(read(i), record);
+      (void)replay.repeat(read(i), record);
   }
-  return result;
+  return replay;
+}
+
+FrameResult RunTrack::repeat_motion(int index, const ReadFrame& read) const {
+  return motion_before(index, read).repeat(read(index), records_[static_cast<std::size_t>(index)]);
 }
 
 }  // namespace stillpoint

@@ -160,6 +160,21 @@ void read_patch(const DepthMotionTrace& trace, const DepthMotionConfig& config, 
                       segment.moving});
 }
 
+/// How far the point's patch lies from where the camera's motion would have it.
+Reading read_shift(const DepthMotionTrace& trace, const ReferenceEvidence& reference, const char* which,
+                   const Point& small) {
+  std::string name = fmt::format("Patch's shift{}", which);
+  const auto label = at<int>(trace.labels, small);
+  if (!label || *label < 0 || static_cast<std::size_t>(*label) >= reference.patches.size())
+    return {std::move(name), kNothing};
+  const PatchMotion& patch = reference.patches[static_cast<std::size_t>(*label)];
+  if (patch.log_odds == 0.0F) return {std::move(name), "says nothing"};
+  return {
+      std::move(name),
+      fmt::format("{:.2f} px, {:+.2f} log-odds", cv::norm(patch.shift), static_cast<double>(patch.log_odds)),
+      patch.log_odds > 0.0F};
+}
+
 ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionConfig& config,
                                const Point& small, const Point& target) {
   ReadingGroup group{"Stillpoint", {}};
@@ -177,11 +192,57 @@ ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionC
                                     config.intensity_sigmas * reference.intensity_sigma));
     readings.push_back(
         signed_value(fmt::format("Evidence{}", which), reference.log_odds, small, "log-odds", 0.0));
+    if (!reference.patches.empty()) readings.push_back(read_shift(trace, reference, which, small));
   }
   readings.push_back(signed_value("Memory", trace.prior, small, "log-odds", 0.0));
   readings.push_back(signed_value("All evidence", trace.log_odds, small, "log-odds", config.moving_log_odds));
   read_patch(trace, config, small, readings);
   readings.push_back(in_mask("Small mask", trace.small_mask, small));
+  readings.push_back(in_mask("Mask", trace.mask, target));
+  return group;
+}
+
+ReadingGroup read_colour_motion(const ColourMotionTrace& trace, const ColourMotionConfig& config,
+                                const cv::Size& size, const Point& target) {
+  ReadingGroup group{"Stillpoint, colour alone", {}};
+  auto& readings = group.readings;
+  const auto point = followed_point_near(trace, target, kFeatureReach);
+  const auto said = [&](std::string name, float evidence) {
+    const auto value = static_cast<double>(evidence);
+    const bool above = value > config.moving_evidence;
+    readings.push_back({std::move(name),
+                        fmt::format("{:+.2f} {} {:.2f}", value, above ? ">" : "≤", config.moving_evidence),
+                        above});
+  };
+  if (!point) {
+    for (const char* name : {"Followed point", "… its own evidence", "… with neighbours'"})
+      readings.push_back({name, kNothing});
+  } else {
+    const ColourPoint& found = trace.points[*point];
+    readings.push_back(
+        {"Followed point", fmt::format("{:.1f} px off, for {} frames",
+                                       std::hypot(static_cast<double>(found.at.x) - target.x(),
+                                                  static_cast<double>(found.at.y) - target.y()),
+                                       found.age)});
+    said("… its own evidence", found.evidence);
+    said("… with neighbours'", found.shared);
+  }
+  for (const ColourReference& reference : trace.references) {
+    std::string name = fmt::format("Unexplained, {} back", reference.gap);
+    const auto off = point ? unexplained_of(reference, *point) : std::nullopt;
+    if (off)
+      readings.push_back({std::move(name), fmt::format("{:.1f} σ", *off), *off > config.sigmas});
+    else
+      readings.push_back({std::move(name), kNothing});
+  }
+  if (!trace.evidence.empty()) {
+    const Point small((target.x() + 0.5) * trace.evidence.cols / size.width - 0.5,
+                      (target.y() + 0.5) * trace.evidence.rows / size.height - 0.5);
+    if (const auto spread = at<float>(trace.evidence, small))
+      said("Spread evidence", *spread);
+    else
+      readings.push_back({"Spread evidence", kNothing});
+  }
   readings.push_back(in_mask("Mask", trace.mask, target));
   return group;
 }
@@ -221,6 +282,9 @@ std::vector<ReadingGroup> read_point(const SessionView& session, const PairGeome
     const auto small = scene_point_in(pair, FrameSpace::kSmall, target);
     groups.push_back(read_depth_motion(view.depth_motion, session.config.depth_motion, small->pixel, target));
   }
+  if (!view.colour_motion.points.empty())
+    groups.push_back(
+        read_colour_motion(view.colour_motion, session.config.colour_motion, view.frame.gray.size(), target));
   for (std::size_t i = view.motion.rounds.size(); i-- > 0;)
     groups.push_back(read_round(view.motion, i, target));
   return groups;

@@ -20,6 +20,8 @@ RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun>
       options_(options),
       recorded_(std::move(recorded)),
       odometry_(source.camera(), recorded_->run.config) {
+  scores_ = recorded_->run.scores;
+  scores_.resize(recorded_->run.records.size());
   for (const FrameRecord& record : recorded_->run.records) {
     hash_.add(record);
     features_.push_back(options_.keep_features

@@ -1,6 +1,7 @@
 #include "ui/session/run_track.hpp"
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
 #include "core/sequence/prefetch.hpp"
@@ -17,10 +18,13 @@ int frames_looked_back(const Config& config) {
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)
     : source_(&source), options_(options), odometry_(source.camera(), config) {}
 
-FrameResult RunTrack::process(Odometry& odometry, int index, const ReadFrame& read) const {
-  const RunConfig& run = odometry.config().run;
-  const bool told = (run.method == "oracle" || run.check_removal != 0) && source_->has_masks();
-  FrameResult result = odometry.process(read(index), told ? source_->truth(index).moving : cv::Mat());
+bool RunTrack::is_told(const Config& config) const {
+  const RunConfig& run = config.run;
+  return (run.method == "oracle" || run.check_removal != 0) && source_->has_masks();
+}
+
+FrameResult RunTrack::process(Odometry& odometry, const Frame& frame, const cv::Mat& known_mask) const {
+  FrameResult result = odometry.process(frame, known_mask);
   if (!options_.keep_times) result.record.ms = {};
   return result;
 }
@@ -39,8 +43,15 @@ FrameResult RunTrack::process_next(const ReadFrame& read) {
   while (seen_ < index) catch_up_one(read);
   if (index == begins_at_ || index % options_.checkpoint_every == 0) keep_checkpoint();
   const Frame frame = read(index);
-  FrameResult result = process(odometry_, index, [&frame](int) { return frame; });
+  // The truth is read beside tracking; only who is told of it waits for it.
+  const bool told = is_told(config());
+  auto truth = std::async(told ? std::launch::deferred : std::launch::async, [this, told, index] {
+    return told || (options_.score_masks && source_->has_masks()) ? source_->truth(index).moving : cv::Mat();
+  });
+  const cv::Mat known = told ? truth.get() : cv::Mat();
+  FrameResult result = process(odometry_, frame, known);
   keep_motion(result, frame.has_depth());
+  scores_.push_back(score_frame(result, told ? known : truth.get()));
   ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
@@ -70,17 +81,26 @@ void RunTrack::keep_checkpoint() {
   });
 }
 
-Odometry RunTrack::before(int index, const ReadFrame& read) const {
+int RunTrack::checkpoint_before(int index) const {
   const auto after = checkpoints_.upper_bound(index);
+  return after == checkpoints_.begin() ? 0 : std::prev(after)->first;
+}
+
+RunTrack::Rewound RunTrack::rewound(int index, const ReadFrame& read) const {
+  const int first = checkpoint_before(index);
   // A finished run that odometry has not seen here has none.
-  const bool fresh = after == checkpoints_.begin();
-  const int first = fresh ? 0 : std::prev(after)->first;
-  Odometry odometry = fresh ? Odometry(source_->camera(), config()) : std::prev(after)->second;
-  odometry.restore_images(first, read);
-  Prefetcher frames(*source_, first, index, 2);
-  for (int before = first; before < index; ++before)
-    (void)process(odometry, before, [&frames](int) { return frames.next(); });
-  return odometry;
+  const auto kept = checkpoints_.find(first);
+  Rewound rewound{kept == checkpoints_.end() ? Odometry(source_->camera(), config()) : kept->second, first};
+  rewound.odometry.restore_images(first, read);
+  return rewound;
+}
+
+Odometry RunTrack::before(int index, const ReadFrame& read) const {
+  Rewound way = rewound(index, read);
+  Prefetcher frames(*source_, way.next, index, 2);
+  for (; way.next < index; ++way.next)
+    (void)process(way.odometry, way.next, [&frames](int) { return frames.next(); });
+  return std::move(way.odometry);
 }
 
 std::set<int> RunTrack::frames_to_restore(int index) const {
@@ -118,6 +138,7 @@ RunTrack RunTrack::branch(int from, const Config& config, const ReadFrame& read)
   other.seen_ = from;
   other.records_.assign(records_.begin(), records_.begin() + from);
   other.features_.assign(features_.begin(), features_.begin() + from);
+  other.scores_.assign(scores_.begin(), scores_.begin() + from);
   other.has_view_.assign(has_view_.begin(),
                          has_view_.begin() + std::min(from, static_cast<int>(has_view_.size())));
   for (const FrameRecord& record : other.records_) other.hash_.add(record);
@@ -128,6 +149,7 @@ RunView RunTrack::view() const {
   RunView view;
   view.name = config().run.method;
   view.records = records_;
+  view.scores = scores_;
   view.trajectory =
       is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_.map(), records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/odometry/motion_replay.hpp"
 #include "core/odometry/odometry.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_hash.hpp"
@@ -25,6 +26,7 @@ struct RunTrackOptions {
   int max_checkpoints = 40;
   bool keep_features = true;  ///< of the records: most of their size
   bool keep_times = true;     ///< of the records; without them two runs give the same bytes
+  bool score_masks = true;    ///< masks are compared with the true ones, where the sequence has these
 };
 
 /// One method's way through a sequence, as far as it has been processed: records, and copies of the odometry
@@ -47,15 +49,30 @@ class RunTrack {
   /// Processes a frame that was processed before once more, from the nearest checkpoint on.
   [[nodiscard]] FrameResult replay(int index, const ReadFrame& read) const;
 
+  /// Odometry on its way to where it stood before a frame.
+  struct Rewound {
+    Odometry odometry;
+    int next = 0;  ///< frame it processes next
+  };
+  /// The odometry of the nearest checkpoint at or before a frame that was processed.
+  [[nodiscard]] Rewound rewound(int index, const ReadFrame& read) const;
+  /// The frame that checkpoint stands before.
+  [[nodiscard]] int checkpoint_before(int index) const;
+
   /// Frames that repeat_motion(index) reads; nothing where it cannot be done.
   [[nodiscard]] std::optional<std::set<int>> frames_to_repeat(int index) const;
 
   /// Method `stillpoint`'s motion stage of a processed frame once more, which is far quicker than replay()
   /// where its record tells enough (MotionReplay). @pre frames_to_repeat(index)
   [[nodiscard]] FrameResult repeat_motion(int index, const ReadFrame& read) const;
+  /// The same, as it stands before that frame.
+  [[nodiscard]] MotionReplay motion_before(int index, const ReadFrame& read) const;
 
   /// Processes frame `index` with an odometry that stands before it, and changes nothing here.
-  [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const;
+  [[nodiscard]] FrameResult process(Odometry& odometry, int index, const ReadFrame& read) const {
+    return process(odometry, read(index),
+                   is_told(odometry.config()) ? source_->truth(index).moving : cv::Mat());
+  }
 
   /// The odometry as it stood before frame `index`, which was processed.
   [[nodiscard]] Odometry before(int index, const ReadFrame& read) const;
@@ -74,6 +91,8 @@ class RunTrack {
   [[nodiscard]] int begins_at() const { return begins_at_; }  ///< first frame that is its own
   /// All records, without their features: those are most of a record's size.
   [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
+  /// One a record: its mask against the true one, where that is known and was to be scored.
+  [[nodiscard]] const std::vector<FrameScores>& scores() const { return scores_; }
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
   [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
@@ -97,6 +116,8 @@ class RunTrack {
  private:
   using Features = std::shared_ptr<const std::vector<FeatureRecord>>;  // shared with branches
 
+  [[nodiscard]] bool is_told(const Config& config) const;
+  [[nodiscard]] FrameResult process(Odometry& odometry, const Frame& frame, const cv::Mat& known_mask) const;
   void keep_checkpoint();
   void keep_motion(const FrameResult& result, bool has_depth);
   [[nodiscard]] int memory_before(int index) const;
@@ -111,6 +132,7 @@ class RunTrack {
   int begins_at_ = 0;
   std::vector<FrameRecord> records_;     // without features
   std::vector<Features> features_;       // … which are here; null where they are not kept
+  std::vector<FrameScores> scores_;      // one a record
   std::map<int, Odometry> checkpoints_;  // by the frame they process next
   std::vector<std::uint8_t> has_view_;   // one a frame seen: whether later ones may be compared with it
   std::map<int, cv::Mat>

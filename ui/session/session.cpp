@@ -18,10 +18,10 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
 
 Session::~Session() {
   if (!worker_.joinable()) return;
-  stopping_ = true;
   worker_.request_stop();
   asked_.notify_all();
   worker_.join();
+  export_.reset();  // it tells this of its end
 }
 
 std::shared_ptr<const SessionView> Session::view() const {
@@ -38,9 +38,11 @@ void Session::restart(const Config& config) {
   if (options_.baseline && config.run.method != "none" && source_->has_depth()) {
     Config plain = config;
     plain.run.method = "none";
-    baseline_ = std::make_unique<RunTrack>(
-        *source_, plain,
-        RunTrackOptions{.max_checkpoints = 1, .keep_features = false, .keep_times = options_.keep_times});
+    baseline_ = std::make_unique<RunTrack>(*source_, plain,
+                                           RunTrackOptions{.max_checkpoints = 1,
+                                                           .keep_features = false,
+                                                           .keep_times = options_.keep_times,
+                                                           .score_masks = false});
   }
   for (Ghost& ghost : ghosts_) {
     ghost.diverged.reset();
@@ -62,6 +64,8 @@ void Session::process_one() {
                         [&] { return baseline_->process_next([&frame](int) { return frame; }); });
   run_->process(frame);
   if (beside.valid()) beside.get();
+  // Of ghosts that are ahead of a run begun anew, this frame can be compared only now.
+  for (Ghost& ghost : ghosts_) compare(ghost);
   breakpoints_due_ = true;
 }
 
@@ -77,7 +81,7 @@ void Session::show(int frame) {
       ghost.current = frame < track.begins_at() ? current_ : ghost.run->frame_view(frame);
   }
   debug_.preview.reset();
-  preview_due_ = debug_.preview_config.has_value();
+  preview_due_ = motion_preview_due_ = debug_.preview_config.has_value();
   publish();
 }
 
@@ -97,6 +101,7 @@ DebugView Session::debug_view() {
   DebugView debug = debug_;
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
+  if (export_) debug.exporting = export_->view();
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,
                             .config = ghost.run->track().config(),
@@ -179,14 +184,15 @@ void Session::request_speed(double frames_per_second) {
 
 bool Session::idle() const {
   const std::lock_guard lock(mutex_);
-  return resting_ && requests_.empty();
+  return resting_ && requests_.empty() && !exporting_;
 }
 
 void Session::rest(const std::stop_token& stop, bool until_comparison) {
   std::unique_lock lock(mutex_);
   resting_ = true;
-  asked_.wait(lock, stop,
-              [&] { return !requests_.empty() || (until_comparison && compares_ && lacks_before()); });
+  asked_.wait(lock, stop, [&] {
+    return !requests_.empty() || export_news_ || (until_comparison && compares_ && lacks_before());
+  });
   resting_ = false;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "ui/session/breakpoint_set.hpp"
+#include "ui/session/export_job.hpp"
 #include "ui/session/frame_cache.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/session/shown_run.hpp"
@@ -95,7 +97,7 @@ class Session {
   void open_recorded();
   [[nodiscard]] bool stages_are_missing() const;
   void catch_up();
-  void refuse_without_images() const;
+  void refuse_without_images(const char* what) const;
   void process_one();
   void show(int frame);
   void publish();
@@ -116,7 +118,9 @@ class Session {
   void carry_out(const request::RemoveGhost& wanted);
   void carry_out(const request::ExportFrames& wanted);
   void carry_out(const request::ExportSession& wanted);
+  void carry_out(const request::StopExport& wanted);
   void carry_out(const request::SavePreset& wanted);
+  void write_beside(const std::string& folder, ExportJob::Work work);
 
   void work(const std::stop_token& stop);
   void attempt(const std::function<void()>& work);
@@ -128,10 +132,11 @@ class Session {
   void rest(const std::stop_token& stop, bool until_comparison);
   void work_step();
   void settle();
+  [[nodiscard]] bool take_export_news();
   // What is done when nothing else is asked for, a frame at a time.
   [[nodiscard]] bool has_background() const;
   void background_step();
-  void compute_preview();
+  void preview_step();
   void advance(Ghost& ghost);
   void compare(Ghost& ghost);
   void update_breakpoints();
@@ -156,10 +161,12 @@ class Session {
   DebugView debug_;  // without breakpoints and ghosts
   BreakpointSet breakpoints_;
   bool breakpoints_due_ = false;
-  bool preview_due_ = false;
+  bool preview_due_ = false;         // the frame shown is to be worked out under debug_.preview_config
+  bool motion_preview_due_ = false;  // … and first its motion stages
+  std::chrono::steady_clock::time_point preview_asked_{};  // when it was asked for last
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
-  std::atomic<bool> stopping_ = false;  // what is under way is to end
+  std::unique_ptr<ExportJob> export_;  // the worker's; null while nothing is being written
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
@@ -169,7 +176,8 @@ class Session {
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
   std::atomic<bool> compares_ = false;  // FrameView::before is wanted
-  std::jthread worker_;                 // last: it ends before what it works with
+  std::atomic<bool> export_news_ = false, exporting_ = false;
+  std::jthread worker_;  // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

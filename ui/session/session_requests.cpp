@@ -6,12 +6,13 @@
 
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
-#include "core/sequence/excerpt.hpp"
 #include "ui/session/export_session.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {
 namespace {
+
+constexpr const char* kNoOthers = "No other parameters can be tried";
 
 /// @throws InputError for a number that its parameter does not allow
 void refuse_out_of_range(Config config) {
@@ -32,9 +33,8 @@ void refuse_out_of_range(Config config) {
 
 }  // namespace
 
-void Session::refuse_without_images() const {
-  if (!options_.no_images.empty())
-    throw InputError(fmt::format("No other parameters can be tried: {}", options_.no_images));
+void Session::refuse_without_images(const char* what) const {
+  if (!options_.no_images.empty()) throw InputError(fmt::format("{}: {}", what, options_.no_images));
 }
 
 void Session::request(SessionRequest wanted) {
@@ -106,15 +106,17 @@ void Session::carry_out(const request::Span& wanted) {
 }
 
 void Session::carry_out(const request::Preview& wanted) {
-  if (wanted.config) refuse_without_images();
+  if (wanted.config) refuse_without_images(kNoOthers);
   if (wanted.config) refuse_out_of_range(*wanted.config);
   debug_.preview_config = wanted.config;
-  debug_.preview.reset();
-  preview_due_ = wanted.config.has_value();
+  // Until the new one is there, the last one is shown.
+  if (!wanted.config) debug_.preview.reset();
+  preview_due_ = motion_preview_due_ = wanted.config.has_value();
+  preview_asked_ = std::chrono::steady_clock::now();
 }
 
 void Session::carry_out(const request::RunAll& wanted) {
-  refuse_without_images();
+  refuse_without_images(kNoOthers);
   refuse_out_of_range(wanted.config);
   wanted_ = std::max(wanted_, run_->track().processed());
   restart(wanted.config);
@@ -123,7 +125,7 @@ void Session::carry_out(const request::RunAll& wanted) {
 }
 
 void Session::carry_out(const request::AddGhost& wanted) {
-  refuse_without_images();
+  refuse_without_images(kNoOthers);
   refuse_out_of_range(wanted.config);
   const int from = std::clamp(wanted.from, 0, std::max(0, run_->track().processed() - 1));
   Ghost ghost{.name = wanted.name,
@@ -140,32 +142,49 @@ void Session::carry_out(const request::RemoveGhost& wanted) {
   ghosts_.erase(ghosts_.begin() + wanted.index);
 }
 
+void Session::write_beside(const std::string& folder, ExportJob::Work work) {
+  if (!worker_.joinable()) {
+    debug_.notice = work({});
+    return;
+  }
+  (void)take_export_news();
+  if (export_) throw InputError(fmt::format("{}: something else is still being written", folder));
+  debug_.notice.clear();
+  exporting_ = true;
+  export_ = std::make_unique<ExportJob>(folder, std::move(work), [this] {
+    const std::lock_guard lock(mutex_);
+    export_news_ = true;
+    asked_.notify_all();
+  });
+}
+
 void Session::carry_out(const request::ExportFrames& wanted) {
   const FrameSpan span = debug_.span.value_or(FrameSpan{current_->index, current_->index});
   std::vector<int> frames;
   for (int frame = span.first; frame <= span.last; ++frame) frames.push_back(frame);
-  const ExportedFrames exported = export_frames(*source_, frames, wanted.folder, false);
-  debug_.notice =
-      fmt::format("{} frames written to {}{}", exported.written, wanted.folder,
-                  exported.unreadable.empty()
-                      ? ""
-                      : fmt::format("; {} cannot be read and were left out", exported.unreadable.size()));
+  write_beside(wanted.folder,
+               [source = source_, frames, folder = wanted.folder](const ExportControl& control) {
+                 return export_selection(*source, frames, folder, control);
+               });
 }
 
 void Session::carry_out(const request::ExportSession& wanted) {
-  refuse_without_images();
+  refuse_without_images("Its frames cannot be handed on");
   const RunTrack& track = run_->track();
   const int frames = debug_.span ? std::min(debug_.span->last + 1, track.processed()) : track.processed();
   if (frames == 0) throw InputError(fmt::format("{}: no frame has been processed yet", wanted.folder));
   RunHash hash;
   for (int i = 0; i < frames; ++i) hash.add(track.records()[static_cast<std::size_t>(i)]);
-  debug_.notice = export_session({.source = *source_,
-                                  .config = track.config(),
-                                  .frames = frames,
-                                  .run_hash = hash.hex(),
-                                  .marks = marks(),
-                                  .stop = &stopping_},
-                                 wanted.folder);
+  write_beside(wanted.folder, [source = source_, config = track.config(), frames, hash = hash.hex(),
+                               marks = marks(), folder = wanted.folder](const ExportControl& control) {
+    return export_session(
+        {.source = *source, .config = config, .frames = frames, .run_hash = hash, .marks = marks}, folder,
+        control);
+  });
+}
+
+void Session::carry_out(const request::StopExport& /*wanted*/) {
+  if (export_) export_->stop();
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

@@ -39,6 +39,7 @@ struct FrameView {
 struct RunView {
   std::string name;                  ///< "none", "paper", …
   std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
+  std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
   Trajectory trajectory;             ///< estimated poses so far
   TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
 };
@@ -69,10 +70,8 @@ struct SessionView {
   return session.debug.preview != nullptr && session.debug.preview->index == session.current->index;
 }
 
-/// What panels of a frame's images draw: the frame shown, its motion stages under the sliders' config while
-/// there is a preview of it. Its record is the run's own.
-[[nodiscard]] inline const std::shared_ptr<const FrameView>& shown_frame(const SessionView& session) {
-  return shows_preview(session) ? session.debug.preview : session.current;
-}
+/// What panels of the frame shown draw while there is a preview of it: the same session, whose frame, config
+/// and nothing else are the preview's. @pre shows_preview(session)
+[[nodiscard]] SessionView with_preview(const SessionView& session);
 
 }  // namespace stillpoint

@@ -13,6 +13,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(150);
+constexpr auto kSliderRests = std::chrono::milliseconds(250);
 
 }  // namespace
 
@@ -58,13 +59,7 @@ bool Session::has_background() const {
 
 void Session::background_step() {
   if (preview_due_) {
-    // A finished run's frames are seen here first, one at a time.
-    if (run_->track().seen() < std::min(current_->index, run_->track().processed())) {
-      run_->catch_up_one();
-      return;
-    }
-    compute_preview();
-    publish();
+    preview_step();
     return;
   }
   if (compares_ && lacks_before()) {
@@ -107,19 +102,43 @@ void Session::compare(Ghost& ghost) {
   }
 }
 
-void Session::compute_preview() {
-  preview_due_ = false;
-  debug_.preview.reset();
-  if (!debug_.preview_config) return;
+void Session::preview_step() {
+  const int index = current_->index;
+  const Config& config = *debug_.preview_config;
+  const bool motion_alone = std::exchange(motion_preview_due_, false);
+  const auto rests = preview_asked_ + kSliderRests;
+  if (!motion_alone && worker_.joinable() && Clock::now() < rests) {
+    // While the slider still moves, the worker is kept free for the next motion stages.
+    std::unique_lock lock(mutex_);
+    asked_.wait_until(lock, rests, [this] { return !requests_.empty() || export_news_; });
+    return;
+  }
   const Stopwatch watch;
-  debug_.preview = run_->preview(current_->index, *debug_.preview_config);
+  if (motion_alone) {
+    // Motion stages come first, and at once: that is what one looks at while a slider moves.
+    auto motion = run_->motion_preview(index, config);
+    if (motion == nullptr) return;
+    debug_.preview = std::move(motion);
+  } else {
+    // A finished run's frames are seen here first, and the way to this one is gone again, frame by frame.
+    if (run_->track().seen() < std::min(index, run_->track().processed())) {
+      run_->catch_up_one();
+      return;
+    }
+    if (!run_->prepare_preview(index)) return;
+    debug_.preview = run_->preview(index, config);
+    preview_due_ = false;
+  }
+  debug_.previewed = config;
+  debug_.preview_whole = !motion_alone;
   debug_.preview_ms = options_.keep_times ? watch.milliseconds() : 0.0;
+  publish();
 }
 
 void Session::update_breakpoints() {
   if (!breakpoints_due_ || breakpoints_.empty()) return;
   const auto run = run_->run_view();
-  breakpoints_.update(FrameFigures(run->records, &run->evaluation));
+  breakpoints_.update(FrameFigures(run->records, &run->evaluation, run->scores));
   breakpoints_due_ = false;
 }
 
@@ -167,6 +186,17 @@ void Session::attempt(const std::function<void()>& work) {
   }
 }
 
+/// @returns whether something is to be told of what is being written
+bool Session::take_export_news() {
+  if (!export_news_.exchange(false) || !export_) return false;
+  if (const auto outcome = export_->outcome()) {
+    (outcome->failed ? message_ : debug_.notice) = outcome->told;
+    export_.reset();
+    exporting_ = false;
+  }
+  return true;
+}
+
 void Session::settle() {
   while (has_background()) background_step();
   publish();
@@ -178,7 +208,8 @@ void Session::work(const std::stop_token& stop) {
   auto due = Clock::now(), published = due;
   while (!stop.stop_requested()) {
     try {
-      if (take_requests() && at_rest()) publish();
+      const bool news = take_export_news(), asked = take_requests();
+      if ((asked || news) && at_rest()) publish();
       const bool waits = at_rest() && (!playing_ || Clock::now() < due);
       if (waits && has_background()) {
         background_step();
@@ -194,7 +225,7 @@ void Session::work(const std::stop_token& stop) {
       }
       if (waits) {
         std::unique_lock lock(mutex_);
-        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty(); });
+        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty() || export_news_; });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(

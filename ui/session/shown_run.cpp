@@ -11,6 +11,23 @@ namespace {
 
 constexpr std::size_t kExtrasKept = 12;
 
+/// A record with other features taken out; what was matched, and the pose, stay as they were.
+FrameRecord with_mask(FrameRecord record, const cv::Mat& mask) {
+  for (FeatureRecord& feature : record.features) {
+    const bool was_removed = feature.fate == FeatureFate::removed;
+    const bool removed =
+        !mask.empty() && mask.at<uchar>(cvRound(feature.pixel.y), cvRound(feature.pixel.x)) != 0;
+    if (removed == was_removed) continue;
+    feature.fate = removed ? FeatureFate::removed : FeatureFate::unmatched;
+    if (removed) feature.map_point = kNone;
+    record.features_removed += removed ? 1 : -1;
+  }
+  record.features_kept = record.features_found - record.features_removed;
+  record.mask_share =
+      mask.empty() ? 0.0 : static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(mask.total());
+  return record;
+}
+
 }  // namespace
 
 std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord> record) {
@@ -56,8 +73,8 @@ ShownRun::Extras ShownRun::extras_of(int index) {
   }
   FrameResult again;
   if (const auto frames = track_.frames_to_repeat(index)) {
-    frames_->read_ahead(*frames);
-    again = track_.repeat_motion(index, reader());
+    MotionReplay motion = motion_before(index, *frames);
+    again = motion.repeat(frames_->read(index), track_.records()[static_cast<std::size_t>(index)]);
   } else {
     again = process_again(index, track_.config());
   }
@@ -66,16 +83,66 @@ ShownRun::Extras ShownRun::extras_of(int index) {
   return extras_.front();
 }
 
-FrameResult ShownRun::process_again(int index, const Config& config) {
-  if (!before_ || before_->first != index) {
-    frames_->read_ahead(track_.frames_to_restore(index));
-    before_.emplace(index, track_.before(index, reader()));
+bool ShownRun::set_out_for(int index) {
+  constexpr std::size_t kAtOnce = 4;  // frames: about the work of a step
+  // On the way to an earlier frame, or beyond it, it may serve for a later one.
+  const bool serves =
+      before_ && before_->way.next <= index && before_->way.next >= track_.checkpoint_before(index);
+  if (!serves) {
+    before_.reset();
+    if (!to_read_ || to_read_->first != index) to_read_.emplace(index, track_.frames_to_restore(index));
+    std::set<int> next;
+    while (!to_read_->second.empty() && next.size() < kAtOnce)
+      next.insert(to_read_->second.extract(to_read_->second.begin()).value());
+    frames_->read_ahead(next);
+    if (!to_read_->second.empty()) return false;
+    before_.emplace(Before{.index = index, .way = track_.rewound(index, reader())});
   }
+  to_read_.reset();
+  before_->index = index;
+  before_->frames = std::make_unique<Prefetcher>(*source_, before_->way.next, index, 2);
+  return true;
+}
+
+bool ShownRun::prepare_preview(int index) {
+  if (!is_own(index)) return true;
+  if ((!before_ || before_->index != index) && !set_out_for(index)) return false;
+  RunTrack::Rewound& way = before_->way;
+  if (way.next < index) {
+    (void)track_.process(way.odometry, way.next, [this](int) { return before_->frames->next(); });
+    ++way.next;
+  }
+  if (way.next == index) before_->frames.reset();
+  return way.next == index;
+}
+
+const MotionReplay& ShownRun::motion_before(int index, const std::set<int>& frames) {
+  if (!motion_before_ || motion_before_->first != index) {
+    frames_->read_ahead(frames);
+    motion_before_.emplace(index, track_.motion_before(index, reader()));
+  }
+  return motion_before_->second;
+}
+
+std::optional<FrameResult> ShownRun::motion_again(int index, const Config& config) {
+  if (!is_own(index) || track_.config().run.method != "stillpoint") return std::nullopt;
+  const auto frames = track_.frames_to_repeat(index);
+  if (!frames) return std::nullopt;
+  const MotionReplay& here = motion_before(index, *frames);
+  std::optional<MotionReplay> motion =
+      here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
+  if (!motion) return std::nullopt;
+  return motion->repeat(frames_->read(index), track_.records()[static_cast<std::size_t>(index)]);
+}
+
+FrameResult ShownRun::process_again(int index, const Config& config) {
+  while (!prepare_preview(index)) {
+  }
+  const Odometry& here = before_->way.odometry;
   if (config == track_.config()) {
-    Odometry odometry = before_->second;
+    Odometry odometry = here;
     return track_.process(odometry, index, reader());
   }
-  const Odometry& here = before_->second;
   std::optional<Odometry> odometry =
       here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
   if (!odometry)
@@ -120,16 +187,39 @@ std::shared_ptr<const RunView> ShownRun::run_view() {
   return view_;
 }
 
+std::shared_ptr<const FrameView> ShownRun::motion_preview(int index, const Config& config) {
+  const std::string& method = config.run.method;
+  Extras extras{.index = index};
+  if (method == "stillpoint") {
+    std::optional<FrameResult> result = motion_again(index, config);
+    if (!result) return nullptr;
+    extras.depth_motion = std::move(result->depth_motion);
+    extras.mask = std::move(result->mask);
+  } else if (method != "paper" && method != "none") {
+    return nullptr;
+  }
+  FrameView view = images_of(index, config, std::move(extras));
+  std::optional<FrameRecord> record;
+  if (is_own(index)) record = with_mask(track_.record(index), view.mask);
+  return with_history(std::move(view), std::move(record));
+}
+
 std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& config) {
   Extras extras{.index = index};
   std::optional<FrameRecord> record;
-  if (index < track_.processed() && index >= track_.begins_at()) {
+  if (is_own(index)) {
     FrameResult result = process_again(index, config);
     record = std::move(result.record);
     extras = {index, std::move(result.motion), std::move(result.depth_motion),
               std::move(result.colour_motion), std::move(result.mask)};
   }
-  return hold(images_of(index, config, std::move(extras)), std::move(record));
+  return with_history(images_of(index, config, std::move(extras)), std::move(record));
+}
+
+std::shared_ptr<const FrameView> ShownRun::with_history(FrameView view,
+                                                        std::optional<FrameRecord> record) const {
+  if (record) view.history = history_of(view.index, [this](int past) { return track_.record(past); });
+  return hold(std::move(view), std::move(record));
 }
 
 }  // namespace stillpoint

@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <memory>
+#include <set>
 
+#include "core/sequence/prefetch.hpp"
 #include "ui/session/frame_cache.hpp"
 #include "ui/session/run_track.hpp"
 
@@ -38,6 +40,14 @@ class ShownRun {
   /// with is kept, so that one frame under many configs costs little more than that frame's work.
   [[nodiscard]] std::shared_ptr<const FrameView> preview(int index, const Config& config);
 
+  /// One step towards the state that preview() begins with, a frame's work.
+  /// @returns whether it is at hand
+  bool prepare_preview(int index);
+
+  /// The same frame's motion stages alone, at once: under the run's own poses, with its own matches.
+  /// @returns null where these do not lead to them
+  [[nodiscard]] std::shared_ptr<const FrameView> motion_preview(int index, const Config& config);
+
   [[nodiscard]] RunTrack::ReadFrame reader() const {
     return [this](int index) { return frames_->read(index); };
   }
@@ -56,6 +66,15 @@ class ShownRun {
   [[nodiscard]] Extras extras_of(int index);
   /// Processes a frame that was processed before, from the state before it.
   [[nodiscard]] FrameResult process_again(int index, const Config& config);
+  [[nodiscard]] bool set_out_for(int index);
+  [[nodiscard]] bool is_own(int index) const {
+    return index >= track_.begins_at() && index < track_.processed();
+  }
+  /// @param frames those that RunTrack::frames_to_repeat tells
+  [[nodiscard]] const MotionReplay& motion_before(int index, const std::set<int>& frames);
+  [[nodiscard]] std::optional<FrameResult> motion_again(int index, const Config& config);
+  [[nodiscard]] std::shared_ptr<const FrameView> with_history(FrameView view,
+                                                              std::optional<FrameRecord> record) const;
   void keep(Extras extras);
 
   const FrameSource* source_;
@@ -63,7 +82,15 @@ class ShownRun {
   RunTrack track_;
   std::deque<Extras> extras_;  // of the frames processed or replayed last
   std::shared_ptr<const RunView> view_;
-  std::optional<std::pair<int, Odometry>> before_;  // state before the frame processed again last
+  /// The state before a frame that is processed again, or the way there.
+  struct Before {
+    int index = 0;
+    RunTrack::Rewound way;
+    std::unique_ptr<Prefetcher> frames{};  // null once it is there
+  };
+  std::optional<std::pair<int, std::set<int>>> to_read_;       // before one can set out for a frame
+  std::optional<Before> before_;                               // of the frame processed again last
+  std::optional<std::pair<int, MotionReplay>> motion_before_;  // … whose motion alone was found again
 };
 
 }  // namespace stillpoint

@@ -126,6 +126,8 @@ std::optional<StageChange> stage_change(const FrameView& view, const Camera& cam
   const bool rounds = against == ChangeAgainst::kRoundBefore;
   if (rounds && stage.round < 1) return std::nullopt;
   if (!rounds && view.before == nullptr) return std::nullopt;
+  // Of followed points the figures tell the change; the picture below them is the frame's own.
+  if (of_colour(stage.kind) && now.output.look == PictureLook::kPhoto) return std::nullopt;
   StageChange change;
   const FrameView& other = rounds ? view : *view.before;
   if (of_odometry(stage.kind)) {
@@ -141,7 +143,8 @@ std::optional<StageChange> stage_change(const FrameView& view, const Camera& cam
     StageInfo place = stage;
     if (rounds) --place.round;
     if (place.round >= static_cast<int>(other.motion.rounds.size()) ||
-        place.reference >= static_cast<int>(other.depth_motion.references.size()))
+        place.reference >= static_cast<int>(std::max(other.depth_motion.references.size(),
+                                                     other.colour_motion.references.size())))
       return std::nullopt;
     StagePicture before = stage_pictures(other, camera, config, place, backward).output;
     if (before.image.empty() || now.output.image.empty() || before.image.size() != now.output.image.size() ||

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -144,17 +145,44 @@ StagePictures paper_pictures(const FrameView& view, const MotionRound& round, St
   }
 }
 
-cv::Mat segment_values(const DepthMotionTrace& trace) {
+/// What is said of each pixel's patch; NaN where it is in none, or nothing is said of it.
+cv::Mat patch_values(const DepthMotionTrace& trace, const std::function<float(std::size_t)>& of_patch) {
   cv::Mat values(trace.labels.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
       if (const int label = trace.labels.at<int>(y, x); label >= 0)
-        values.at<float>(y, x) = trace.segments[static_cast<std::size_t>(label)].log_odds;
+        values.at<float>(y, x) = of_patch(static_cast<std::size_t>(label));
   return values;
+}
+
+cv::Mat segment_values(const DepthMotionTrace& trace) {
+  return patch_values(trace, [&](std::size_t i) { return trace.segments[i].log_odds; });
+}
+
+/// What patches say by their shifts, which are drawn as lines several times as long.
+StagePicture patch_shifts(const DepthMotionTrace& trace, const std::vector<PatchMotion>& patches) {
+  constexpr float kLonger = 4.0F;  // drawn at twice that
+  StagePicture picture = signed_picture("Shifts, 8 times as long",
+                                        patch_values(trace,
+                                                     [&](std::size_t i) {
+                                                       return patches[i].log_odds != 0.0F
+                                                                  ? patches[i].log_odds
+                                                                  : std::numeric_limits<float>::quiet_NaN();
+                                                     }),
+                                        4.0, "log-odds");
+  for (std::size_t i = 0; i < patches.size() && i < trace.segments.size(); ++i) {
+    if (patches[i].log_odds == 0.0F) continue;
+    const cv::Point2f at = trace.segments[i].centre;
+    const cv::Point2f shift(patches[i].shift[0], patches[i].shift[1]);
+    picture.dots.push_back(
+        {at, at + kLonger * shift, patches[i].log_odds > 0.0F ? DotKind::kOutlier : DotKind::kInlier});
+  }
+  return picture;
 }
 
 StagePictures reference_pictures(const FrameView& view, const Camera& camera, const Config& config,
                                  const ReferenceEvidence& evidence, StageKind kind) {
+  const DepthMotionTrace& trace = view.depth_motion;
   const DepthMotionConfig& limits = config.depth_motion;
   const StagePicture depth =
       signed_picture("Depth residual", evidence.depth_residual, 2.0 * limits.depth_sigmas, "σ");
@@ -171,6 +199,9 @@ StagePictures reference_pictures(const FrameView& view, const Camera& camera, co
   cv::minMaxLoc(small.depth, nullptr, &farthest);
   there.range = std::max(1.0, farthest);
   if (kind == StageKind::kDepthResidual) return {{there}, depth};
+  if (kind == StageKind::kPatchShifts && trace.segments.size() == evidence.patches.size())
+    return {{signed_picture("Remembered", trace.prior, limits.max_log_odds, "log-odds"), here},
+            patch_shifts(trace, evidence.patches)};
   const StagePicture warped =
       photo("The reference, warped here",
             evidence.reference.view ? warp_reference(small, evidence.reference).gray : cv::Mat(),
@@ -195,6 +226,8 @@ StagePictures stillpoint_pictures(const FrameView& view, const Camera& camera, c
       make_rgbd_view(view.frame.gray, view.frame.depth, camera, config.depth_motion.factor);
   if (stage.kind == StageKind::kMemory) {
     StagePictures pictures{{signed_picture("Remembered", trace.prior, most, "log-odds")}, all};
+    if (!trace.slow.empty())
+      pictures.inputs.push_back(signed_picture("Patches' shifts", trace.slow, 2.0, "log-odds"));
     for (const ReferenceEvidence& evidence : trace.references)
       pictures.inputs.push_back(signed_picture("Evidence", evidence.log_odds, 2.0, "log-odds"));
     return pictures;
@@ -231,6 +264,7 @@ StagePictures stage_pictures(const FrameView& view, const Camera& camera, const 
                              const StageInfo& stage, bool backward) {
   if (const MotionRound* round = round_of(view, stage))
     return paper_pictures(view, *round, stage.kind, backward);
+  if (of_colour(stage.kind)) return colour_pictures(view, config, stage);
   if (of_odometry(stage.kind) || stage.kind == StageKind::kTrueMask)
     return odometry_pictures(view, stage.kind);
   if (stage.kind == StageKind::kFirstPose)

@@ -65,6 +65,10 @@ struct StagePictures {
 [[nodiscard]] StagePictures stage_pictures(const FrameView& view, const Camera& camera, const Config& config,
                                            const StageInfo& stage, bool backward);
 
+/// The same of stages that judge motion by followed points (of_colour).
+[[nodiscard]] StagePictures colour_pictures(const FrameView& view, const Config& config,
+                                            const StageInfo& stage);
+
 /// Nothing where there is nothing to hold the stage against.
 [[nodiscard]] std::optional<StageChange> stage_change(const FrameView& view, const Camera& camera,
                                                       const Config& config, const StageInfo& stage,

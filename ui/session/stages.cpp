@@ -120,6 +120,7 @@ std::vector<StageInfo> list_stages(const FrameView& view, const Config& config) 
   const std::string& method = config.run.method;
   if (method == "paper") add_paper_stages(view, stages);
   if (method == "stillpoint") add_stillpoint_stages(view, config, stages);
+  if (method == "stillpoint" && !view.frame.has_depth()) add_colour_stages(view, config, stages);
   if (method == "oracle") add_known_mask(view, stages);
   if (view.record != nullptr && view.frame.readable()) add_odometry_stages(*view.record, stages);
   return stages;

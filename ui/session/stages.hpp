@@ -27,9 +27,17 @@ enum class StageKind {
   kDepthResidual,
   kBrightnessResidual,
   kEvidence,
+  kPatchShifts,
   kMemory,
   kSegments,
   kMotionMask,
+  // … of frames without depth.
+  kFollowedPoints,
+  kCameraTurn,
+  kUnexplained,
+  kPointEvidence,
+  kSpread,
+  kColourMask,
   // Method `oracle`'s.
   kTrueMask,
   // The odometry's, §2, which all methods share.
@@ -45,6 +53,11 @@ enum class StageKind {
 /// Whether it belongs to what all methods share.
 [[nodiscard]] constexpr bool of_odometry(StageKind kind) { return kind >= StageKind::kFeatures; }
 
+/// Whether it belongs to method `stillpoint`'s way with frames without depth.
+[[nodiscard]] constexpr bool of_colour(StageKind kind) {
+  return kind >= StageKind::kFollowedPoints && kind <= StageKind::kColourMask;
+}
+
 /// A number a stage ends with.
 struct StageFigure {
   std::string name;
@@ -56,13 +69,13 @@ struct StageFigure {
 
 struct StageInfo {
   StageKind kind = StageKind::kTracks;
-  int round = -1;         ///< from 0; below 0 where the stage has no rounds
-  int reference = -1;     ///< from 0: which earlier frame of method `stillpoint`'s; below 0 where it has none
-  std::string name;       ///< "Threshold"
-  std::string group;      ///< "Round 2", "Odometry": what it stands under in a list
-  std::string what;       ///< one sentence: what it does, with the paper's equation
-  double ms = 0.0;        ///< of wall time; 0 where times are not kept
-  bool timed = true;      ///< false: it has no time of its own
+  int round = -1;      ///< from 0; below 0 where the stage has no rounds
+  int reference = -1;  ///< from 0: which of method `stillpoint`'s earlier frames; below 0 where it has none
+  std::string name;    ///< "Threshold"
+  std::string group;   ///< "Round 2", "Odometry": what it stands under in a list
+  std::string what;    ///< one sentence: what it does, with the paper's equation
+  double ms = 0.0;     ///< of wall time; 0 where times are not kept
+  bool timed = true;   ///< false: it has no time of its own
   bool two_ways = false;  ///< it has a forward and a backward side
   std::vector<StageFigure> figures;
   std::string note;  ///< why it has nothing to show, or what is odd about it; empty when all is well
@@ -93,5 +106,7 @@ void add_figure(StageInfo& stage, std::string name, double value, std::string un
 /// The motion stages of each method.
 void add_paper_stages(const FrameView& view, std::vector<StageInfo>& stages);
 void add_stillpoint_stages(const FrameView& view, const Config& config, std::vector<StageInfo>& stages);
+/// … of a frame without depth.
+void add_colour_stages(const FrameView& view, const Config& config, std::vector<StageInfo>& stages);
 
 }  // namespace stillpoint

@@ -164,6 +164,26 @@ double share_known(const cv::Mat& values) {
   return 100.0 * cv::countNonZero(values == values) / static_cast<double>(values.total());
 }
 
+/// How patches shifted, of those that say something.
+void add_patch_figures(const ReferenceEvidence& evidence, StageInfo& stage) {
+  std::vector<double> shifts;
+  int moving = 0;
+  for (const PatchMotion& patch : evidence.patches) {
+    if (patch.log_odds == 0.0F) continue;
+    shifts.push_back(cv::norm(patch.shift));
+    moving += patch.log_odds > 0.0F ? 1 : 0;
+  }
+  add_figure(stage, "Patches measured", static_cast<double>(shifts.size()));
+  add_figure(stage, "Of them speak for moving", moving);
+  if (shifts.empty()) {
+    stage.note = "No patch has texture enough to say how far it shifted.";
+    return;
+  }
+  std::sort(shifts.begin(), shifts.end());
+  add_figure(stage, "Median shift", shifts[shifts.size() / 2], "small px", 2);
+  add_figure(stage, "Largest shift", shifts.back(), "small px", 2);
+}
+
 void add_reference_stages(const ReferenceEvidence& evidence, int index, std::size_t count,
                           const DepthMotionConfig& config, std::vector<StageInfo>& stages) {
   const std::string group = count == 1   ? "Reference"
@@ -202,6 +222,10 @@ void add_reference_stages(const ReferenceEvidence& evidence, int index, std::siz
   StageInfo& said = add(StageKind::kEvidence, "Evidence", "Both residuals as log-odds of moving.");
   add_figure(said, "Speaks for moving", share_above(evidence.log_odds, 0.0), "%", 2);
   add_figure(said, "Speaks for still", share_above(-evidence.log_odds, 0.0), "%", 2);
+  if (!evidence.patches.empty())
+    add_patch_figures(evidence, add(StageKind::kPatchShifts, "Patch shifts",
+                                    "Shifts each patch to where it fits best, and takes off the camera's "
+                                    "motion that explains most: what is left tells slow movers."));
 }
 
 }  // namespace
@@ -229,6 +253,8 @@ void add_stillpoint_stages(const FrameView& view, const Config& config, std::vec
                 "What the frame before held to move, carried along; all evidence added to it.");
   memory.ms = trace.ms.memory;
   add_figure(memory, "Remembered as moving", share_above(trace.prior, limits.moving_log_odds), "%", 2);
+  if (!trace.slow.empty())
+    add_figure(memory, "Patches' shifts speak for moving", share_above(trace.slow, 0.0), "%", 2);
   add_figure(memory, "With all evidence", share_above(trace.log_odds, limits.moving_log_odds), "%", 2);
 
   StageInfo& segments =

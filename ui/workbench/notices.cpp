@@ -77,6 +77,37 @@ void Workbench::draw_opening() {
   ImGui::End();
 }
 
+void Workbench::draw_hand_on_dialog() {
+  if (session_ == nullptr) return;
+  const auto& span = session_->debug.span;
+  const int frames = span ? std::min(span->last + 1, session_->processed) : session_->processed;
+  const std::string what = fmt::format(
+      "A new folder for {} frames, their run and all marks; `stillpoint view` opens it anywhere", frames);
+  if (ask_for_path(hand_on_dialog_, "Hand this session on", what.c_str(), "Write"))
+    ask(request::ExportSession{hand_on_dialog_.path});
+}
+
+void Workbench::draw_exporting() {
+  if (session_ == nullptr || !session_->debug.exporting) return;
+  const ExportView& view = *session_->debug.exporting;
+  const UiFrame& frame = *frame_;
+  const float margin = 14.0F * frame.scale;
+  if (begin_notice(frame, "##exporting", {margin, frame.size.y - 25.0F * frame.scale - margin}, {0.0F, 1.0F},
+                   mix(frame.theme.border, frame.theme.accent, 0.6F))) {
+    ImGui::PushFont(frame.fonts.strong);
+    ImGui::TextUnformatted(view.what == "run" ? "Running over what was written…" : "Writing frames…");
+    ImGui::PopFont();
+    ImGui::TextColored(to_vec4(frame.theme.text_dim), "%s", view.folder.c_str());
+    const float share =
+        view.total > 0 ? static_cast<float>(view.done) / static_cast<float>(view.total) : 0.0F;
+    ImGui::ProgressBar(share, {260.0F * frame.scale, 0.0F},
+                       fmt::format("{} of {}", view.done, view.total).c_str());
+    ImGui::SameLine();
+    if (ImGui::Button("Stop")) ask(request::StopExport{});
+  }
+  ImGui::End();
+}
+
 void Workbench::draw_error() {
   if (!error_open_) return;
   const double left_s = said_s_ + kErrorShownSeconds - time_s_;

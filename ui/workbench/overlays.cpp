@@ -164,29 +164,35 @@ void Workbench::draw_shortcut_list(int columns) const {
   ImGui::EndTable();
 }
 
-void Workbench::draw_open_dialog() {
-  if (!open_dialog_.open) return;
+bool Workbench::ask_for_path(PathDialog& dialog, const char* title, const char* what, const char* button) {
+  if (!dialog.open) return false;
   const float scale = frame_->scale;
-  if (open_dialog_.opened_now) ImGui::SetNextWindowFocus();
+  if (dialog.opened_now) ImGui::SetNextWindowFocus();
   bool wanted = false;
-  if (begin_overlay(*frame_, "##open", {640.0F * scale, 142.0F * scale}, 0.2F)) {
+  if (begin_overlay(*frame_, title, {640.0F * scale, 142.0F * scale}, 0.2F)) {
     ImGui::PushFont(frame_->fonts.strong);
-    ImGui::TextUnformatted("Open a sequence");
+    ImGui::TextUnformatted(title);
     ImGui::PopFont();
-    ImGui::TextDisabled("A folder in the TUM RGB-D layout, a folder of colour frames, or generated:KIND");
-    if (open_dialog_.opened_now) ImGui::SetKeyboardFocusHere();
+    ImGui::TextDisabled("%s", what);
+    if (dialog.opened_now) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0F);
-    wanted = ImGui::InputText("##path", open_dialog_.path, sizeof open_dialog_.path,
-                              ImGuiInputTextFlags_EnterReturnsTrue);
-    wanted = ImGui::Button("Open") || wanted;
+    wanted =
+        ImGui::InputText("##path", dialog.path, sizeof dialog.path, ImGuiInputTextFlags_EnterReturnsTrue);
+    wanted = ImGui::Button(button) || wanted;
     ImGui::SameLine();
-    if (ImGui::Button("Cancel") || is_key_pressed(Key::kEscape)) open_dialog_.open = false;
+    if (ImGui::Button("Cancel") || is_key_pressed(Key::kEscape)) dialog.open = false;
   }
-  open_dialog_.opened_now = false;
+  dialog.opened_now = false;
   ImGui::End();
-  if (!wanted || open_dialog_.path[0] == '\0') return;
-  open_dialog_.open = false;
-  after_frame_ = [this, path = std::string(open_dialog_.path)] { host_.open(path); };
+  if (!wanted || dialog.path[0] == '\0') return false;
+  dialog.open = false;
+  return true;
+}
+
+void Workbench::draw_open_dialog() {
+  if (ask_for_path(open_dialog_, "Open a sequence",
+                   "A folder in the TUM RGB-D layout, a folder of colour frames, or generated:KIND", "Open"))
+    after_frame_ = [this, path = std::string(open_dialog_.path)] { host_.open(path); };
 }
 
 }  // namespace stillpoint

@@ -142,7 +142,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame.log = &log_;
   frame.busy = !opening_.empty() || (session != nullptr && session->busy);
   if (const auto before = std::exchange(before_frame_, {})) before();
-  const bool overlay = palette_.open || open_dialog_.open;
+  const bool overlay = palette_.open || open_dialog_.open || hand_on_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
   tell_notice();
@@ -164,9 +164,12 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_shortcuts();
   draw_palette();
   draw_open_dialog();
+  draw_hand_on_dialog();
+  draw_exporting();
   look_ = frame.wanted_look;
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
   compare_frames_ = false;
+  previewed_.reset();
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -261,15 +264,24 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
   draw_tile_heading(*panel, rect, heading);
   PanelActions wanted;
   frame_->choices = &choices_[name];
-  draw_panel_body(*frame_, *session_, *panel, below_heading(rect, heading), wanted);
+  const bool preview = panel->previews() && shows_preview(*session_);
+  draw_panel_body(*frame_, preview ? previewed() : *session_, *panel, below_heading(rect, heading), wanted);
   frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
 }
 
+const SessionView& Workbench::previewed() {
+  if (!previewed_) previewed_ = std::make_unique<const SessionView>(with_preview(*session_));
+  return *previewed_;
+}
+
 void Workbench::draw_tile_heading(Panel& panel, const LayoutRect& rect, float height) {
   const float button = height - 4.0F * frame_->scale, margin = 9.0F * frame_->scale;
   const float buttons = 2.0F * button + 6.0F * frame_->scale;
+  if (panel.previews() && shows_preview(*session_))
+    draw_preview_badge(*frame_,
+                       {rect.x + rect.width - buttons - 4.0F * frame_->scale, rect.y + 4.0F * frame_->scale});
   ImGui::PushFont(frame_->fonts.strong);
   draw_clipped_text({rect.x + margin, rect.y + 0.5F * (height - ImGui::GetFontSize())}, panel.title(),
                     rect.width - margin - buttons, to_u32(frame_->theme.text));

@@ -80,7 +80,8 @@ class Workbench {
     char query[128] = "";
     int chosen = 0;
   };
-  struct OpenDialog {
+  /// A question for a path.
+  struct PathDialog {
     bool open = false, opened_now = false;
     char path[1024] = "";
   };
@@ -113,13 +114,18 @@ class Workbench {
   void draw_tiles(const LayoutRect& area);
   void draw_splitters(const PlacedLayout& placed);
   void draw_tile(const std::string& name, const LayoutRect& rect);
+  [[nodiscard]] const SessionView& previewed();
   void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
   void draw_palette_list();
   void draw_shortcuts();
   void draw_shortcut_list(int columns) const;
+  [[nodiscard]] bool ask_for_path(PathDialog& dialog, const char* title, const char* what,
+                                  const char* button);
   void draw_open_dialog();
+  void draw_hand_on_dialog();
+  void draw_exporting();
   void draw_start_page(const LayoutRect& area);
   void draw_opening();
   void draw_error();
@@ -143,7 +149,7 @@ class Workbench {
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
   Palette palette_;
-  OpenDialog open_dialog_;
+  PathDialog open_dialog_, hand_on_dialog_;
   bool shortcuts_open_ = false;
   double speed_ = 30.0;  // frames a second
 
@@ -163,6 +169,7 @@ class Workbench {
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
   const SessionView* session_ = nullptr;
+  std::unique_ptr<const SessionView> previewed_;      // as panels of the frame shown draw its preview
   bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 

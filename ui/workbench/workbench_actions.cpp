@@ -27,6 +27,12 @@ void Workbench::add_actions() {
                 .icon = icons::kFilm,
                 .enabled = [this] { return static_cast<bool>(host_.open); },
                 .run = [this] { after_frame_ = [this] { host_.open("generated:walking_static"); }; }});
+  actions_.add({.name = "hand_on",
+                .title = "Hand this session on as a folder…",
+                .group = "File",
+                .icon = icons::kFolderOpen,
+                .enabled = [this] { return session_ != nullptr && session_->processed > 0 && host_.request; },
+                .run = [this] { hand_on_dialog_ = {.open = true, .opened_now = true}; }});
   actions_.add({.name = "quit", .title = "Quit", .group = "File", .keys = {{Key::kQ, kCtrl}}, .run = [this] {
                   if (frame_ != nullptr) frame_->quit = true;
                 }});

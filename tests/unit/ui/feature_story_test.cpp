@@ -39,6 +39,25 @@ TEST(FeatureStory, TellsMaskRoundRegionAndMarginOfARemovedFeature) {
   EXPECT_EQ(first.region, 1);
 }
 
+TEST(FeatureStory, WithoutDepthTheFollowedPointBesideItTells) {
+  InspectScene scene;
+  without_depth(scene);
+  const FeatureStory story = explain(scene, scene.add_feature({53, 44}, FeatureFate::removed));
+  EXPECT_THAT(story.verdict, HasSubstr("region 1"));
+  ASSERT_EQ(story.because.size(), 1U);
+  EXPECT_THAT(story.because[0], HasSubstr("5 px away for 9 frames"));
+  EXPECT_THAT(story.because[0], HasSubstr("by the neighbours that move as it does"));
+  ASSERT_EQ(story.margins.size(), 4U);
+  EXPECT_NEAR(story.margins[2].margin(), 0.5, 1e-6);
+  EXPECT_EQ(story.margins[3].name, "Unexplained, 6 back");
+  EXPECT_EQ(story.margins[3].value, 4.0);
+  // Another one within the mask, far from all points.
+  const FeatureStory far = explain(scene, scene.add_feature({68, 62}, FeatureFate::removed));
+  EXPECT_THAT(far.because.at(0), HasSubstr("No followed point"));
+  // Of a kept one only the figures are told.
+  EXPECT_TRUE(explain(scene, scene.add_feature({121, 90}, FeatureFate::unmatched)).because.empty());
+}
+
 TEST(FeatureStory, SaysWhenDilationAloneReachedIt) {
   InspectScene scene;
   const FeatureStory story = explain(scene, scene.add_feature({38, 40}, FeatureFate::removed));

@@ -118,4 +118,26 @@ struct InspectScene {
   }
 };
 
+/// A frame without depth: a point that moves, one that does not, and one too young to have a say.
+inline void without_depth(InspectScene& scene) {
+  scene.config.run.method = "stillpoint";
+  scene.view.frame.depth.release();
+  ColourMotionTrace& trace = scene.view.colour_motion;
+  trace.points = {{{50.0F, 40.0F}, 9, 0.2F, 0.8F}, {{120.0F, 90.0F}, 12, -0.4F, -0.4F}, {{10.0F, 10.0F}, 1}};
+  ColourReference reference;
+  reference.gap = 6;
+  reference.points = {0, 1};
+  reference.shifts = reference.residuals = {{2.0F, 0.0F}, {0.0F, 0.0F}};
+  reference.sigmas = {4.0F, 0.5F};
+  reference.sigma = 0.25;
+  trace.references = {reference};
+  trace.evidence = cv::Mat::zeros(30, 40, CV_32FC1);
+  trace.evidence(cv::Rect(8, 6, 10, 10)).setTo(0.5);
+  trace.mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  trace.mask(cv::Rect(30, 25, 40, 40)).setTo(255);
+  trace.regions = {{{30, 25, 40, 40}, {}, 1600}};
+  trace.mask_share = 1600.0 / (160 * 120);
+  scene.view.mask = trace.mask;
+}
+
 }  // namespace stillpoint::testing

@@ -46,6 +46,23 @@ TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
   EXPECT_EQ(reading(groups, "Result", "Feature near it").value, "3.0 px off, removed");
 }
 
+TEST(PointReadings, ReadWhatFollowedPointsSayWithoutDepth) {
+  InspectScene scene;
+  without_depth(scene);
+  const std::string group = "Stillpoint, colour alone";
+  const auto moving = read(scene, 53, 44);
+  EXPECT_EQ(reading(moving, group, "Followed point").value, "5.0 px off, for 9 frames");
+  EXPECT_EQ(reading(moving, group, "… its own evidence").value, "+0.20 ≤ 0.30");
+  EXPECT_EQ(reading(moving, group, "… with neighbours'").value, "+0.80 > 0.30");
+  EXPECT_TRUE(reading(moving, group, "Unexplained, 6 back").speaks);
+  EXPECT_EQ(reading(moving, group, "Spread evidence").value, "+0.50 > 0.30");
+  EXPECT_EQ(reading(moving, group, "Mask").value, "yes");
+  const auto nothing = read(scene, 150, 10);
+  EXPECT_EQ(reading(nothing, group, "Followed point").value, "–");
+  EXPECT_EQ(reading(nothing, group, "Unexplained, 6 back").value, "–");
+  EXPECT_EQ(reading(nothing, group, "Mask").value, "no");
+}
+
 TEST(PointReadings, SayWhereALayerHasNothing) {
   InspectScene scene;
   scene.view.frame.depth.setTo(0.0);

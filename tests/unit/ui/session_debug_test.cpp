@@ -1,49 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/unit/ui/session_debug.hpp"
 
 #include <chrono>
 #include <condition_variable>
-#include <random>
-
-#include "core/run/open_run.hpp"
-#include "core/run/record_codec.hpp"
-#include "core/run/run_report.hpp"
-#include "tests/cli/small_sequence.hpp"
-#include "ui/session/session.hpp"
 
 namespace stillpoint {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-namespace fs = std::filesystem;
-
-constexpr int kFrames = 12;
-
-class SessionDebug : public ::testing::Test {
- protected:
-  SessionDebug() {
-    config_.run.method = "paper";
-    config_.features.count = 400;
-  }
-  [[nodiscard]] std::unique_ptr<Session> session(bool baseline = false) const {
-    return std::make_unique<Session>(source_, config_, SessionOptions{.baseline = baseline});
-  }
-  [[nodiscard]] RunResult batch(const Config& config, int frames) const {
-    RunOptions options;
-    options.count = frames;
-    return run_sequence(*source_, config, options);
-  }
-  static const DebugView& debug(const Session& session) {
-    static std::shared_ptr<const SessionView> view;
-    view = session.view();
-    return view->debug;
-  }
-
-  SmallSequence folder_{kFrames};
-  std::shared_ptr<const FrameSource> source_ = open_sequence(folder_.path());
-  Config config_;
-};
 
 TEST_F(SessionDebug, RequestsAreCarriedOutAtOnceWithoutAWorker) {
   const auto s = session();
@@ -110,73 +74,31 @@ TEST_F(SessionDebug, TheSpanIsOrderedAndPlayGoesRoundInIt) {
   EXPECT_FALSE(debug(*s).loop);
 }
 
-TEST_F(SessionDebug, TheHashIsTheBatchRunsHoweverOneCameThere) {
-  const RunResult batch = run_sequence(*source_, config_, {});
-  const auto s = session(true);
-  std::mt19937 random(3);
-  for (int step = 0; step < 12; ++step) s->request(request::GoTo{static_cast<int>(random() % kFrames)});
-  s->request(request::GoTo{kFrames - 1});
-  s->request(request::GoTo{0});
-  EXPECT_EQ(debug(*s).run_hash, run_hash(batch.records));
+TEST_F(SessionDebug, BreakpointsKnowTheTrueMasks) {
+  write_masks(folder_);
+  source_ = open_sequence(folder_.path());
+  config_.run.method = "oracle";
+  const auto told = session();
+  told->request(request::GoTo{5});
+  told->request(request::Breakpoints{{{"mask_iou > 99%", true}, {"mask_recall < 50%", true}}});
+  EXPECT_THAT(debug(*told).breakpoints[0].hits, ElementsAre(0, 1, 2, 3, 4, 5));
+  EXPECT_THAT(debug(*told).breakpoints[1].hits, ::testing::IsEmpty());
+  // A ghost has its own masks; before it branches off they are the run's.
+  Config none = config_;
+  none.run.method = "none";
+  told->request(request::AddGhost{none, "none", 3});
+  const auto& scores = debug(*told).ghosts[0].run->scores;
+  ASSERT_EQ(scores.size(), 6U);
+  EXPECT_EQ(scores[2].mask.iou(), 1.0);
+  EXPECT_EQ(scores[4].mask.iou(), 0.0);
 }
 
-/// All that a record holds, times left out, as bytes.
-std::vector<std::uint8_t> bytes_of(FrameRecord record) {
-  record.ms = {};
-  ByteWriter bytes;
-  write_record(bytes, record);
-  return bytes.bytes();
-}
-
-TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
-  for (const char* method : {"none", "paper", "stillpoint", "oracle"}) {
-    config_.run.method = method;
-    std::vector<FrameResult> expected;
-    RunOptions options;
-    options.on_frame = [&](const FrameResult& frame) { expected.push_back(frame); };
-    (void)run_sequence(*source_, config_, options);
-    const auto s = session(true);
-    std::mt19937 random(11);
-    std::vector<int> way = {3, 2, 1, 0, kFrames - 1, kFrames - 2};
-    for (int step = 0; step < 30; ++step) way.push_back(static_cast<int>(random() % kFrames));
-    for (const int frame : way) {
-      s->request(request::GoTo{frame});
-      const auto view = s->view()->current;
-      const FrameResult& batch_frame = expected[static_cast<std::size_t>(frame)];
-      EXPECT_EQ(bytes_of(*view->record), bytes_of(batch_frame.record)) << method << " " << frame;
-      ASSERT_EQ(view->mask.empty(), batch_frame.mask.empty()) << method << " " << frame;
-      if (!view->mask.empty()) {
-        EXPECT_EQ(cv::norm(view->mask, batch_frame.mask, cv::NORM_INF), 0.0) << method << " " << frame;
-      }
-    }
-  }
-}
-
-TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
-  config_.run.method = "stillpoint";
-  config_.depth_motion.far_reference = 3;
-  config_.depth_motion.slow_reference = 5;
-  RunTrack track(*source_, config_);
-  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
-  std::vector<FrameResult> results;
-  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
-  EXPECT_FALSE(track.frames_to_repeat(0).has_value());
-  for (const int index : {11, 1, 7, 4, 5, 10}) {
-    const auto frames = track.frames_to_repeat(index);
-    ASSERT_TRUE(frames.has_value()) << index;
-    EXPECT_EQ(*frames->rbegin(), index);
-    std::set<int> used;
-    const FrameResult again = track.repeat_motion(index, [&](int i) {
-      used.insert(i);
-      return source_->read(i);
-    });
-    EXPECT_EQ(used, *frames);
-    const FrameResult& first = results[static_cast<std::size_t>(index)];
-    EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
-    EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
-    EXPECT_EQ(cv::norm(again.depth_motion.prior, first.depth_motion.prior, cv::NORM_INF), 0.0) << index;
-    ASSERT_EQ(again.depth_motion.references.size(), first.depth_motion.references.size()) << index;
-  }
+TEST_F(SessionDebug, ABreakpointSaysWhatNoFrameHas) {
+  const auto s = session();
+  s->request(request::GoTo{4});
+  s->request(request::Breakpoints{{{"mask_iou < 50% || step > 2", true}, {"inliers > 0", true}}});
+  EXPECT_THAT(debug(*s).breakpoints[0].note, ::testing::AllOf(HasSubstr("step"), HasSubstr("mask_iou")));
+  EXPECT_EQ(debug(*s).breakpoints[1].note, "");
 }
 
 TEST_F(SessionDebug, AGhostWithTheSameConfigIsTheSameRun) {
@@ -251,33 +173,6 @@ TEST_F(SessionDebug, AGhostWhoseFeaturesWouldNotFitBeginsAtTheFirstFrame) {
   EXPECT_EQ(run_hash(debug(*s).ghosts[0].run->records), run_hash(batch(other, 9).records));
 }
 
-TEST_F(SessionDebug, PreviewsTheFrameShownAndLeavesTheRunAlone) {
-  for (const char* method : {"paper", "stillpoint"}) {
-    config_.run.method = method;
-    const auto s = session();
-    s->request(request::GoTo{8});
-    s->request(request::GoTo{4});
-    const std::string hash = debug(*s).run_hash;
-    Config other = config_;
-    s->request(request::Preview{other});
-    ASSERT_NE(debug(*s).preview, nullptr);
-    ASSERT_NE(debug(*s).preview->record, nullptr);
-    EXPECT_TRUE(computed_alike(*debug(*s).preview->record, *s->view()->current->record));
-    EXPECT_EQ(debug(*s).preview->motion.rounds.size(), s->view()->current->motion.rounds.size());
-    other.features.count = 200;
-    s->request(request::Preview{other});
-    EXPECT_LT(debug(*s).preview->record->features_found, s->view()->current->record->features_found);
-    s->request(request::GoTo{6});
-    EXPECT_EQ(debug(*s).preview->index, 6);
-    EXPECT_EQ(debug(*s).run_hash, hash);
-    other.features.count = -4;
-    s->request(request::Preview{other});
-    EXPECT_THAT(s->view()->message, HasSubstr("features.count is -4, expected"));
-    s->request(request::Preview{std::nullopt});
-    EXPECT_EQ(debug(*s).preview, nullptr);
-  }
-}
-
 TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
   const auto s = session();
   s->request(request::GoTo{9});
@@ -291,66 +186,17 @@ TEST_F(SessionDebug, RunAllGoesAsFarAsTheRunHadGone) {
   EXPECT_EQ(debug(*s).run_hash, run_hash(batch(other, 10).records));
 }
 
-TEST_F(SessionDebug, ExportedFramesShowTheSame) {
+TEST_F(SessionDebug, GhostsAreComparedWithARunThatBeginsAnew) {
   const auto s = session();
-  s->request(request::Span{FrameSpan{3, 6}, false});
-  const TemporaryFolder out;
-  s->request(request::ExportFrames{out.path("part")});
-  ASSERT_EQ(s->view()->message, "");
-  const auto part = open_sequence(out.path("part"));
-  ASSERT_EQ(part->size(), 4);
-  for (int i = 0; i < 4; ++i) {
-    const Frame a = part->read(i), b = source_->read(i + 3);
-    EXPECT_NEAR(a.timestamp, b.timestamp, 1e-6);
-    EXPECT_NEAR(a.depth_timestamp, b.depth_timestamp, 1e-6);
-    EXPECT_EQ(cv::norm(a.gray, b.gray, cv::NORM_INF), 0.0);
-    EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF), 0.0);
-  }
-  EXPECT_FALSE(part->ground_truth().empty());
-  s->request(request::ExportFrames{out.path("part")});
-  EXPECT_THAT(s->view()->message, HasSubstr("holds a sequence already"));
-}
-
-TEST_F(SessionDebug, ASessionIsHandedOnAsOneFolder) {
-  const auto s = session();
-  s->request(request::GoTo{7});
-  const std::string hash = debug(*s).run_hash;
-  s->request(request::Bookmarks{{{2, "look"}, {9, "beyond what is processed"}}});
-  const TemporaryFolder out;
-  s->request(request::ExportSession{out.path("session")});
-  ASSERT_EQ(s->view()->message, "");
-  EXPECT_THAT(debug(*s).notice,
-              ::testing::AllOf(HasSubstr("8 frames"), ::testing::Not(HasSubstr("another one"))));
-
-  // It opens where it was not written.
-  fs::rename(out.path("session"), out.path("elsewhere"));
-  const OpenedRun run = open_run(out.path("elsewhere"));
-  EXPECT_EQ(run.no_images, "");
-  EXPECT_EQ(run.recorded->hash, hash);
-  SessionOptions options;
-  options.recorded = run.recorded;
-  options.sidecar = SidecarPlaces{out.path("elsewhere"), {}};
-  Session other(run.source, run.recorded->run.config, options);
-  other.request(request::GoTo{3});
-  EXPECT_EQ(other.view()->message, "");
-  EXPECT_EQ(other.view()->debug.run_hash, hash);
-  EXPECT_THAT(other.view()->debug.bookmarks, ElementsAre(Bookmark{2, "look"}));
-  other.request(request::Preview{config_});
-  ASSERT_NE(other.view()->debug.preview, nullptr);
-  EXPECT_TRUE(computed_alike(*other.view()->debug.preview->record, *other.view()->current->record));
-
-  s->request(request::ExportSession{out.path("elsewhere")});
-  EXPECT_THAT(s->view()->message, HasSubstr("elsewhere"));
-}
-
-TEST_F(SessionDebug, SavedPresetsAreRead) {
-  const auto s = session();
-  const TemporaryFolder out;
-  config_.motion.max_rounds = 2;
-  s->request(request::SavePreset{config_, out.path("mine.toml")});
-  EXPECT_EQ(read_config(out.path("mine.toml")), config_);
-  s->request(request::SavePreset{config_, out.path("no/such/folder/mine.toml")});
-  EXPECT_FALSE(s->view()->message.empty());
+  s->request(request::GoTo{6});
+  s->request(request::AddGhost{config_, "same", 0});
+  EXPECT_FALSE(debug(*s).ghosts[0].diverged);
+  Config other = config_;
+  other.features.count = 300;
+  s->request(request::RunAll{other});
+  EXPECT_EQ(debug(*s).ghosts[0].diverged, 0);
+  s->request(request::RunAll{config_});
+  EXPECT_FALSE(debug(*s).ghosts[0].diverged);
 }
 
 TEST_F(SessionDebug, TheWorkerDoesTheSame) {

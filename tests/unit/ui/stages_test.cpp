@@ -69,6 +69,65 @@ TEST(Stages, OfTheOthersAreTheirOwn) {
   EXPECT_TRUE(stages_of(scene.view, scene.config).empty());
 }
 
+TEST(Stages, PatchesShiftsStandWithTheReferenceTheyWereMeasuredAgainst) {
+  InspectScene scene;
+  scene.config.run.method = "stillpoint";
+  DepthMotionTrace& trace = scene.view.depth_motion;
+  trace.log_odds = trace.prior = trace.slow = cv::Mat::zeros(30, 40, CV_32FC1);
+  trace.labels = cv::Mat::zeros(30, 40, CV_32SC1);
+  trace.labels.colRange(20, 40).setTo(1);
+  trace.segments.resize(2);
+  trace.segments[1].centre = {30.0F, 15.0F};
+  trace.references.resize(2);
+  for (ReferenceEvidence& evidence : trace.references)
+    evidence.depth_residual = evidence.intensity_residual = evidence.log_odds = trace.log_odds;
+  trace.references[1].patches = {{{0.0F, 0.0F}, 0.0F, 0.0F}, {{3.0F, 4.0F}, 0.0F, 1.5F}};
+  const auto stages = stages_of(scene.view, scene.config);
+  const auto is_shifts = [](const StageInfo& stage) { return stage.kind == StageKind::kPatchShifts; };
+  ASSERT_EQ(std::count_if(stages.begin(), stages.end(), is_shifts), 1);
+  const StageInfo& stage = *std::find_if(stages.begin(), stages.end(), is_shifts);
+  EXPECT_EQ(stage.reference, 1);
+  EXPECT_EQ(figure_of(stage, "Patches measured").value, 1.0);
+  EXPECT_EQ(figure_of(stage, "Of them speak for moving").value, 1.0);
+  EXPECT_EQ(figure_of(stage, "Largest shift").value, 5.0);
+  const StagePictures pictures = stage_pictures(scene.view, scene.camera, scene.config, stage, false);
+  ASSERT_EQ(pictures.output.dots.size(), 1U);
+  EXPECT_EQ(pictures.output.dots[0].at, cv::Point2f(30.0F, 15.0F));
+  EXPECT_EQ(pictures.output.dots[0].from, cv::Point2f(42.0F, 31.0F));
+  EXPECT_EQ(pictures.output.image.at<float>(5, 25), 1.5F);
+  EXPECT_TRUE(std::isnan(pictures.output.image.at<float>(5, 5)));
+}
+
+TEST(Stages, OfAFrameWithoutDepthFollowPoints) {
+  using enum StageKind;
+  InspectScene scene;
+  without_depth(scene);
+  const auto stages = stages_of(scene.view, scene.config);
+  const std::vector<StageKind> kinds = kinds_of(stages);
+  ASSERT_GE(kinds.size(), 7U);
+  EXPECT_THAT(std::vector<StageKind>(kinds.begin(), kinds.begin() + 7),
+              ElementsAre(kFollowedPoints, kCameraTurn, kUnexplained, kPointEvidence, kSpread, kColourMask,
+                          kFeatures));
+  EXPECT_EQ(figure_of(stages[0], "Points").value, 3.0);
+  EXPECT_EQ(figure_of(stages[0], "Followed long enough").value, 2.0);
+  EXPECT_EQ(figure_of(stages[2], "Noise").value, 0.5);
+  EXPECT_EQ(figure_of(stages[2], "Above the limit").value, 1.0);
+  EXPECT_EQ(figure_of(stages[3], "Points that move by themselves").value, 0.0);
+  EXPECT_EQ(figure_of(stages[3], "… with their neighbours").value, 1.0);
+  EXPECT_NEAR(figure_of(stages[4], "Above the limit").value, 100.0 * 100 / 1200, 1e-9);
+  const auto pictures = [&](std::size_t i) {
+    return stage_pictures(scene.view, scene.camera, scene.config, stages[i], false);
+  };
+  // Where it came from beside the rotation: 2 small px are 4, drawn at twice their length.
+  EXPECT_EQ(pictures(1).output.dots[0].from, cv::Point2f(46.0F, 40.0F));
+  EXPECT_EQ(pictures(2).output.dots[0].kind, DotKind::kOutlier);
+  EXPECT_EQ(pictures(2).output.dots[1].kind, DotKind::kInlier);
+  EXPECT_EQ(pictures(3).output.dots.size(), 2U);
+  EXPECT_EQ(pictures(3).output.dots[0].kind, DotKind::kRemoved);
+  EXPECT_EQ(pictures(4).output.image.size(), scene.view.frame.gray.size());
+  EXPECT_EQ(cv::countNonZero(pictures(5).output.image), 1600);
+}
+
 TEST(Stages, AreHeldAgainstTheRoundBefore) {
   const InspectScene scene;
   const auto stages = stages_of(scene.view, scene.config);
