@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
 constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
-constexpr int kHole = 3;                               // small px: half of what a mover may have unmeasured
+constexpr int kHole = 4;                               // small px: half of what a mover may have unmeasured
 constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
 
 /// One value for each pixel, by its patch; `none` where it lies in no patch.

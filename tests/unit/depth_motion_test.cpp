@@ -154,13 +154,40 @@ TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
   now.render(gray, depth);
   // The board's middle as the camera sees it, without depth as hair would be.
   const cv::Point middle(cvRound(kCamera.cx + kCamera.fx * (0.30 - 0.06)), cvRound(kCamera.cy));
-  const cv::Rect hole(middle.x - 15, middle.y - 15, 30, 30);
+  const cv::Rect hole(middle.x - 10, middle.y - 10, 20, 20);
   depth(hole).setTo(0);
   const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
   const DepthMotionTrace trace = detect_depth_motion(
       view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(trace.mask(hole)), hole.area());
+}
+
+TEST(DepthMotion, AGapOpenToOneSideIsNoPartOfTheMover) {
+  const Scene now{0.06, 0.30};
+  cv::Mat gray, depth, truth;
+  now.render(gray, depth, &truth);
+  // A strip without depth along the board's right side, as wide as the sensor's shadow.
+  const cv::Rect board = cv::boundingRect(truth);
+  const cv::Rect shadow(board.br().x, board.y, 12, board.height);
+  depth(shadow).setTo(0);
+  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  const DepthMotionTrace trace = detect_depth_motion(
+      view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
+      nullptr, Pose::Identity(), {});
+  EXPECT_GT(overlap(trace.mask, truth), 0.8);
+  EXPECT_LT(cv::countNonZero(trace.mask(shadow)), 0.1 * shadow.area());
+}
+
+TEST(DepthMotion, ASlantedSurfaceSeenAPixelOffIsNoMover) {
+  const Scene now{0.0, 0.0, 1.0, false, 0.0, true}, then{0.0, 0.0, 1.1, false, 0.0, true};  // hills alone
+  ReferenceView exact = reference(then, now), off = exact;
+  off.reference_from_current.translation().x() += 2.0 * 4.0 * 2.0 / kCamera.fx;  // 2 small px at 2 m
+  const ReferenceEvidence known = detect(now, {exact}).references.front();
+  EXPECT_LT(known.misplacement_px, 0.2);
+  const DepthMotionTrace trace = detect(now, {off});
+  EXPECT_GT(trace.references.front().misplacement_px, 0.2);
+  EXPECT_EQ(cv::countNonZero(trace.mask), 0);
 }
 
 /// The patches of a scene against an earlier one, from a pose that is off by `error`.
