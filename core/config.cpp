@@ -138,6 +138,8 @@ std::vector<Parameter> parameters(Config& c) {
          "brightness residual beyond which a pixel counts as moved");
   number("depth_motion.gradient_share", &d.gradient_share, 0, 5, "",
          "share of the local gradient a brightness residual may reach");
+  number("depth_motion.max_misplacement_px", &d.max_misplacement_px, 0, 5, "px",
+         "most that surfaces are taken to lie beside their place, in small pixels");
   number("depth_motion.memory", &d.memory, 0, 1, "", "share of the log-odds carried to the next frame");
   number("depth_motion.max_log_odds", &d.max_log_odds, 0.5, 100, "", "where evidence saturates");
   number("depth_motion.firm_log_odds", &d.firm_log_odds, 0, 100, "",

@@ -44,6 +44,8 @@ struct DepthMotionConfig {
   double intensity_sigmas = 4.0;  ///< the same of brightness
   double gradient_share =
       0.75;  ///< of the local gradient that a brightness residual may reach for want of exact pixels
+  double max_misplacement_px =
+      1.0;  ///< small px by which surfaces may be taken to lie beside their place, where they are seen to
   double memory = 0.9;         ///< share of the log-odds carried to the next frame
   double max_log_odds = 6.0;   ///< evidence of motion saturates here, so that a change of mind stays possible
   double firm_log_odds = 3.0;  ///< above it a pixel is firmly known to move …
@@ -147,8 +149,8 @@ struct BundleConfig {
 
 struct RunConfig {
   std::string method = "stillpoint";  ///< stillpoint, paper, none; or oracle, which is told what moves
-  int threads = 2;               ///< worker threads; any number gives the same bytes
-  int seed = 1;                  ///< of generated sequences
+  int threads = 2;                    ///< worker threads; any number gives the same bytes
+  int seed = 1;                       ///< of generated sequences
   int check_removal = 0;  ///< 1: each pose is also solved without removal, and with the true mask where known
   bool operator==(const RunConfig&) const = default;
 };

@@ -86,7 +86,6 @@ float misplacement(const RgbdView& current, const ReferenceView& reference, cons
   constexpr std::size_t kFewest = 100;
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
-  constexpr float kMost = 1.0F;              // px
   Carrier carried(current.camera, reference.reference_from_current);
   const cv::Mat& then = reference.view->depth;
   std::vector<float> squares;  // px²
@@ -105,7 +104,8 @@ float misplacement(const RgbdView& current, const ReferenceView& reference, cons
     }
   }
   if (squares.size() < kFewest) return 0.0F;
-  return std::clamp(std::sqrt(std::max(0.0F, median_of(squares))) - kRounding, 0.0F, kMost);
+  return std::clamp(std::sqrt(std::max(0.0F, median_of(squares))) - kRounding, 0.0F,
+                    static_cast<float>(config.max_misplacement_px));
 }
 
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
