@@ -43,10 +43,10 @@ WorkbenchHost idle_host() {
 class GoldenPanel : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(GoldenPanel, LooksAsItDid) {
-  const auto panels = make_panels();
+  Offscreen offscreen({.width = kPanelWidth, .height = kPanelHeight, .look = look_of(GetParam())});
+  const auto panels = make_panels();  // what they draw with is let go of before the context goes
   Panel& panel = *panels[GetParam()];
   const SessionView example = handmade_example();
-  Offscreen offscreen({.width = kPanelWidth, .height = kPanelHeight, .look = look_of(GetParam())});
   const cv::Mat image =
       offscreen.render([&](UiFrame& frame) { Workbench::draw_alone(frame, example, panel); });
   // Below the heading, whose letters are no content.
