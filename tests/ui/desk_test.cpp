@@ -58,7 +58,7 @@ DeskOptions desk_options() {
 /// Draws until `holds()`, for half a minute at the most.
 template <typename Draw, typename Condition>
 bool draw_until(Draw draw, Condition holds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(300);
   while (!holds() && std::chrono::steady_clock::now() < end) {
     draw();
     std::this_thread::sleep_for(std::chrono::milliseconds(3));
