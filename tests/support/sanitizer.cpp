@@ -12,6 +12,11 @@ const char* __lsan_default_suppressions() {
 const char* __lsan_default_options();
 const char* __lsan_default_options() { return "print_suppressions=0"; }
 
+// What is freed is held back for a while to be watched; tests that look at how much memory stays want it
+// short.
+const char* __asan_default_options();
+const char* __asan_default_options() { return "quarantine_size_mb=8"; }
+
 int dlclose(void* handle);
 int dlclose(void* /*handle*/) { return 0; }
 }
