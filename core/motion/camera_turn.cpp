@@ -24,27 +24,6 @@ double geman_mcclure_weight(double squared, double scale) {
 
 double geman_mcclure_cost(double squared, double scale) { return squared / (squared + scale * scale); }
 
-Eigen::Matrix3d fit_rotation(std::span<const BearingPair> pairs, double sigma) {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  double scale = sigma * 40.0;
-  for (int step = 0; step < kRotationSteps; ++step, scale = std::max(2.0 * sigma, scale * 0.6)) {
-    Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const BearingPair& pair : pairs) {
-      const Eigen::Vector3d turned = rotation * pair.now;
-      const double x = turned.x() / turned.z(), y = turned.y() / turned.z();
-      const Eigen::Vector2d off(pair.then.x() - x, pair.then.y() - y);
-      const double w = pair.weight * geman_mcclure_weight(off.squaredNorm(), scale);
-      Eigen::Matrix<double, 2, 3> jacobian;
-      jacobian << -x * y, 1.0 + x * x, -y, -(1.0 + y * y), x * y, x;
-      normal.noalias() += w * jacobian.transpose() * jacobian;
-      right.noalias() += w * jacobian.transpose() * off;
-    }
-    rotation = so3_exp(normal.ldlt().solve(right)) * rotation;
-  }
-  return rotation;
-}
-
 double cost_of(std::span<const BearingPair> pairs, const CameraTurn& motion, double scale) {
   double cost = 0.0;
   for (const BearingPair& pair : pairs) {
@@ -148,6 +127,27 @@ bool only_turns(std::span<const BearingPair> pairs, const Eigen::Matrix3d& rotat
 
 }  // namespace
 
+Eigen::Matrix3d estimate_rotation(std::span<const BearingPair> pairs, double sigma) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double scale = sigma * 40.0;
+  for (int step = 0; step < kRotationSteps; ++step, scale = std::max(2.0 * sigma, scale * 0.6)) {
+    Eigen::Matrix3d normal = 1e-9 * Eigen::Matrix3d::Identity();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const BearingPair& pair : pairs) {
+      const Eigen::Vector3d turned = rotation * pair.now;
+      const double x = turned.x() / turned.z(), y = turned.y() / turned.z();
+      const Eigen::Vector2d off(pair.then.x() - x, pair.then.y() - y);
+      const double w = pair.weight * geman_mcclure_weight(off.squaredNorm(), scale);
+      Eigen::Matrix<double, 2, 3> jacobian;
+      jacobian << -x * y, 1.0 + x * x, -y, -(1.0 + y * y), x * y, x;
+      normal.noalias() += w * jacobian.transpose() * jacobian;
+      right.noalias() += w * jacobian.transpose() * off;
+    }
+    rotation = so3_exp(normal.ldlt().solve(right)) * rotation;
+  }
+  return rotation;
+}
+
 double sampson_distance(const CameraTurn& motion, const BearingPair& pair) {
   const Eigen::Vector3d line = motion.direction.cross(motion.rotation * pair.now);
   const Eigen::Vector3d other = motion.rotation.transpose() * (pair.then.cross(motion.direction));
@@ -178,7 +178,7 @@ CameraTurn estimate_camera_turn(std::span<const BearingPair> pairs, const Camera
                                 const CameraTurn* hint) {
   CameraTurn best;
   if (pairs.empty()) return best;
-  best.rotation = fit_rotation(pairs, options.sigma);
+  best.rotation = estimate_rotation(pairs, options.sigma);
   best.turns_only = only_turns(pairs, best.rotation, options);
   if (!best.turns_only) {
     const Eigen::Matrix3d rotation = best.rotation;

@@ -29,6 +29,9 @@ struct CameraTurnOptions {
   double between_share = 0.12;    ///< … and at most so many may disagree by little, as parallax does
 };
 
+/// Robust rotation alone, then ~ rotation * now: that of most of the picture. Deterministic.
+[[nodiscard]] Eigen::Matrix3d estimate_rotation(std::span<const BearingPair> pairs, double sigma);
+
 /// Robust (Geman-McClure, annealed) rotation and direction of translation: Gauss-Newton on the Sampson
 /// distance, from the best of many directions through two points each. Deterministic.
 /// @param hint a direction to begin with as well, or null

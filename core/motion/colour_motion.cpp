@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/geometry/se3.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/shared_evidence.hpp"
 #include "core/stopwatch.hpp"
@@ -115,24 +116,49 @@ cv::Mat moving_regions(const cv::Mat& evidence, const std::vector<PointTrack>& t
 ColourMotionDetector::ColourMotionDetector(const Camera& camera, const ColourMotionConfig& config)
     : camera_(camera), config_(config) {}
 
-void ColourMotionDetector::judge(ColourReference& reference, const std::vector<cv::Point2f>& now) {
+/// Points seen both now and `gap` frames ago, each with its share of the image and the trust that it stands
+/// still.
+std::vector<BearingPair> ColourMotionDetector::pairs_with(int gap, bool level,
+                                                          std::vector<int>& points) const {
   const std::vector<PointTrack>& tracks = tracks_.all();
-  std::vector<cv::Point2f> then, places;
+  std::vector<cv::Point2f> then, now;
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (const cv::Point2f* back = tracks[i].back(reference.gap)) {
-      reference.points.push_back(static_cast<int>(i));
+    if (const cv::Point2f* back = tracks[i].back(gap)) {
+      points.push_back(static_cast<int>(i));
       then.push_back(*back);
-      places.push_back(now[i]);
+      now.push_back(tracks[i].path.back());
     }
-  if (static_cast<int>(then.size()) < kFewestPairs) return;
-  then = small_.undistort(then);
-  const std::vector<cv::Point2f> straight = small_.undistort(places);
-  const std::vector<double> even = even_weights(places, static_cast<float>(4 * config_.cell_px));
+  if (points.empty()) return {};
+  std::vector<cv::Point2f> straight_then = small_.undistort(then), straight_now = small_.undistort(now);
+  if (level) {
+    undo_shutter(small_, rates_.at(gap), then, straight_then);
+    undo_shutter(small_, rates_.at(0), now, straight_now);
+  }
+  const std::vector<double> even = even_weights(now, static_cast<float>(4 * config_.cell_px));
   std::vector<BearingPair> pairs;
-  for (std::size_t k = 0; k < then.size(); ++k) {
-    const float held = tracks[static_cast<std::size_t>(reference.points[k])].evidence;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const float held = tracks[static_cast<std::size_t>(points[k])].evidence;
     const double trust = 0.02 + 1.0 / (1.0 + std::exp(2.0 * held));
-    pairs.push_back({bearing(straight[k], small_), bearing(then[k], small_), even[k] * trust});
+    pairs.push_back({bearing(straight_now[k], small_), bearing(straight_then[k], small_), even[k] * trust});
+  }
+  return pairs;
+}
+
+void ColourMotionDetector::measure_turn(double seconds) {
+  std::vector<int> points;
+  std::vector<BearingPair> pairs = pairs_with(1, false, points);
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (static_cast<int>(pairs.size()) >= kFewestPairs)
+    rotation = estimate_rotation(pairs, kExpectedNoise / small_.fx);
+  rates_.add(so3_log(rotation), seconds, config_.far_reference);
+}
+
+void ColourMotionDetector::judge(ColourReference& reference) {
+  const std::vector<PointTrack>& tracks = tracks_.all();
+  const std::vector<BearingPair> pairs = pairs_with(reference.gap, true, reference.points);
+  if (static_cast<int>(pairs.size()) < kFewestPairs) {
+    reference.points.clear();
+    return;
   }
   CameraTurnOptions options;
   options.sigma = kExpectedNoise / small_.fx;
@@ -178,12 +204,14 @@ void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& r
   }
 }
 
-ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
+ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional<double> timestamp) {
   if (image.empty() || (image.type() != CV_8UC3 && image.type() != CV_8UC1))
     throw InputError("colour motion needs an 8-bit image of one or three channels");
   ColourMotionTrace trace;
   if (image.size() != size_) {
     tracks_.clear();
+    rates_.clear();
+    timestamp_.reset();
     size_ = image.size();
     small_ = camera_.scaled_to(size_.width / kSmallerBy, size_.height / kSmallerBy);
   }
@@ -198,8 +226,12 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
   tracks_.advance(small, config_);
   trace.ms.points = watch.lap();
 
-  std::vector<cv::Point2f> now;
-  for (const PointTrack& track : tracks_.all()) now.push_back(track.path.back());
+  if (small_.readout_s != 0.0 && timestamp && timestamp_ && *timestamp > *timestamp_)
+    measure_turn(*timestamp - *timestamp_);
+  else
+    rates_.clear();
+  timestamp_ = timestamp;
+
   int last_gap = 0;
   for (const int wanted : {config_.near_reference, config_.far_reference / 2, config_.far_reference}) {
     const int gap = std::min(wanted, tracks_.frames() - 1);
@@ -207,7 +239,7 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
     last_gap = gap;
     ColourReference reference;
     reference.gap = gap;
-    judge(reference, now);
+    judge(reference);
     reference.ms = watch.lap();
     if (!reference.residuals.empty()) trace.references.push_back(std::move(reference));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/motion/camera_turn.hpp"
 #include "core/motion/motion_trace.hpp"
 #include "core/motion/point_tracks.hpp"
+#include "core/motion/shutter.hpp"
 
 namespace stillpoint {
 
@@ -66,17 +68,22 @@ class ColourMotionDetector {
 
   /// The next frame.
   /// @param image CV_8UC3 or CV_8UC1. A frame of another size than the last begins anew.
+  /// @param timestamp s, when its middle row was taken; without it a rolling shutter is not undone
   /// @throws InputError for another type, or none
-  [[nodiscard]] ColourMotionTrace next(const cv::Mat& image);
+  [[nodiscard]] ColourMotionTrace next(const cv::Mat& image, std::optional<double> timestamp = std::nullopt);
 
  private:
-  void judge(ColourReference& reference, const std::vector<cv::Point2f>& now);
+  [[nodiscard]] std::vector<BearingPair> pairs_with(int gap, bool level, std::vector<int>& points) const;
+  void measure_turn(double seconds);
+  void judge(ColourReference& reference);
   void gather_evidence(const std::vector<ColourReference>& references);
 
   Camera camera_;  ///< as given; scaled to the frames' size
   Camera small_;   ///< of the small image
   ColourMotionConfig config_;
   PointTracks tracks_;
+  TurnRates rates_;
+  std::optional<double> timestamp_;  ///< of the last frame
   cv::Size size_;
 };
 

@@ -42,7 +42,7 @@ void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
   }
   const Stopwatch watch;
   if (!colour_) colour_.emplace(camera_, config_.colour_motion);
-  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour);
+  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour, frame.timestamp);
   result.mask = result.colour_motion.mask;
   result.record.mask_share = result.colour_motion.mask_share;
   result.record.ms.motion += watch.milliseconds();
