@@ -33,27 +33,41 @@ double cost_of(std::span<const BearingPair> pairs, const CameraTurn& motion, dou
   return cost;
 }
 
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
+
+struct Linearised {
+  Vector5 jacobian;  ///< of the Sampson distance by the rotation and by the direction along u and v
+  double distance;
+};
+
+Linearised sampson_jacobian(const BearingPair& pair, const Eigen::Matrix3d& rotation,
+                            const Eigen::Matrix3d& essential, const Eigen::Vector3d& t,
+                            const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  const Eigen::Vector3d q = rotation * pair.now;
+  const Eigen::Vector3d line = t.cross(q), other = essential.transpose() * pair.then;
+  const double slope = std::sqrt(line.head<2>().squaredNorm() + other.head<2>().squaredNorm()) + 1e-12;
+  const Eigen::Vector3d normal_of_plane = q.cross(pair.then);
+  Linearised result;
+  result.jacobian << q.cross(pair.then.cross(t)), u.dot(normal_of_plane), v.dot(normal_of_plane);
+  result.jacobian /= slope;
+  result.distance = pair.then.dot(line) / slope;
+  return result;
+}
+
 /// Gauss-Newton over rotation and direction; the Sampson distance's denominator held fixed within a step.
 void refine(std::span<const BearingPair> pairs, double first_scale, double last_scale, int steps,
             CameraTurn& motion) {
-  using Vector5 = Eigen::Matrix<double, 5, 1>;
   double scale = first_scale;
   for (int step = 0; step < steps; ++step, scale = std::max(last_scale, scale * 0.7)) {
     const Eigen::Vector3d t = motion.direction;
     const Eigen::Vector3d u = t.unitOrthogonal(), v = t.cross(u);
     const Eigen::Matrix3d essential = hat(t) * motion.rotation;
-    Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+    Matrix5 normal = Matrix5::Zero();
     Vector5 right = Vector5::Zero();
     for (const BearingPair& pair : pairs) {
-      const Eigen::Vector3d q = motion.rotation * pair.now;
-      const Eigen::Vector3d line = t.cross(q), other = essential.transpose() * pair.then;
-      const double slope = std::sqrt(line.head<2>().squaredNorm() + other.head<2>().squaredNorm()) + 1e-12;
-      const double d = pair.then.dot(line) / slope;
+      const auto [jacobian, d] = sampson_jacobian(pair, motion.rotation, essential, t, u, v);
       const double w = pair.weight * geman_mcclure_weight(d * d, scale);
-      Vector5 jacobian;
-      const Eigen::Vector3d normal_of_plane = q.cross(pair.then);
-      jacobian << q.cross(pair.then.cross(t)), u.dot(normal_of_plane), v.dot(normal_of_plane);
-      jacobian /= slope;
       normal.noalias() += w * jacobian * jacobian.transpose();
       right.noalias() -= w * d * jacobian;
     }
@@ -64,6 +78,24 @@ void refine(std::span<const BearingPair> pairs, double first_scale, double last_
     motion.rotation = so3_exp(change.head<3>()) * motion.rotation;
     motion.direction = (t + change(3) * u + change(4) * v).normalized();
   }
+}
+
+/// The covariance of the rotation, the direction being unknown as well.
+Eigen::Matrix3d covariance_of_rotation(std::span<const BearingPair> pairs, const CameraTurn& motion,
+                                       double sigma) {
+  const Eigen::Vector3d t = motion.direction;
+  const Eigen::Vector3d u = t.unitOrthogonal(), v = t.cross(u);
+  const Eigen::Matrix3d essential = hat(t) * motion.rotation;
+  Matrix5 normal = 1e-6 * Matrix5::Identity();
+  double weights = 0.0;
+  for (const BearingPair& pair : pairs) {
+    const auto [jacobian, d] = sampson_jacobian(pair, motion.rotation, essential, t, u, v);
+    normal.noalias() +=
+        pair.weight * geman_mcclure_weight(d * d, 2.0 * sigma) * jacobian * jacobian.transpose();
+    weights += pair.weight;
+  }
+  normal *= static_cast<double>(pairs.size()) / (weights * sigma * sigma);
+  return normal.inverse().topLeftCorner<3, 3>();
 }
 
 /// Directions through two pairs each: a pair's own plane holds the direction, so two planes meet in it.
@@ -174,6 +206,21 @@ Eigen::Vector2d unexplained(const CameraTurn& motion, const BearingPair& pair, d
   return beside * across - behind * along;
 }
 
+double nearness(const CameraTurn& motion, const BearingPair& pair, double& sigma) {
+  const Eigen::Vector3d turned = motion.rotation * pair.now;
+  const double x = turned.x() / turned.z(), y = turned.y() / turned.z();
+  const Eigen::Vector2d line = motion.direction.head<2>() - Eigen::Vector2d(x, y) * motion.direction.z();
+  const double length = line.norm();
+  sigma = 0.0;
+  if (length < 1e-12) return 0.0;
+  const Eigen::Vector2d along = line / length;
+  Eigen::Matrix<double, 2, 3> jacobian;
+  jacobian << -x * y, 1.0 + x * x, -y, -(1.0 + y * y), x * y, x;
+  const Eigen::RowVector3d by_rotation = along.transpose() * jacobian;
+  sigma = std::sqrt((by_rotation * motion.rotation_covariance).dot(by_rotation));
+  return parallax(motion, pair).dot(along);
+}
+
 CameraTurn estimate_camera_turn(std::span<const BearingPair> pairs, const CameraTurnOptions& options,
                                 const CameraTurn* hint) {
   CameraTurn best;
@@ -206,6 +253,7 @@ CameraTurn estimate_camera_turn(std::span<const BearingPair> pairs, const Camera
       if (cost < least) least = cost, best = motion;
     }
     orient(pairs, options.sigma, best);
+    best.rotation_covariance = covariance_of_rotation(pairs, best, options.sigma);
   }
   double all = 0.0, agree = 0.0;
   for (const BearingPair& pair : pairs) {

@@ -18,7 +18,8 @@ struct CameraTurn {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< of length 1; of no meaning when turns_only
   bool turns_only = false;  ///< rotation alone explains what stands still: there is no parallax
-  double explained = 0.0;   ///< weighted share of the pairs within a few sigma of the motion, 0 to 1
+  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();  ///< rad^2, about the axes of `then`
+  double explained = 0.0;  ///< weighted share of the pairs within a few sigma of the motion, 0 to 1
 };
 
 struct CameraTurnOptions {
@@ -44,6 +45,11 @@ struct CameraTurnOptions {
 /// more than `tolerance`.
 [[nodiscard]] Eigen::Vector2d unexplained(const CameraTurn& motion, const BearingPair& pair,
                                           double tolerance);
+
+/// Parallax along the epipolar line, in units of the focal length: positive before the camera, zero at
+/// infinity.
+/// @param sigma set to what the rotation's uncertainty makes of it, one standard deviation
+[[nodiscard]] double nearness(const CameraTurn& motion, const BearingPair& pair, double& sigma);
 
 /// Signed distance off the epipolar line, to first order (Sampson), in units of the focal length.
 [[nodiscard]] double sampson_distance(const CameraTurn& motion, const BearingPair& pair);
