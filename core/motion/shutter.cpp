@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace stillpoint {
 
@@ -25,14 +26,25 @@ Eigen::Vector3d TurnRates::at(int back) const {
   return a.rate + share * (b.rate - a.rate);
 }
 
+double TurnRates::sigma() const {
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  int changes = 0;
+  for (const Turn& turn : turns_) {
+    if (changes > 0 || turns_.size() == 1) sum += (turn.rate - before).squaredNorm();
+    before = turn.rate;
+    ++changes;
+  }
+  return changes == 0 ? 0.0 : std::sqrt(sum / 3.0 / std::max(1, changes - 1));
+}
+
 void undo_shutter(const Camera& camera, const Eigen::Vector3d& rate, const std::vector<cv::Point2f>& rows,
                   std::vector<cv::Point2f>& straight) {
   if (camera.readout_s == 0.0 || rate.isZero()) return;
   for (std::size_t i = 0; i < straight.size(); ++i) {
-    const double after_middle =
-        ((static_cast<double>(rows[i].y) + 0.5) / camera.height - 0.5) * camera.readout_s;
     const Eigen::Vector3d seen = camera.back_project({straight[i].x, straight[i].y}, 1.0);
-    const Eigen::Vector2d at_middle = camera.project(seen - after_middle * rate.cross(seen));
+    const Eigen::Vector2d at_middle =
+        camera.project(seen - after_middle(camera, rows[i].y) * rate.cross(seen));
     straight[i] = {static_cast<float>(at_middle.x()), static_cast<float>(at_middle.y())};
   }
 }

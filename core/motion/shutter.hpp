@@ -22,6 +22,10 @@ class TurnRates {
   /// evenly, and beyond the first and the last as it did beside them.
   [[nodiscard]] Eigen::Vector3d at(int back) const;
 
+  /// How far `at(0)`, which no later turn confirms yet, may be off, rad / s about each axis: as far as the
+  /// rate has changed from frame to frame.
+  [[nodiscard]] double sigma() const;
+
  private:
   struct Turn {
     Eigen::Vector3d rate;  ///< rad / s, the mean of the time between two frames
@@ -29,6 +33,11 @@ class TurnRates {
   };
   std::vector<Turn> turns_;  ///< newest last
 };
+
+/// When each row is taken, s after the middle one. @param row px of `camera`'s image
+[[nodiscard]] inline double after_middle(const Camera& camera, float row) {
+  return ((static_cast<double>(row) + 0.5) / camera.height - 0.5) * camera.readout_s;
+}
 
 /// Carries points to where a frame taken all at once, at its middle row, would show them, as if the camera
 /// only turned: that is most of it, and depth is not known.
