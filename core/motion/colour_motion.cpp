@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
@@ -29,7 +28,7 @@ constexpr int kAbout = 10;         // px, an eighth of a frame's height or so: w
 constexpr double kSure = 3.0;      // standard deviations beyond which places lie behind infinity
 constexpr double kPlainly = 4.0;   // so many times more must lie before the camera than behind infinity
 constexpr double kRestless = 1.5;  // the rate's own change, measured on few frames, is taken so much larger
-constexpr double kMostSay = 2.0;   // evidence of one frame
+constexpr double kMostSay = 1.0;   // evidence of one frame
 constexpr float kLeastNoise = 0.1F, kMostNoise = 0.4F;
 
 Eigen::Vector3d bearing(const cv::Point2f& pixel, const Camera& camera) {
@@ -218,11 +217,10 @@ void ColourMotionDetector::judge(ColourReference& reference) {
                                          tracks[static_cast<std::size_t>(reference.points[k])].gradients));
 }
 
-/// What stands still in one comparison may move in another, so the one that speaks most for motion counts.
 void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& references) {
   std::vector<PointTrack>& tracks = tracks_.all();
-  constexpr float kNothing = -std::numeric_limits<float>::max();
-  std::vector<float> heard(tracks.size(), kNothing);
+  std::vector<float> heard(tracks.size(), 0.0F), most(tracks.size(), -1.0F);
+  std::vector<int> times(tracks.size(), 0);
   for (const ColourReference& reference : references) {
     // Over less time than to the nearest reference, what moves may hardly have moved yet.
     const double still = -0.5 * std::min(1.0, static_cast<double>(reference.gap) / config_.near_reference);
@@ -230,13 +228,18 @@ void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& r
       const auto i = static_cast<std::size_t>(reference.points[k]);
       if (is_edge(tracks[i].gradients)) continue;
       const double say = config_.evidence_a_sigma * (reference.sigmas[k] - config_.sigmas);
-      heard[i] = std::max(heard[i], static_cast<float>(std::clamp(say, still, kMostSay)));
+      const auto said = static_cast<float>(std::clamp(say, still, kMostSay));
+      heard[i] += said;
+      most[i] = std::max(most[i], said);
+      ++times[i];
     }
   }
   const auto limit = static_cast<float>(config_.max_evidence);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (heard[i] == kNothing) continue;
-    tracks[i].evidence = std::clamp(static_cast<float>(config_.memory) * tracks[i].evidence + heard[i],
+    if (times[i] == 0) continue;
+    // What stands still in one comparison may move in another, but one alone may be wrong.
+    const float now = 0.5F * (heard[i] / static_cast<float>(times[i]) + most[i]);
+    tracks[i].evidence = std::clamp(static_cast<float>(config_.memory) * tracks[i].evidence + now,
                                     -static_cast<float>(config_.max_static_evidence), limit);
   }
 }
