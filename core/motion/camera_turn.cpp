@@ -86,7 +86,7 @@ double weight_of(std::span<const BearingPair> pairs) {
 
 /// What is known of the rate beforehand, in the units of the pairs' own say.
 double rate_stiffness(std::span<const BearingPair> pairs, const CameraTurnOptions& options) {
-  if (options.rate_sigma <= 0.0) return 1.0;  // no pair says anything of it, so it stays where it is
+  if (options.rate_sigma <= 0.0) return 1e6;  // held where it is, whatever the pairs say
   const double ratio = options.sigma / options.rate_sigma;
   return weight_of(pairs) / static_cast<double>(pairs.size()) * ratio * ratio;
 }
@@ -139,7 +139,7 @@ void refine(std::span<const BearingPair> pairs, double first_scale, double last_
     const Vector8 change = normal.ldlt().solve(right);
     if (!change.allFinite()) return;
     motion.rotation = so3_exp(change.head<3>()) * motion.rotation;
-    motion.rate += change.segment<3>(3);
+    if (options.rate_sigma > 0.0) motion.rate += change.segment<3>(3);
     motion.direction = (t + change(6) * u + change(7) * v).normalized();
   }
 }

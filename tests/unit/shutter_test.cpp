@@ -93,9 +93,10 @@ TEST(CameraTurn, FindsTheRateThatARollingShutterShows) {
   EXPECT_GT(motion.direction.dot(kWent.normalized()), 0.99);
   EXPECT_LT(rotation_angle(motion.rotation.transpose() * kTurned), 2e-3);
   EXPECT_NEAR(motion.rate.x(), kRate.x(), 0.05);
-  // Held to rest, the rate is taken for a motion that the camera has not made.
-  EXPECT_TRUE(estimate_camera_turn(pairs, {}).rate.isZero());
-  EXPECT_LT(estimate_camera_turn(pairs, {}).explained, motion.explained);
+  // Held to rest, it is taken for a motion that the camera has not made.
+  const CameraTurn held = estimate_camera_turn(pairs, {});
+  EXPECT_TRUE(held.rate.isZero());
+  EXPECT_LT(held.direction.dot(kWent.normalized()), 0.9);
 }
 
 TEST(CameraTurn, KnowsWhatLiesBehindInfinity) {
