@@ -16,9 +16,10 @@ namespace stillpoint {
 
 // What moves, judged from colour alone: points are followed over some tenths of a second, the camera's own
 // motion is found from where they go, and what no place in a still room explains is held to move. A point may
-// shift along its epipolar line however it likes, for that is what parallax does; beside the line only what
-// moves can go. Evidence stays with its point from frame to frame, is shared among neighbours that have moved
-// alike all along, and spreads to the image up to colour's edges.
+// shift along its epipolar line up to infinity, for that is what parallax does; beside the line, and beyond
+// infinity, only what moves can go. Rows that a rolling shutter took at other times are first carried to
+// where the middle one's time would show them. Evidence stays with its point from frame to frame, is shared
+// among neighbours that have moved alike all along, and spreads to the image up to colour's edges.
 
 /// Comparison of the current frame with one some frames back.
 struct ColourReference {
