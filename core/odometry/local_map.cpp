@@ -7,12 +7,15 @@
 namespace stillpoint {
 namespace {
 
-std::vector<std::pair<int, int>> by_weight(const std::map<int, int>& counts, int min_shared) {
+/// Keyframes by how many points they share, most first, then by id. @param counts by keyframe id
+std::vector<std::pair<int, int>> by_weight(const std::vector<int>& counts, int min_shared) {
   std::vector<std::pair<int, int>> order;
-  for (const auto& [keyframe, shared] : counts)
-    if (shared >= min_shared) order.emplace_back(keyframe, shared);
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  for (std::size_t keyframe = 0; keyframe < counts.size(); ++keyframe)
+    if (counts[keyframe] > 0 && counts[keyframe] >= min_shared)
+      order.emplace_back(static_cast<int>(keyframe), counts[keyframe]);
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second > b.second : a.first < b.first;
+  });
   return order;
 }
 
@@ -140,19 +143,19 @@ std::vector<int> LocalMap::point_ids() const {
 }
 
 std::vector<std::pair<int, int>> LocalMap::covisible(int keyframe, int min_shared) const {
-  std::map<int, int> shared;
+  std::vector<int> shared(static_cast<std::size_t>(next_keyframe_), 0);
   for (const int point : keyframes_.at(keyframe).points)
     if (point != kNone)
       for (const Observation& o : points_.at(point).observations)
-        if (o.keyframe != keyframe) ++shared[o.keyframe];
+        if (o.keyframe != keyframe) ++shared[static_cast<std::size_t>(o.keyframe)];
   return by_weight(shared, min_shared);
 }
 
 std::vector<std::pair<int, int>> LocalMap::observers(const std::vector<int>& points) const {
-  std::map<int, int> seen;
+  std::vector<int> seen(static_cast<std::size_t>(next_keyframe_), 0);
   for (const int point : points)
     if (const auto it = points_.find(point); it != points_.end())
-      for (const Observation& o : it->second.observations) ++seen[o.keyframe];
+      for (const Observation& o : it->second.observations) ++seen[static_cast<std::size_t>(o.keyframe)];
   return by_weight(seen, 1);
 }
 

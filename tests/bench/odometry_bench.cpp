@@ -54,7 +54,7 @@ BENCHMARK(OrbUnit)->Unit(benchmark::kMillisecond);
 void ExtractFeatures(benchmark::State& state) {
   FeatureConfig config;
   config.count = static_cast<int>(state.range(0));
-  const OrbExtractor extractor(config);
+  OrbExtractor extractor(config);
   for (auto _ : state) benchmark::DoNotOptimize(extractor.extract(Scene::get().last().gray));
 }
 BENCHMARK(ExtractFeatures)->Arg(500)->Arg(1000)->Arg(2000)->Unit(benchmark::kMillisecond);
