@@ -106,24 +106,27 @@ void LocalMap::retire_keyframe(int id) {
 
 void LocalMap::update_point(int id, double scale_factor, int levels) {
   MapPoint& point = points_.at(id);
-  std::vector<const Descriptor*> descriptors;
+  const std::size_t count = point.observations.size();
+  // Few points are seen by more keyframes than fit on the stack.
+  cv::AutoBuffer<const Descriptor*, 64> descriptors(count);
   point.viewing_direction.setZero();
-  for (const Observation& o : point.observations) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Observation& o = point.observations[i];
     const Keyframe& keyframe = keyframes_.at(o.keyframe);
-    descriptors.push_back(&keyframe.features->descriptors[static_cast<std::size_t>(o.feature)]);
+    descriptors[i] = &keyframe.features->descriptors[static_cast<std::size_t>(o.feature)];
     point.viewing_direction += (point.position - centre(keyframe.camera_from_world)).normalized();
   }
   point.viewing_direction.normalize();
 
   // The descriptor with the least median distance to the others speaks for the point.
   int best_median = std::numeric_limits<int>::max();
-  std::vector<int> distances;
-  for (const Descriptor* candidate : descriptors) {
-    distances.clear();
-    for (const Descriptor* other : descriptors) distances.push_back(descriptor_distance(*candidate, *other));
-    auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) best_median = *middle, point.descriptor = *candidate;
+  cv::AutoBuffer<int, 64> distances(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j)
+      distances[j] = descriptor_distance(*descriptors[i], *descriptors[j]);
+    int* const middle = distances.data() + (count - 1) / 2;
+    std::nth_element(distances.data(), middle, distances.data() + count);
+    if (*middle < best_median) best_median = *middle, point.descriptor = *descriptors[i];
   }
 
   const Observation& latest = point.observations.back();

@@ -139,6 +139,7 @@ std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& candidates, in
     std::size_t cell;
   };
   std::vector<Last> last;
+  last.reserve(count);
   for (std::size_t c = 0; c < count; ++c)
     if (size_of(c) > rounds) {
       const int index = cells.index[static_cast<std::size_t>(cells.start[c] + rounds)];
