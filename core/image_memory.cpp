@@ -103,4 +103,8 @@ void keep_image_memory() {
 
 ImageMemory image_memory() { return blocks().counts(); }
 
+void* take_memory(std::size_t bytes) { return blocks().take(bytes); }
+
+void give_memory(void* block, std::size_t bytes) { blocks().give(block, bytes); }
+
 }  // namespace stillpoint

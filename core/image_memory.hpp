@@ -20,4 +20,23 @@ void keep_image_memory();
 
 [[nodiscard]] ImageMemory image_memory();
 
+/// The same for tables: what take_memory() gave, 64-byte aligned, goes back with the size it was asked for.
+[[nodiscard]] void* take_memory(std::size_t bytes);
+void give_memory(void* block, std::size_t bytes);
+
+/// Lets a vector live in such memory: for large ones of one size that are made for every frame.
+template <typename T>
+struct KeptMemory {
+  using value_type = T;
+
+  KeptMemory() = default;
+  template <typename U>
+  KeptMemory(const KeptMemory<U>&) {}  // NOLINT(google-explicit-constructor): as standard allocators do
+
+  [[nodiscard]] T* allocate(std::size_t count) { return static_cast<T*>(take_memory(count * sizeof(T))); }
+  void deallocate(T* block, std::size_t count) { give_memory(block, count * sizeof(T)); }
+
+  bool operator==(const KeptMemory&) const { return true; }
+};
+
 }  // namespace stillpoint

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image_memory.hpp"
 #include "core/motion/carrier.hpp"
 #include "core/motion/segments.hpp"
 
@@ -40,11 +41,15 @@ struct Measured {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
 };
 
+// Made anew several times a frame.
+using SumsOfPatches = std::vector<Sums, KeptMemory<Sums>>;
+using MeasuredPatches = std::vector<Measured, KeptMemory<Measured>>;
+
 /// Sums over the pixels of each patch that lie within their surface here and in the reference. Across an
 /// outline the gradient is of two things that parallax parts.
-std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
-                         const cv::Mat& labels, std::size_t patches) {
-  std::vector<Sums> sums(patches);
+SumsOfPatches gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
+                     const cv::Mat& labels, std::size_t patches) {
+  SumsOfPatches sums(patches);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* within = current.within_surface.ptr<uchar>(y);
@@ -83,8 +88,8 @@ Sums centred(Sums s) {
   return s;
 }
 
-std::vector<Measured> measure(const RgbdView& current, const std::vector<Segment>& segments,
-                              const std::vector<Sums>& sums, const Pose& reference_from_current) {
+MeasuredPatches measure(const RgbdView& current, const std::vector<Segment>& segments,
+                        const SumsOfPatches& sums, const Pose& reference_from_current) {
   std::vector<double> spreads;
   for (const Sums& s : sums)
     if (s.n >= kMinPixels) spreads.push_back(std::max(0.0, centred(s).bb / s.n));
@@ -94,7 +99,7 @@ std::vector<Measured> measure(const RgbdView& current, const std::vector<Segment
     std::nth_element(spreads.begin(), low, spreads.end());
     noise = std::max(noise, *low);
   }
-  std::vector<Measured> result(sums.size());
+  MeasuredPatches result(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i].n < kMinPixels) continue;
     const Sums s = centred(sums[i]);
@@ -149,7 +154,7 @@ struct TwistTerm {
   Vector6d g;
 };
 
-std::vector<TwistTerm> twist_terms(const Camera& camera, const std::vector<Measured>& measured,
+std::vector<TwistTerm> twist_terms(const Camera& camera, const MeasuredPatches& measured,
                                    const std::vector<double>& votes) {
   std::vector<TwistTerm> terms;
   terms.reserve(measured.size());
@@ -202,7 +207,7 @@ double middle_of(std::vector<double>& values) {
   return *middle;
 }
 
-Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::Vector3d>& residuals,
+Slack slack_of(const MeasuredPatches& measured, const std::vector<Eigen::Vector3d>& residuals,
                const std::vector<double>& votes) {
   constexpr double kMedianOfTwo = 1.386, kMedianOfOne = 0.455;  // of chi-square variables
   std::vector<double> shifts, steps;
@@ -236,7 +241,7 @@ double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& sla
   return by_shift + by_step;
 }
 
-void judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
+void judge(const Camera& camera, const MeasuredPatches& measured, const Vector6d& twist,
            const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
   std::vector<Eigen::Vector3d> residuals(measured.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < measured.size(); ++i)
@@ -268,7 +273,7 @@ PatchMotions measure_patches(const RgbdView& current, const ReferenceView& refer
               y = std::clamp(cvRound(segments[i].centre.y), 0, prior.rows - 1);
     if (prior.at<float>(y, x) > config.moving_log_odds) votes[i] = 0.05;
   }
-  std::vector<Measured> measured;
+  MeasuredPatches measured;
   for (int round = 0; round < kRounds; ++round) {
     Carrier carry(current.camera, result.reference_from_current);
     measured = measure(current, segments, gather(current, *reference.view, carry, labels, segments.size()),
