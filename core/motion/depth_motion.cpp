@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/depth_evidence.hpp"
@@ -199,12 +200,28 @@ void remember_judgement(DepthMotionTrace& trace, const DepthMotionConfig& config
   }
 }
 
+/// What one reference says, told by the patches' labels and what is remembered.
+ReferenceEvidence evidence_of_reference(const RgbdView& current, ReferenceView reference,
+                                        const DepthMotionTrace& trace, const DepthMotionConfig& config) {
+  const Stopwatch watch;
+  PatchMotions measured;
+  if (reference.old) {
+    measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+    reference.reference_from_current = measured.reference_from_current;
+  }
+  ReferenceEvidence evidence = compare_with_reference(current, reference, trace.prior, config);
+  evidence.patches = std::move(measured.patches);
+  evidence.reference = reference;
+  evidence.ms = watch.milliseconds();
+  return evidence;
+}
+
 }  // namespace
 
 DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
                                      const cv::Mat& full_depth, const std::vector<ReferenceView>& references,
                                      const MotionMemory* memory, const Pose& previous_from_current,
-                                     const DepthMotionConfig& config) {
+                                     const DepthMotionConfig& config, int threads) {
   DepthMotionTrace trace;
   trace.labels = std::move(patches.labels);
   trace.segments = std::move(patches.segments);
@@ -212,19 +229,19 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
   trace.ms.memory = watch.lap();
+  // References know nothing of each other: all but the last are compared with beside it.
+  std::vector<std::future<ReferenceEvidence>> compared;
+  for (std::size_t i = 0; i < references.size(); ++i)
+    compared.push_back(
+        std::async(threads > 1 && i + 1 < references.size() ? std::launch::async : std::launch::deferred,
+                   [&, i] { return evidence_of_reference(current, references[i], trace, config); }));
+  if (!compared.empty()) compared.back().wait();
   cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  for (ReferenceView reference : references) {
-    PatchMotions measured;
-    if (reference.old) {
-      measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
-      reference.reference_from_current = measured.reference_from_current;
-    }
-    trace.references.push_back(compare_with_reference(current, reference, trace.prior, config));
-    trace.references.back().patches = std::move(measured.patches);
-    trace.references.back().reference = reference;
+  for (std::future<ReferenceEvidence>& one : compared) {
+    trace.references.push_back(one.get());
     add_pixels(trace.references.back(), trace.labels, evidence);
-    trace.references.back().ms = watch.lap();
   }
+  (void)watch.lap();
   trace.slow = evidence_of_patches(trace, config);
   evidence += trace.slow;
   trace.log_odds = with_memory(trace.prior, evidence, config);
