@@ -6,6 +6,7 @@
 #include <future>
 #include <opencv2/imgproc.hpp>
 
+#include "core/image_memory.hpp"
 #include "core/motion/depth_evidence.hpp"
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/segments.hpp"
@@ -164,7 +165,7 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   const cv::Mat edge = low != high;
   cv::resize(small_mask, mask, full_depth.size(), 0, 0, cv::INTER_NEAREST);
   const int f = view.factor;
-  std::vector<cv::Point> unmeasured, inside;
+  std::vector<cv::Point, KeptMemory<cv::Point>> unmeasured, inside;
   for (int sy = 0; sy < edge.rows; ++sy)
     for (int sx = 0; sx < edge.cols; ++sx) {
       if (edge.ptr<uchar>(sy)[sx] == 0) continue;

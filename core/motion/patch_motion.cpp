@@ -41,15 +41,11 @@ struct Measured {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
 };
 
-// Made anew several times a frame.
-using SumsOfPatches = std::vector<Sums, KeptMemory<Sums>>;
-using MeasuredPatches = std::vector<Measured, KeptMemory<Measured>>;
-
 /// Sums over the pixels of each patch that lie within their surface here and in the reference. Across an
 /// outline the gradient is of two things that parallax parts.
-SumsOfPatches gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
-                     const cv::Mat& labels, std::size_t patches) {
-  SumsOfPatches sums(patches);
+std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
+                         const cv::Mat& labels, std::size_t patches) {
+  std::vector<Sums> sums(patches);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* within = current.within_surface.ptr<uchar>(y);
@@ -88,8 +84,8 @@ Sums centred(Sums s) {
   return s;
 }
 
-MeasuredPatches measure(const RgbdView& current, const std::vector<Segment>& segments,
-                        const SumsOfPatches& sums, const Pose& reference_from_current) {
+std::vector<Measured> measure(const RgbdView& current, const std::vector<Segment>& segments,
+                              const std::vector<Sums>& sums, const Pose& reference_from_current) {
   std::vector<double> spreads;
   for (const Sums& s : sums)
     if (s.n >= kMinPixels) spreads.push_back(std::max(0.0, centred(s).bb / s.n));
@@ -99,7 +95,7 @@ MeasuredPatches measure(const RgbdView& current, const std::vector<Segment>& seg
     std::nth_element(spreads.begin(), low, spreads.end());
     noise = std::max(noise, *low);
   }
-  MeasuredPatches result(sums.size());
+  std::vector<Measured> result(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i].n < kMinPixels) continue;
     const Sums s = centred(sums[i]);
@@ -153,10 +149,11 @@ struct TwistTerm {
   Matrix6d h;
   Vector6d g;
 };
+using TwistTerms = std::vector<TwistTerm, KeptMemory<TwistTerm>>;
 
-std::vector<TwistTerm> twist_terms(const Camera& camera, const MeasuredPatches& measured,
-                                   const std::vector<double>& votes) {
-  std::vector<TwistTerm> terms;
+TwistTerms twist_terms(const Camera& camera, const std::vector<Measured>& measured,
+                       const std::vector<double>& votes) {
+  TwistTerms terms;
   terms.reserve(measured.size());
   for (std::size_t i = 0; i < measured.size(); ++i) {
     const Measured& m = measured[i];
@@ -176,7 +173,7 @@ std::vector<TwistTerm> twist_terms(const Camera& camera, const MeasuredPatches& 
 /// The twist most patches share: iteratively reweighted least squares (Geman-McClure), from the pose given.
 /// Strict from the first round: all patches together may be met by a slide and a turn that belong to none of
 /// them.
-Vector6d common_twist(const std::vector<TwistTerm>& terms) {
+Vector6d common_twist(const TwistTerms& terms) {
   Vector6d twist = Vector6d::Zero();
   for (const double strictness : {12.0, 8.0, 6.0, 6.0, 6.0}) {
     Matrix6d h = Matrix6d::Zero();
@@ -207,7 +204,7 @@ double middle_of(std::vector<double>& values) {
   return *middle;
 }
 
-Slack slack_of(const MeasuredPatches& measured, const std::vector<Eigen::Vector3d>& residuals,
+Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::Vector3d>& residuals,
                const std::vector<double>& votes) {
   constexpr double kMedianOfTwo = 1.386, kMedianOfOne = 0.455;  // of chi-square variables
   std::vector<double> shifts, steps;
@@ -241,7 +238,7 @@ double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& sla
   return by_shift + by_step;
 }
 
-void judge(const Camera& camera, const MeasuredPatches& measured, const Vector6d& twist,
+void judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
            const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
   std::vector<Eigen::Vector3d> residuals(measured.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < measured.size(); ++i)
@@ -273,7 +270,7 @@ PatchMotions measure_patches(const RgbdView& current, const ReferenceView& refer
               y = std::clamp(cvRound(segments[i].centre.y), 0, prior.rows - 1);
     if (prior.at<float>(y, x) > config.moving_log_odds) votes[i] = 0.05;
   }
-  MeasuredPatches measured;
+  std::vector<Measured> measured;
   for (int round = 0; round < kRounds; ++round) {
     Carrier carry(current.camera, result.reference_from_current);
     measured = measure(current, segments, gather(current, *reference.view, carry, labels, segments.size()),

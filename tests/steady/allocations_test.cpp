@@ -2,6 +2,7 @@
 // The frames lie in memory, so that no reading and decoding is counted.
 #include "tests/support/allocations.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -56,7 +57,12 @@ PerFrame steady_state(const char* method, int threads) {
   return {a_frame(spent.large_calls), a_frame(spent.large_bytes), a_frame(spent.calls)};
 }
 
-class SteadyState : public testing::TestWithParam<const char*> {
+struct Bounds {
+  const char* method;
+  double large_calls, large_bytes, calls;  ///< a frame
+};
+
+class SteadyState : public testing::TestWithParam<Bounds> {
  protected:
   void SetUp() override {
     if (!counts_allocations()) GTEST_SKIP() << "a sanitizer stands where allocations are counted";
@@ -64,18 +70,25 @@ class SteadyState : public testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(SteadyState, AsksForNothingLarge) {
+TEST_P(SteadyState, AsksForLittle) {
+  const Bounds& bounds = GetParam();
   for (const int threads : {1, 2}) {
-    const PerFrame spent = steady_state(GetParam(), threads);
-    EXPECT_LE(spent.large_calls, 1.0) << "with " << threads << " threads";
-    EXPECT_LE(spent.large_bytes, 200e3) << "with " << threads << " threads";
+    const PerFrame spent = steady_state(bounds.method, threads);
+    const std::string with = fmt::format("with {} threads, {:.2f} of {:.0f} bytes are large, of {:.0f}",
+                                         threads, spent.large_calls, spent.large_bytes, spent.calls);
+    SCOPED_TRACE(with);
+    RecordProperty(fmt::format("threads_{}", threads), with);
+    EXPECT_LE(spent.large_calls, bounds.large_calls);
+    EXPECT_LE(spent.large_bytes, bounds.large_bytes);
+    EXPECT_LE(spent.calls, bounds.calls);
   }
 }
 
-TEST_P(SteadyState, AsksSeldom) { EXPECT_LE(steady_state(GetParam(), 1).calls, 2500.0); }
-
-INSTANTIATE_TEST_SUITE_P(Methods, SteadyState, testing::Values("none", "paper", "stillpoint"),
-                         [](const auto& info) { return std::string(info.param); });
+// A handful at most, of lists that grow; the paper's homography is refined by Ceres, which keeps no memory.
+INSTANTIATE_TEST_SUITE_P(Methods, SteadyState,
+                         testing::Values(Bounds{"none", 0.5, 50e3, 1500}, Bounds{"paper", 3.0, 250e3, 35000},
+                                         Bounds{"stillpoint", 0.5, 50e3, 2500}),
+                         [](const auto& method) { return std::string(method.param.method); });
 
 TEST(Allocations, AreCountedWhoeverAsks) {
   if (!counts_allocations()) GTEST_SKIP() << "a sanitizer stands where allocations are counted";
