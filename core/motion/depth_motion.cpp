@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <future>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/image_memory.hpp"
@@ -149,6 +150,24 @@ class Neighbourhood {
     return value;
   }
 
+  /// The same of a block's row, its unmeasured pixels 0; four at a time, as blocks mostly are wide.
+  void most_like(const float* z, int width, uchar* out) const {
+    int x = 0;
+    for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
+      const cv::v_float32x4 depth = cv::v_load(z + x);
+      cv::v_float32x4 best = cv::v_setall_f32(std::numeric_limits<float>::max()), value = cv::v_setzero_f32();
+      for (std::size_t i = 0; i < count_; ++i) {
+        const cv::v_float32x4 difference = cv::v_abs(cv::v_setall_f32(depth_[i]) - depth);
+        const cv::v_float32x4 nearer = difference < best;
+        best = cv::v_select(nearer, difference, best);
+        value = cv::v_select(nearer, cv::v_setall_f32(moving_[i]), value);
+      }
+      const int moving = cv::v_signmask((value > cv::v_setzero_f32()) & (depth > cv::v_setzero_f32()));
+      for (int k = 0; k < cv::v_float32x4::nlanes; ++k) out[x + k] = (moving >> k & 1) != 0 ? 255 : 0;
+    }
+    for (; x < width; ++x) out[x] = z[x] > 0 ? most_like(z[x]) : uchar{0};
+  }
+
  private:
   std::array<float, 9> depth_{};
   std::array<uchar, 9> moving_{};
@@ -170,12 +189,13 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
     for (int sx = 0; sx < edge.cols; ++sx) {
       if (edge.ptr<uchar>(sy)[sx] == 0) continue;
       const Neighbourhood about(small_mask, view.depth, sx, sy);
-      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
-        for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x) {
-          const float z = full_depth.ptr<float>(y)[x];
-          mask.ptr<uchar>(y)[x] = z > 0 ? about.most_like(z) : uchar{0};
-          if (z <= 0) unmeasured.emplace_back(x, y);
-        }
+      const int first = sx * f, end = std::min((sx + 1) * f, mask.cols);
+      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y) {
+        const auto* z = full_depth.ptr<float>(y);
+        about.most_like(z + first, end - first, mask.ptr<uchar>(y) + first);
+        for (int x = first; x < end; ++x)
+          if (z[x] <= 0) unmeasured.emplace_back(x, y);
+      }
     }
   for (const cv::Point& p : unmeasured)
     if (enclosed_by_motion(mask, full_depth, p.x, p.y, kReach)) inside.push_back(p);

@@ -53,6 +53,7 @@ FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, 
   kept.undistorted.reserve(count);
   kept.descriptors.reserve(count);
   kept.depth.reserve(count);
+  kept.trust.reserve(count);
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (!keep[i]) continue;
     kept.keypoints.push_back(all.keypoints[i]);
