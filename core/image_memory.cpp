@@ -11,6 +11,13 @@ namespace {
 constexpr std::size_t kSmallest = 4 << 10;   // bytes: below, the system is as fast
 constexpr std::size_t kMostKept = 64 << 20;  // bytes: some hundred images of a VGA camera
 
+// A sanitizer tells who touches memory that was let go of; handed on at once, it could not.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kKeeps = false;
+#else
+constexpr bool kKeeps = true;
+#endif
+
 /// Blocks by their size. Never destroyed: images that live as long as the program are let go of after main().
 class KeptBlocks {
  public:
@@ -30,7 +37,7 @@ class KeptBlocks {
   }
 
   void give(void* block, std::size_t size) {
-    if (size > kMostKept) return cv::fastFree(block);
+    if (!kKeeps || size > kMostKept) return cv::fastFree(block);
     std::unordered_map<std::size_t, std::vector<void*>> let_go;
     {
       const std::lock_guard lock(mutex_);
@@ -97,6 +104,7 @@ class KeepingAllocator : public cv::MatAllocator {
 }  // namespace
 
 void keep_image_memory() {
+  if (!kKeeps) return;
   static auto* const allocator = new KeepingAllocator;
   cv::Mat::setDefaultAllocator(allocator);
 }
