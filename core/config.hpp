@@ -118,6 +118,22 @@ struct TrackingConfig {
   bool operator==(const TrackingConfig&) const = default;
 };
 
+/// Sparse direct alignment where corners starve, in methods `stillpoint` and `oracle`: the paper's odometry,
+/// which `paper` and `none` keep to, has none.
+struct DirectConfig {
+  int below_inliers = 50;        ///< frames with fewer inliers than this are aligned directly too; 0 = never
+  int cell_px = 16;              ///< each cell of the image holds one patch at most
+  int coarsest_level = 4;        ///< pyramid level at which alignment begins
+  int finest_level = 1;          ///< … and at which it ends
+  int iterations = 10;           ///< most Gauss-Newton steps a level
+  int min_patches = 80;          ///< patches in view below which nothing is believed
+  double min_correlation = 0.6;  ///< least correlation of the patches' brightness with the frame's
+  double min_agreement = 0.5;    ///< least share of patches at whose place the depth expected was measured
+  int max_age = 10;              ///< frames back to what is aligned with, at most
+  double pixel_share = 0.02;     ///< independent measurements a patch's pixel counts for when poses are fused
+  bool operator==(const DirectConfig&) const = default;
+};
+
 /// The local map and its keyframes.
 struct MapConfig {
   double far_depth_m = 3.0;   ///< points are made from depth up to here, beyond only if few are near
@@ -163,6 +179,7 @@ struct Config {
   ColourMotionConfig colour_motion;
   FeatureConfig features;
   TrackingConfig tracking;
+  DirectConfig direct;
   MapConfig map;
   BundleConfig bundle;
   bool operator==(const Config&) const = default;

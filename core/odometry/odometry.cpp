@@ -62,6 +62,7 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
     Current current = last_ ? track_frame(frame, prepared, result) : initialise(frame, prepared, result);
     record.features = std::move(current.records);
     if (config_.run.method == "stillpoint") remember_view(frame, result);
+    if (aligns_directly()) remember_reference(frame, result);
   }
   record.map_points = static_cast<int>(map_.point_count());
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
@@ -132,6 +133,7 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
   if (config_.tracking.correct_rolling_shutter != 0)
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
+  current.mask = mask;
   std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
   current.records.resize(found.keypoints.size());
   for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -187,7 +189,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     first.camera_from_world = start;
     first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
-    if (estimate(first, record)) {
+    if (estimate(first, record) || begin_directly(frame, first, record)) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
       if (finds_movers_by_pose) detect_by_pose(frame, start, result);
@@ -252,13 +254,18 @@ bool Odometry::estimate(Current& current, FrameRecord& record) const {
 
 std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
   const bool was_lost = lost_frames_ > 0;
-  if (!estimate(current, record))
+  const int needed = inliers_needed();
+  PoseRefinement refined;
+  const bool begun = estimate(current, record);
+  if (begun) refined = track_local_map(current, record);
+  const bool starves = aligns_directly() && refined.inliers < config_.direct.below_inliers;
+  const bool directly = starves && refine_directly(frame, current, refined, record);
+  // That a blurred frame does not show a point's corner tells nothing of the point.
+  if (begun && !directly) count_sightings(current);
+  if (!begun && !directly)
     return fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
                        record.features_kept, config_.tracking.min_initial_matches);
-  const PoseRefinement refined = track_local_map(current, record);
-  count_sightings(current);
-  const int needed = inliers_needed();
-  if (refined.inliers < needed)
+  if (refined.inliers < needed && !directly)
     return fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed);
   record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
   record.estimated = true;
@@ -266,7 +273,12 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   velocity_ =
       was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
-  if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
+  starved_frames_ = refined.inliers < needed ? starved_frames_ + 1 : 0;
+  if (starved_frames_ > 0 && !is_starved_keyframe(frame, current)) {
+    remember_pose(current, record);
+    return {};
+  }
+  if (starved_frames_ > 0 || wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
   remember(current, record);
   return {};
 }
