@@ -234,7 +234,9 @@ std::vector<Parameter> parameters(Config& c) {
 
   DirectConfig& a = c.direct;
   number("direct.below_inliers", &a.below_inliers, 0, 1000, "matches",
-         "methods stillpoint and oracle align frames with fewer inliers directly too; 0 never");
+         "methods stillpoint and oracle align frames with fewer inliers directly too; 0 never any");
+  number("direct.below_share", &a.below_share, 0, 1, "",
+         "… and those with fewer than this share of what was usual lately");
   number("direct.cell_px", &a.cell_px, 8, 64, "px", "a cell of this side holds one patch");
   number("direct.coarsest_level", &a.coarsest_level, 0, 6, "", "pyramid level at which alignment begins");
   number("direct.finest_level", &a.finest_level, 0, 6, "", "pyramid level at which alignment ends");

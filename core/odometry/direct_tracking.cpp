@@ -28,6 +28,11 @@ bool Odometry::aligns_directly() const {
   return config_.direct.below_inliers > 0 && (method == "stillpoint" || method == "oracle");
 }
 
+bool Odometry::starves(int inliers) const {
+  return aligns_directly() && inliers < std::max<double>(config_.direct.below_inliers,
+                                                         config_.direct.below_share * usual_inliers_);
+}
+
 void Odometry::remember_reference(const Frame& frame, const FrameResult& result) {
   const FrameRecord& record = result.record;
   if (!record.estimated || !frame.has_depth()) return;
@@ -40,8 +45,7 @@ void Odometry::remember_reference(const Frame& frame, const FrameResult& result)
   reference.moving = small_mask(result.mask);
   reference.reference_keyframe = record.reference_keyframe;
   reference.camera_from_keyframe = record.camera_from_reference;
-  if (record.status == FrameStatus::initialised || record.inliers >= config_.direct.below_inliers)
-    sharp_reference_ = reference;
+  if (record.status == FrameStatus::initialised || !starves(record.inliers)) sharp_reference_ = reference;
   last_reference_ = std::move(reference);
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
-#include "core/motion/detect_motion.hpp"
 #include "core/motion/depth_motion.hpp"
+#include "core/motion/detect_motion.hpp"
 #include "core/odometry/orb_extractor.hpp"
 #include "core/sequence/frame.hpp"
 

@@ -12,6 +12,7 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kUsualFades = 0.98;      // a frame, of how many inliers are usual
 constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to track against
 
 }  // namespace
@@ -258,8 +259,8 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   PoseRefinement refined;
   const bool begun = estimate(current, record);
   if (begun) refined = track_local_map(current, record);
-  const bool starves = aligns_directly() && refined.inliers < config_.direct.below_inliers;
-  const bool directly = starves && refine_directly(frame, current, refined, record);
+  const bool starved = starves(refined.inliers);
+  const bool directly = starved && refine_directly(frame, current, refined, record);
   // That a blurred frame does not show a point's corner tells nothing of the point.
   if (begun && !directly) count_sightings(current);
   if (!begun && !directly)
@@ -273,13 +274,16 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   velocity_ =
       was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
-  starved_frames_ = refined.inliers < needed ? starved_frames_ + 1 : 0;
-  if (starved_frames_ > 0 && !is_starved_keyframe(frame, current)) {
+  starved_frames_ = directly ? starved_frames_ + 1 : 0;
+  if (!starved) usual_inliers_ = std::max(kUsualFades * usual_inliers_, 1.0 * refined.inliers);
+  const bool keyframe =
+      directly ? is_starved_keyframe(frame, current) : wants_keyframe(frame, current, record);
+  if (keyframe) add_keyframe(frame, current, record);
+  // Points that so few corners show are looked for again from the frame that showed them well.
+  if (refined.inliers < needed && !keyframe)
     remember_pose(current, record);
-    return {};
-  }
-  if (starved_frames_ > 0 || wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
-  remember(current, record);
+  else
+    remember(current, record);
   return {};
 }
 

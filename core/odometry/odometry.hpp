@@ -141,6 +141,7 @@ class Odometry {
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
   void count_sightings(const Current& current);
   [[nodiscard]] bool aligns_directly() const;
+  [[nodiscard]] bool starves(int inliers) const;
   [[nodiscard]] std::optional<DirectAlignment> align(const Frame& frame, const Current& current,
                                                      FrameRecord& record) const;
   [[nodiscard]] bool begin_directly(const Frame& frame, Current& current, FrameRecord& record) const;
@@ -189,7 +190,8 @@ class Odometry {
   std::optional<ColourMotionDetector> colour_;      // while frames have no depth
   std::optional<DirectReference> last_reference_;   // the newest frame with a pose and depth
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
-  int starved_frames_ = 0;                          // in a row, whose pose is by direct alignment alone
+  double usual_inliers_ = 0.0;                      // what frames had lately that did not starve
+  int starved_frames_ = 0;                          // in a row
 };
 
 }  // namespace stillpoint
