@@ -131,7 +131,7 @@ struct DirectConfig {
   double min_correlation = 0.6;  ///< least correlation of the patches' brightness with the frame's
   double min_agreement = 0.5;    ///< least share of patches at whose place the depth expected was measured
   int max_age = 10;              ///< frames back to what is aligned with, at most
-  double pixel_share = 0.02;     ///< independent measurements a patch's pixel counts for when poses are fused
+  double pixel_share = 0.3;      ///< independent measurements a patch's pixel counts for when poses are fused
   bool operator==(const DirectConfig&) const = default;
 };
 

@@ -114,17 +114,18 @@ DirectAlignment align_directly(const DirectReference& reference, const DirectTar
   };
 
   DirectLevel coarsest = level_of(direct.coarsest_level);
-  std::vector<Pose> tried = starts;
-  tried.push_back(best_turn(coarsest, camera, starts.back()));
   DirectState state;
   double best = -2.0;
-  for (const Pose& start : tried) {
+  const auto begin_from = [&](const Pose& start) {
     DirectState candidate{start};
     const auto comparison = descend(coarsest, camera, direct.iterations, candidate, record.iterations);
-    if (comparison.in_view == 0 || comparison.correlation <= best) continue;
+    if (comparison.in_view == 0 || comparison.correlation <= best) return;
     best = comparison.correlation;
     state = candidate;
-  }
+  };
+  for (const Pose& start : starts) begin_from(start);
+  constexpr double kPlain = 0.9;  // correlation beyond which there is no better place to look for
+  if (best < kPlain) begin_from(best_turn(coarsest, camera, starts.back()));
 
   DirectLevel finest = level_of(direct.finest_level);
   record.rms_before = finest.compare({starts.front(), state.gain, state.bias}).rms;

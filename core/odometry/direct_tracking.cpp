@@ -1,5 +1,6 @@
 // Tracking without corners: the part of Odometry that aligns a frame directly where matches starve.
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "core/odometry/odometry.hpp"
@@ -8,6 +9,7 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kUsualFades = 0.98;  // a frame, of how many matches are usual
 constexpr int kMinFusedInliers = 10;  // fewer matches have no say beside the patches
 
 /// What two estimates of a pose that do not know of each other say together, each by its information: one
@@ -84,8 +86,30 @@ std::optional<DirectAlignment> Odometry::align(const Frame& frame, const Current
   return result;
 }
 
+bool Odometry::begins_starved(const Current& current) {
+  const auto found = static_cast<double>(
+      std::count_if(current.points.begin(), current.points.end(), [](int point) { return point != kNone; }));
+  const bool starved = found < config_.direct.below_share * usual_first_inliers_;
+  if (!starved) usual_first_inliers_ = std::max(kUsualFades * usual_first_inliers_, found);
+  return starved;
+}
+
+double Odometry::noise_of_corners(const Current& current, const Pose& camera_from_world) const {
+  double squares = 0.0;
+  int count = 0;
+  for (std::size_t f = 0; f < current.points.size(); ++f) {
+    if (current.points[f] == kNone) continue;
+    const Eigen::Vector3d p = camera_from_world * map_.point(current.points[f]).position;
+    if (p.z() < 0.05) continue;
+    const cv::Point2f pixel = current.features->undistorted[f];
+    const double sigma = scales_[static_cast<std::size_t>(current.features->keypoints[f].octave)];
+    squares += (camera_.project(p) - Eigen::Vector2d(pixel.x, pixel.y)).squaredNorm() / (2.0 * sigma * sigma);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0.0;
+}
+
 bool Odometry::begin_directly(const Frame& frame, Current& current, FrameRecord& record) const {
-  if (!aligns_directly()) return false;
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
   current.camera_from_world = aligned->target_from_reference;
@@ -119,8 +143,12 @@ bool Odometry::refine_directly(const Frame& frame, Current& current, PoseRefinem
     refined = search_again(current, directly, record);
   }
   if (refined.inliers >= kMinFusedInliers) {
-    current.camera_from_world = fused(refined.camera_from_world, refined.information, directly,
-                                      aligned->information, record.direct.share);
+    // Blur smears corners to one side or the other, all of them alike: they agree with each other, and not
+    // with the patches. As far off as they lie under the patches' pose, so little they weigh.
+    const double noise = std::max(1.0, noise_of_corners(current, directly));
+    current.camera_from_world =
+        fused(refined.camera_from_world, Matrix6d(refined.information / (noise * noise)), directly,
+              aligned->information, record.direct.share);
   } else {
     current.camera_from_world = directly;
     record.direct.share = 1.0;

@@ -190,7 +190,10 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     first.camera_from_world = start;
     first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
-    if (estimate(first, record) || begin_directly(frame, first, record)) {
+    bool begun = estimate(first, record);
+    if (aligns_directly() && (begins_starved(first) || !begun))
+      begun = begin_directly(frame, first, record) || begun;
+    if (begun) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
       if (finds_movers_by_pose) detect_by_pose(frame, start, result);

@@ -144,6 +144,8 @@ class Odometry {
   [[nodiscard]] bool starves(int inliers) const;
   [[nodiscard]] std::optional<DirectAlignment> align(const Frame& frame, const Current& current,
                                                      FrameRecord& record) const;
+  [[nodiscard]] bool begins_starved(const Current& current);
+  [[nodiscard]] double noise_of_corners(const Current& current, const Pose& camera_from_world) const;
   [[nodiscard]] bool begin_directly(const Frame& frame, Current& current, FrameRecord& record) const;
   [[nodiscard]] PoseRefinement search_again(Current& current, const Pose& camera_from_world,
                                             FrameRecord& record) const;
@@ -190,6 +192,7 @@ class Odometry {
   std::optional<ColourMotionDetector> colour_;      // while frames have no depth
   std::optional<DirectReference> last_reference_;   // the newest frame with a pose and depth
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
+  double usual_first_inliers_ = 0.0;                // of first poses, lately
   double usual_inliers_ = 0.0;                      // what frames had lately that did not starve
   int starved_frames_ = 0;                          // in a row
 };
