@@ -90,8 +90,12 @@ bool Odometry::begins_starved(const Current& current) {
   const auto found = static_cast<double>(
       std::count_if(current.points.begin(), current.points.end(), [](int point) { return point != kNone; }));
   const bool starved = found < config_.direct.below_share * usual_first_inliers_;
+  // Before what moves has had time to be found, patches on it would take the camera along: consensus does
+  // not.
+  const bool knows_movers = config_.run.method != "stillpoint" ||
+                            static_cast<int>(past_views_.size()) > config_.depth_motion.far_reference;
   if (!starved) usual_first_inliers_ = std::max(kUsualFades * usual_first_inliers_, found);
-  return starved;
+  return starved && knows_movers;
 }
 
 double Odometry::noise_of_corners(const Current& current, const Pose& camera_from_world) const {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/odometry/mapping.hpp"
 #include "core/odometry/rolling_shutter.hpp"
@@ -221,24 +220,6 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
   }
   if (!why_lost.empty()) mark_lost(record, FrameStatus::lost, why_lost);
   return current;
-}
-
-bool Odometry::leaves_too_little(const Current& current) const {
-  constexpr int kColumns = 8, kRows = 6;
-  constexpr int kLeastParts = 5;  // of those 48 that features must lie in, or they tell no room from a mover
-  if (current.record_of.size() == current.records.size()) return false;
-  std::array<bool, kColumns * kRows> before{}, after{};
-  for (const FeatureRecord& feature : current.records) {
-    const int column =
-        std::clamp(static_cast<int>(feature.pixel.x) * kColumns / camera_.width, 0, kColumns - 1);
-    const int row = std::clamp(static_cast<int>(feature.pixel.y) * kRows / camera_.height, 0, kRows - 1);
-    const auto part = static_cast<std::size_t>(row * kColumns + column);
-    before[part] = true;
-    after[part] = after[part] || feature.fate != FeatureFate::removed;
-  }
-  const auto had = std::count(before.begin(), before.end(), true);
-  const auto has = std::count(after.begin(), after.end(), true);
-  return has < std::min<std::ptrdiff_t>(kLeastParts, had);
 }
 
 bool Odometry::is_taken_at_once(const Frame& frame) const {

@@ -89,7 +89,7 @@ const std::vector<Figure>& figures() {
       {{"epnp", truth, "the pose began with EPnP"},
        [](const Row& r) { return flag(r.record.pose_start == PoseStart::epnp); }},
       {{"direct", truth, "the pose has a share by direct alignment"},
-       [](const Row& r) { return flag(r.record.direct.believed); }},
+       [](const Row& r) { return flag(r.record.direct.share > 0.0); }},
       {{"direct_patches", plain, "patches that were aligned directly"},
        [](const Row& r) { return double(r.record.direct.patches); }},
       {{"rounds", plain, "rounds of motion detection"},

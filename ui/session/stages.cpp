@@ -81,7 +81,8 @@ void add_direct_stage(const FrameRecord& record, std::vector<StageInfo>& stages)
   add_figure(stage, "Share in the pose", 100.0 * direct.share, "%", 1);
   stage.note = !direct.believed      ? "It is not believed: the patches are too few, too unlike or elsewhere."
                : direct.share >= 1.0 ? "The pose is by patches alone."
-                                     : "The pose is by corners and patches, each by its information.";
+               : direct.share > 0.0  ? "The pose is by corners and patches, each by its information."
+                                     : "The first pose, under which motion is judged, is by patches.";
 }
 
 void add_map_stages(const FrameRecord& record, std::vector<StageInfo>& stages) {
