@@ -89,7 +89,8 @@ std::optional<DirectAlignment> Odometry::align(const Frame& frame, const Current
 bool Odometry::begins_starved(const Current& current) {
   const auto found = static_cast<double>(
       std::count_if(current.points.begin(), current.points.end(), [](int point) { return point != kNone; }));
-  const bool starved = found < config_.direct.below_share * usual_first_inliers_;
+  constexpr double kHardly = 0.6;  // the first pose is but a first one: it may do with fewer
+  const bool starved = found < kHardly * config_.direct.below_share * usual_first_inliers_;
   // Before what moves has had time to be found, patches on it would take the camera along: consensus does
   // not.
   const bool knows_movers = config_.run.method != "stillpoint" ||
