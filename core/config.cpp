@@ -229,6 +229,10 @@ std::vector<Parameter> parameters(Config& c) {
          "1 carries depth taken at another time than colour to colour's time");
   number("tracking.seek_consensus", &t.seek_consensus, 0, 1, "",
          "1 takes method stillpoint's first pose from where most samples agree");
+  number("tracking.soft_weights", &t.soft_weights, 0, 1, "",
+         "1 weighs each feature by how likely it stands still, where method stillpoint left it in");
+  number("tracking.half_trust_log_odds", &t.half_trust_log_odds, -10, 10, "",
+         "log-odds of moving at which a feature counts half");
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
          "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 

@@ -113,6 +113,8 @@ struct TrackingConfig {
       1;                      ///< 1: features are carried to where their frame's middle row would show them
   int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
   int seek_consensus = 1;     ///< 1: method `stillpoint` takes its first pose from where most samples agree
+  int soft_weights = 1;       ///< 1: method `stillpoint` weighs features by how likely they stand still
+  double half_trust_log_odds = -2.0;  ///< log-odds of moving at which a feature counts half
   double depth_weight =
       1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
   bool operator==(const TrackingConfig&) const = default;

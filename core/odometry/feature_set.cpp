@@ -53,6 +53,7 @@ FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, 
     kept.undistorted.push_back(all.undistorted[i]);
     kept.descriptors.push_back(all.descriptors[i]);
     kept.depth.push_back(all.depth[i]);
+    kept.trust.push_back(all.trust[i]);
   }
   kept.build_index(width, height);
   return kept;

@@ -26,6 +26,7 @@ struct FeatureSet {
   std::vector<cv::Point2f> undistorted;  ///< the same pixels as a pinhole would see them, px
   std::vector<Descriptor> descriptors;
   std::vector<float> depth;  ///< m; 0 where the frame has no measurement
+  std::vector<float> trust;  ///< 0 to 1: how likely each stands still; its weight in every pose
 
   [[nodiscard]] int size() const { return static_cast<int>(keypoints.size()); }
 

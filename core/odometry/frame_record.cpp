@@ -1,5 +1,7 @@
 #include "core/odometry/frame_record.hpp"
 
+#include <algorithm>
+
 namespace stillpoint {
 
 std::string_view to_string(FrameStatus status) {
@@ -16,6 +18,12 @@ std::string_view to_string(FrameStatus status) {
       return "unreadable";
   }
   return "";
+}
+
+int weighing_little(const std::vector<FeatureRecord>& features) {
+  return static_cast<int>(std::count_if(features.begin(), features.end(), [](const FeatureRecord& f) {
+    return f.fate == FeatureFate::inlier && f.trust < 0.5F;
+  }));
 }
 
 std::string_view to_string(PoseStart start) {

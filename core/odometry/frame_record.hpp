@@ -38,7 +38,11 @@ struct FeatureRecord {
   int map_point = kNone;     ///< id; kNone when unmatched or removed
   std::uint8_t octave = 0;
   FeatureFate fate = FeatureFate::unmatched;
+  float trust = 1.0F;  ///< 0 to 1, of standing still: its weight in the pose
 };
+
+/// How many inliers count less than half in the pose.
+[[nodiscard]] int weighing_little(const std::vector<FeatureRecord>& features);
 
 /// How the pose in a record was first come by.
 enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp, direct };

@@ -6,6 +6,7 @@
 
 #include "core/odometry/mapping.hpp"
 #include "core/odometry/rolling_shutter.hpp"
+#include "core/odometry/trust.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -118,8 +119,8 @@ void Odometry::take_mask(const Frame& frame, PreparedFrame& prepared, const cv::
 }
 
 Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFrame& prepared,
-                                          const cv::Mat& mask, const Vector6d& velocity,
-                                          FrameRecord& record) const {
+                                          const cv::Mat& mask, const Vector6d& velocity, FrameRecord& record,
+                                          const cv::Mat& log_odds) const {
   const OrbFeatures& found = prepared.found;
   const std::vector<cv::Point2f>& pixels = prepared.pixels;
   Current current;
@@ -134,6 +135,8 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   current.mask = mask;
+  all.trust = trust_at(pixels, config_.tracking.soft_weights != 0 ? log_odds : cv::Mat(), frame.gray.size(),
+                       config_.tracking.half_trust_log_odds);
   std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
   current.records.resize(found.keypoints.size());
   for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -143,6 +146,7 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
     feature.pixel = keypoint.pt;
     feature.depth = all.depth[i];
     feature.octave = static_cast<std::uint8_t>(keypoint.octave);
+    feature.trust = all.trust[i];
     if (keep[i])
       current.record_of.push_back(static_cast<int>(i));
     else
@@ -198,7 +202,8 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
       if (finds_movers_by_pose) detect_by_pose(frame, start, result);
     }
   }
-  Current current = remove_moving(frame, prepared, result.mask, velocity, record);
+  Current current =
+      remove_moving(frame, prepared, result.mask, velocity, record, result.depth_motion.log_odds);
   current.camera_from_world = start;
   std::string why_lost;
   bool harms = finds_movers_by_pose && leaves_too_little(current);

@@ -118,7 +118,8 @@ class Odometry {
   [[nodiscard]] FrameResult run_frame(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask);
   void take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask, FrameResult& result);
   [[nodiscard]] Current remove_moving(const Frame& frame, const PreparedFrame& prepared, const cv::Mat& mask,
-                                      const Vector6d& velocity, FrameRecord& record) const;
+                                      const Vector6d& velocity, FrameRecord& record,
+                                      const cv::Mat& log_odds = {}) const;
   [[nodiscard]] Current track_frame(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
   void detect_in_colour(const Frame& frame, FrameResult& result);

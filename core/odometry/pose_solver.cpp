@@ -37,13 +37,16 @@ class PoseProblem {
       block.inverse_depth[k] = depth ? 1.0 / o.depth : 0.0;
       block.depth_weight[k] = depth ? depth_weight * kDepthBaseline * camera.fx / o.sigma_px : 0.0;
       block.bound[k] = depth ? kChi2PixelDepth : kChi2Pixel;
-      block.used[k] = 1.0;
+      block.trust[k] = block.used[k] = o.trust;
     }
   }
 
   /// Which observations the sums go over.
   void use(const std::vector<std::uint8_t>& inlier) {
-    for (std::size_t i = 0; i < count_; ++i) blocks_[i / kLanes].used[i % kLanes] = inlier[i];
+    for (std::size_t i = 0; i < count_; ++i) {
+      Block& block = blocks_[i / kLanes];
+      block.used[i % kLanes] = inlier[i] != 0 ? block.trust[i % kLanes] : 0.0;
+    }
   }
 
   /// Marks the observations whose χ² is within its bound; returns how many.
@@ -93,7 +96,7 @@ class PoseProblem {
     Lanes u{}, v{}, inverse_depth{};
     Lanes weight{};        // 1/σ, so that squared norms are χ²
     Lanes depth_weight{};  // of the third residual, depth as disparity; 0 without depth
-    Lanes bound{}, used{};
+    Lanes bound{}, trust{}, used{};
   };
   /// Residuals by weight, and where the points lie in the camera.
   struct Residual {

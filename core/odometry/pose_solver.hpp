@@ -16,6 +16,7 @@ struct PoseObservation {
   Eigen::Vector2d pixel;           ///< px, undistorted
   double depth = 0.0;              ///< m, measured; 0 = none
   double sigma_px = 1.0;           ///< standard deviation of the pixel: the scale of the feature's octave
+  double trust = 1.0;  ///< 0 to 1, of standing still: weighs its squares, not its bound as an outlier
 };
 
 /// Depth enters beside pixels as what a stereo rig of this baseline (m) would measure in px: b fx / z. It is

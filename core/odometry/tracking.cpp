@@ -23,7 +23,8 @@ std::vector<PoseObservation> Odometry::observations_of(const Current& current,
     observations.push_back({map_.point(match.point).position,
                             {pixel.x, pixel.y},
                             current.features->depth[f],
-                            scales_[static_cast<std::size_t>(current.features->keypoints[f].octave)]});
+                            scales_[static_cast<std::size_t>(current.features->keypoints[f].octave)],
+                            current.features->trust[f]});
   }
   return observations;
 }

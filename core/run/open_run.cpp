@@ -29,7 +29,7 @@ std::unique_ptr<FrameSource> open_as_it_was(const SequenceOrigin& origin, const 
                                             const fs::path& folder) {
   OpenOptions options;
   options.camera = origin.camera;
-  options.frames = origin.generated_frames;
+  options.frames = origin.frames_asked;
   options.seed = origin.seed;
   auto source = open_sequence(where, options);
   if (sequence_fingerprint(*source) != origin.fingerprint)

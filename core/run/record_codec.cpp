@@ -98,6 +98,7 @@ void transfer_features(Archive& archive, Features& features) {
   for (auto& f : features) archive(f.map_point);
   for (auto& f : features) archive(f.octave);
   for (auto& f : features) archive(f.fate);
+  for (auto& f : features) archive(f.trust);
 }
 
 template <typename Archive, typename Scores>
@@ -126,7 +127,7 @@ void transfer_point(Archive& archive, SavedPointType& point) {
   archive(point.moved);
 }
 
-constexpr std::size_t kFeatureBytes = 22;
+constexpr std::size_t kFeatureBytes = 26;
 
 template <typename Thing, typename Transfer>
 void write_all(ByteWriter& to, const std::vector<Thing>& things, const Transfer& transfer) {

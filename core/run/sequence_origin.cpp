@@ -37,7 +37,7 @@ SequenceOrigin origin_of(const FrameSource& source, const std::string& where, co
   std::error_code ignored;
   if (!origin.is_generated()) origin.where = fs::absolute(where, ignored).lexically_normal().string();
   origin.frames = source.size();
-  origin.generated_frames = options.frames;
+  origin.frames_asked = options.frames;
   origin.seed = options.seed;
   origin.camera = source.camera();
   origin.has_depth = source.has_depth();
@@ -55,10 +55,8 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
     if (!failed) json["where_from_run"] = relative.string();
   }
   json["frames"] = origin.frames;
-  if (origin.is_generated()) {
-    json["generated_frames"] = origin.generated_frames;
-    json["seed"] = origin.seed;
-  }
+  json["frames_asked"] = origin.frames_asked;
+  if (origin.is_generated()) json["seed"] = origin.seed;
   json["has_depth"] = origin.has_depth;
   json["fingerprint"] = origin.fingerprint;
   visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
@@ -71,10 +69,8 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   json.at("where").get_to(origin.where);
   origin.where_from_run = json.value("where_from_run", std::string());
   json.at("frames").get_to(origin.frames);
-  if (origin.is_generated()) {
-    json.at("generated_frames").get_to(origin.generated_frames);
-    json.at("seed").get_to(origin.seed);
-  }
+  json.at("frames_asked").get_to(origin.frames_asked);
+  if (origin.is_generated()) json.at("seed").get_to(origin.seed);
   json.at("has_depth").get_to(origin.has_depth);
   json.at("fingerprint").get_to(origin.fingerprint);
   const nlohmann::json& camera = json.at("camera");

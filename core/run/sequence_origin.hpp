@@ -15,7 +15,7 @@ struct SequenceOrigin {
   std::string where;           ///< an absolute folder, or generated:KIND
   std::string where_from_run;  ///< a folder, from the run's; empty where that is not known
   int frames = 0;              ///< in the sequence as it was opened
-  int generated_frames = 0;    ///< as asked of a generated sequence; 0 = its own length
+  int frames_asked = 0;        ///< OpenOptions::frames
   unsigned seed = 1;           ///< of a generated sequence
   Camera camera;               ///< as used
   bool has_depth = true;

@@ -1,5 +1,6 @@
 #include <string_view>
 
+#include "core/sequence/first_frames.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/source.hpp"
 #include "core/sequence/tum_folder.hpp"
@@ -10,7 +11,9 @@ std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenO
   constexpr std::string_view kGenerated = "generated:";
   if (where.starts_with(kGenerated))
     return make_generated_sequence(where.substr(kGenerated.size()), options.frames, options.seed);
-  return std::make_unique<TumFolder>(where, options.camera);
+  auto folder = std::make_unique<TumFolder>(where, options.camera);
+  if (options.frames == 0) return folder;
+  return first_frames(std::move(folder), options.frames);
 }
 
 }  // namespace stillpoint

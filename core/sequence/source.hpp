@@ -39,7 +39,7 @@ class FrameSource {
 
 struct OpenOptions {
   std::optional<Camera> camera;  ///< overrides what the folder's name says
-  int frames = 0;                ///< generated sequences: how many; 0 = the kind's own length
+  int frames = 0;                ///< the first so many alone; 0 = all, a generated kind's own length
   unsigned seed = 1;             ///< generated sequences
 };
 

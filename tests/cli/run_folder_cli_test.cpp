@@ -84,6 +84,19 @@ TEST_F(RunFolder, WithoutItsSequenceShowsItsRecords) {
   fs::rename(sequence_.path() + "_elsewhere", sequence_.path());
 }
 
+TEST_F(RunFolder, OfTheFirstFramesFindsThemAgain) {
+  ASSERT_EQ(run_cli({"run", sequence_.path(), "--frames", "5", "--method", "none", "--out", run("short")})
+                .exit_code,
+            0);
+  const auto summary = nlohmann::json::parse(out_.read("runs/short/summary.json"));
+  EXPECT_EQ(summary.at("source").at("frames"), 5);
+  const CliResult shown = run_cli(
+      {"snapshot", run("short"), "--frames", "-1", "--panels", "input", "--out", out_.path("images")});
+  EXPECT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_EQ(shown.err.find("warning"), std::string::npos) << shown.err;
+  EXPECT_FALSE(cv::imread(out_.path("images/000004_input.png")).empty());
+}
+
 TEST_F(RunFolder, WhatIsWrongIsToldInOneSentence) {
   expect_one_sentence(snapshot({"--method", "paper"}), "is a finished run, which has its own configuration");
   expect_one_sentence(snapshot({"--baseline", out_.path("nothing")}), "records.bin: cannot be read");

@@ -61,6 +61,7 @@ TEST_F(Snapshot, GivesTheSameBytesEachTime) {
 
 TEST_F(Snapshot, SaysWhatIsWrongInOneSentence) {
   expect_one_sentence(snapshot({"--frames", "6", "--out", out()}), "frames 0 to 5");
+  expect_one_sentence(snapshot({"--frames", "4", "--length", "3", "--out", out()}), "frames 0 to 2");
   expect_one_sentence(snapshot({"--frames", "two", "--out", out()}), "expected frames like");
   expect_one_sentence(snapshot({"--panels", "unionmask", "--out", out()}),
                       "there is no such panel; there are all, workbench");

@@ -1,5 +1,4 @@
-// The whole program but its command line: sequences opened and left in a real window under Xvfb, and
-// offscreen.
+// The whole program but its command line, without a display: sequences opened and left.
 #include "ui/workbench/desk.hpp"
 
 #include <gmock/gmock.h>
@@ -7,202 +6,21 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <future>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 
 #include "core/error.hpp"
 #include "tests/cli/small_sequence.hpp"
-#include "tests/support/golden.hpp"
-#include "tests/support/xvfb.hpp"
-#include "ui/workbench/replay.hpp"
+#include "tests/ui/desk_example.hpp"
 
 namespace stillpoint::testing {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr int kWidth = 1000, kHeight = 700, kDemoFrames = 10, kFrames = 8;
-
-/// Without times, which differ from run to run.
-OpenedPlace untimed(std::shared_ptr<const FrameSource> source, const Config& config) {
-  OpenedPlace place{.source = std::move(source), .config = config, .options = {}, .problem = {}};
-  place.options.keep_times = false;
-  return place;
-}
-
-DeskOptions desk_options() {
-  Config config;
-  config.run.method = "stillpoint";
-  return {.open_place =
-              [](const std::string& where, const Config& wanted) {
-                OpenOptions options;
-                options.frames = where.starts_with("generated:") ? kDemoFrames : 0;
-                return untimed(open_sequence(where, options), wanted);
-              },
-          .config = config,
-          .settings = {},
-          .marks_folder = {},
-          .plays_when_opened = "generated:walking_static",
-          .wake = {}};
-}
-
-/// Draws until `holds()`, for half a minute at the most.
-template <typename Draw, typename Condition>
-bool draw_until(Draw draw, Condition holds) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(300);
-  while (!holds() && std::chrono::steady_clock::now() < end) {
-    draw();
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
-  }
-  return holds();
-}
-
-class DeskInAWindow : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!xvfb_.running()) GTEST_SKIP() << "Xvfb is not installed";
-  }
-
-  SmallSequence folder_{kFrames};
-
- private:
-  Xvfb xvfb_;
-};
-
-/// The callbacks GLFW calls when the display tells of something: called here as GLFW would.
-class DisplayEvents {
- public:
-  explicit DisplayEvents(GLFWwindow* window)
-      : window_(window),
-        key_(glfwSetKeyCallback(window, nullptr)),
-        button_(glfwSetMouseButtonCallback(window, nullptr)),
-        scroll_(glfwSetScrollCallback(window, nullptr)),
-        drop_(glfwSetDropCallback(window, nullptr)) {
-    glfwSetKeyCallback(window, key_);
-    glfwSetMouseButtonCallback(window, button_);
-    glfwSetScrollCallback(window, scroll_);
-    glfwSetDropCallback(window, drop_);
-  }
-  void strike(int key) const {
-    key_(window_, key, 0, GLFW_PRESS, 0);
-    key_(window_, key, 0, GLFW_RELEASE, 0);
-  }
-  void click(int button) const {
-    button_(window_, button, GLFW_PRESS, 0);
-    button_(window_, button, GLFW_RELEASE, 0);
-  }
-  void scroll(double notches) const { scroll_(window_, 0.0, notches); }
-  void drop(const std::string& path) const {
-    const char* paths[] = {path.c_str()};
-    drop_(window_, 1, paths);
-  }
-
- private:
-  GLFWwindow* window_;
-  GLFWkeyfun key_;
-  GLFWmousebuttonfun button_;
-  GLFWscrollfun scroll_;
-  GLFWdropfun drop_;
-};
-
-TEST_F(DeskInAWindow, PlaysTheDemoTakesKeysMouseAndADrop) {
-  Window window({.width = kWidth, .height = kHeight, .gl_debug = true});
-  const DisplayEvents display(window.handle());
-  Desk desk(desk_options());
-  const auto draw = [&] { window.draw([&](UiFrame& frame) { desk.draw(frame); }); };
-  const auto shown = [&] { return desk.view() ? desk.view()->current->index : -1; };
-  desk.open("generated:walking_static");
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && shown() == kDemoFrames - 1; }));
-  display.strike(GLFW_KEY_HOME);
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && shown() == 0; }));
-  display.strike(GLFW_KEY_RIGHT);
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && shown() == 1; }));
-
-  // A click in the timeline goes to a frame; where it lies the workbench knows.
-  const auto tile = desk.workbench().tile_of("timeline");
-  ASSERT_TRUE(tile);
-  glfwSetCursorPos(window.handle(), static_cast<double>(tile->x + 0.6F * tile->width),
-                   static_cast<double>(tile->y + 0.6F * tile->height));
-  EXPECT_TRUE(draw_until(draw, [&] { return ImGui::GetIO().MousePos.x > tile->x; }));
-  draw();
-  display.click(GLFW_MOUSE_BUTTON_LEFT);
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && shown() > 1; }));
-  display.scroll(1.0);
-  draw();
-
-  display.drop(folder_.path());
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && desk.view()->frame_count == kFrames; }));
-  EXPECT_THAT(desk.title(), HasSubstr(" - Stillpoint"));
-  EXPECT_FALSE(is_blank(window.capture([&](UiFrame& frame) { desk.draw(frame); }), 50));
-  EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
-  EXPECT_GT(window.canvas().pace().busy_frames, 0);
-}
-
-TEST_F(DeskInAWindow, ShowsWhatTheOffscreenImageHolds) {
-  const Recording recording = parse_recording(
-      "stillpoint recording 1\nidle\nframe 5\npoint union_mask 0.5 0.5\nwheel 0 2\nwait 0.1\nmove -100000 "
-      "-100000\n"
-      "screenshot shown.png\n",
-      "r.txt");
-  const auto image_of = [&](auto& shell, const TemporaryFolder& out) {
-    {
-      Desk desk(desk_options());
-      desk.workbench().set_layout(default_layout("paper"));
-      desk.open(folder_.path());
-      replay(recording, desk, replay_shell(shell), {.out = out.path(), .patience_s = 60.0, .between = [] {}});
-    }
-    return cv::imread(out.path("shown.png"));
-  };
-  const TemporaryFolder in_window, offscreen_folder;
-  cv::Mat shown;
-  {
-    Window window({.width = kWidth, .height = kHeight, .gl_debug = true});
-    shown = image_of(window, in_window);
-    EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
-  }
-  Offscreen offscreen({.width = kWidth, .height = kHeight});
-  const cv::Mat expected = image_of(offscreen, offscreen_folder);
-  EXPECT_FALSE(is_blank(expected, 50));
-  EXPECT_TRUE(images_agree(shown, expected, kSceneTolerance));
-}
-
-TEST_F(DeskInAWindow, SurvivesAStormOfSizesWhilePlaying) {
-  Window window({.width = 640, .height = 480, .gl_debug = true});
-  Desk desk(desk_options());
-  desk.open(folder_.path());
-  const auto draw = [&] { window.draw([&](UiFrame& frame) { desk.draw(frame); }); };
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle(); }));
-  desk.session()->request_play(true);
-  for (int i = 0; i < 40; ++i) {
-    window.resize(60 + (i * 397) % 1500, 40 + (i * 211) % 1000);
-    draw();
-  }
-  EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle(); }));
-}
-
-TEST_F(DeskInAWindow, ASequenceThatVanishesIsSaidAndTheWindowLivesOn) {
-  Window window({.width = 640, .height = 480});
-  Desk desk(desk_options());
-  desk.open(folder_.path());
-  const auto draw = [&] { window.draw([&](UiFrame& frame) { desk.draw(frame); }); };
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && desk.view(); }));
-  std::filesystem::remove_all(folder_.path());
-  desk.session()->request_frame(kFrames - 1);
-  EXPECT_TRUE(draw_until(draw, [&] { return desk.idle() && desk.view()->processed == kFrames; }));
-  EXPECT_EQ(desk.view()->current->record->status, FrameStatus::unreadable);
-  EXPECT_NE(desk.view()->current->record->note, "");
-  EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
-}
 
 // Without a display -----------------------------------------------------------------------------------------
 

@@ -123,6 +123,7 @@ FeatureSet features_at(const std::vector<cv::Point2f>& pixels, const std::vector
     d[0] = std::uint64_t{1} << i;
     set.descriptors.push_back(d);
     set.depth.push_back(1.0F);
+    set.trust.push_back(1.0F);
   }
   set.build_index(640, 480);
   return set;

@@ -42,6 +42,7 @@ class Wall : public ::testing::Test {
       d[static_cast<std::size_t>(i) / 32] = std::uint64_t{0xFFFF} << (i % 32);
       features->descriptors.push_back(d);
       features->depth.push_back(static_cast<float>(p.z()));
+      features->trust.push_back(1.0F);
     }
     features->build_index(kCamera.width, kCamera.height);
     return features;
@@ -222,6 +223,30 @@ TEST_F(Wall, BundleAdjustmentDropsWrongObservations) {
   EXPECT_TRUE(solution.outlier[7]);
   apply_bundle(solution, map_);
   for (const Observation& o : map_.point(point).observations) EXPECT_NE(o.keyframe, keyframe);
+}
+
+TEST_F(Wall, ObservationsWithoutTrustMoveNothing) {
+  const auto ids = begin();
+  for (const double x : {0.1, 0.2, 0.3}) add(x, ids);
+  BundleProblem problem = make_bundle_problem(map_, 3, config_);
+  // Too little to be outliers, and all one way: a third of what each view but the fixed one sees.
+  for (auto& edge : problem.edges)
+    if (edge.point % 3 == 0 && !problem.views[static_cast<std::size_t>(edge.view)].fixed)
+      edge.pixel.x() += 1.5;
+  const auto worst_shift = [&](double trust) {
+    for (auto& edge : problem.edges)
+      if (edge.point % 3 == 0) edge.trust = trust;
+    const BundleSolution solution = solve_bundle(problem, kCamera, config_.bundle, 1.0);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < problem.views.size(); ++i)
+      worst = std::max(
+          worst, (problem.views[i].camera_from_world.inverse() * solution.problem.views[i].camera_from_world)
+                     .translation()
+                     .norm());
+    return worst;
+  };
+  EXPECT_LT(worst_shift(1e-6), 1e-5);
+  EXPECT_GT(worst_shift(1.0), 1e-4);
 }
 
 TEST_F(Wall, AnEmptyBundleIsNotUsable) {

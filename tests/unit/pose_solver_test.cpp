@@ -57,6 +57,34 @@ TEST(RefinePose, TellsOutliersApart) {
   EXPECT_GE(refined.inliers, 65);
 }
 
+/// Exact observations, of which the first 40 of 100 are seen 1.5 px beside their place: no outliers, but all
+/// wrong the same way.
+std::vector<PoseObservation> drifting(double trust) {
+  auto observations = observe(some_pose(), 100, 0.0, true);
+  for (std::size_t i = 0; i < 40; ++i) {
+    observations[i].pixel.x() += 1.5;
+    observations[i].trust = trust;
+  }
+  return observations;
+}
+
+TEST(RefinePose, TrustWeighsObservations) {
+  const auto error = [](double trust) {
+    return distance(refine_pose(kCamera, drifting(trust), some_pose(), {}).camera_from_world, some_pose());
+  };
+  EXPECT_LT(error(1e-6), 1e-5);
+  EXPECT_LT(error(0.1), 0.5 * error(1.0));
+  EXPECT_GT(error(1.0), 1e-3);
+}
+
+TEST(RefinePose, TrustDoesNotChangeWhatIsAnOutlier) {
+  auto observations = drifting(1e-6);
+  observations[3].pixel.x() += 20.0;
+  const PoseRefinement refined = refine_pose(kCamera, observations, some_pose(), {});
+  EXPECT_EQ(refined.inliers, 99);
+  EXPECT_FALSE(refined.inlier[3]);
+}
+
 TEST(RefinePose, ResidualsArePixelDistances) {
   auto observations = observe(Pose::Identity(), 40, 0.0, false);
   observations[5].pixel += Eigen::Vector2d(3.0, 4.0);  // 5 px off

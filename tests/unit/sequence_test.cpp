@@ -213,6 +213,21 @@ TEST(TumFolder, CameraComesFromOptionsThenFileThenParent) {
   EXPECT_EQ(open_sequence(folder.path(), options)->camera().name, "bonn");
 }
 
+TEST(TumFolder, GivesItsFirstFramesAlone) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 5);
+  OpenOptions options;
+  options.frames = 3;
+  const auto all = open_sequence(folder.path()), some = open_sequence(folder.path(), options);
+  EXPECT_EQ(some->size(), 3);
+  EXPECT_EQ(some->name(), all->name());
+  EXPECT_EQ(some->timestamp(2), all->timestamp(2));
+  EXPECT_EQ(cv::norm(some->read(2).gray, all->read(2).gray, cv::NORM_INF), 0.0);
+  EXPECT_EQ(some->ground_truth().size(), all->ground_truth().size());
+  options.frames = 9;
+  EXPECT_EQ(open_sequence(folder.path(), options)->size(), 5);
+}
+
 TEST(TumFolder, ReadsGreySixteenBitAlphaAndJpegImages) {
   const TemporaryFolder folder;
   write_sequence(folder, 4);

@@ -42,6 +42,7 @@ Facts facts_of(const FeatureStory& story) {
                            ? fmt::format("{}, seen by {} keyframes", f.map_point, *story.observations)
                            : fmt::format("{}, since taken out of the map", f.map_point));
     facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
+    facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.trust));
   } else {
     facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
   }

@@ -115,7 +115,14 @@ class FeaturesPanel final : public FramePanel {
       radius = std::max(radius, static_cast<float>(response.map.scale()) * 2.0F *
                                     std::pow(1.2F, static_cast<float>(feature.octave)));
     draw_sign(frame, *ImGui::GetWindowDrawList(), response.keypoint_to_screen(feature.pixel), radius,
-              look.sign, to_u32(look.colour));
+              look.sign, to_u32(look.colour, strength(feature)));
+  }
+
+  /// The less a feature weighs in the pose, the fainter it is drawn.
+  [[nodiscard]] float strength(const FeatureRecord& feature) const {
+    constexpr float kFaintest = 0.3F;
+    const bool weighs = moment_ == FeatureMoment::kAfter && feature.fate == FeatureFate::inlier;
+    return weighs ? kFaintest + (1.0F - kFaintest) * feature.trust : 1.0F;
   }
 
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
@@ -143,6 +150,8 @@ class FeaturesPanel final : public FramePanel {
     footer.caption =
         fmt::format("{}: {} features kept, {} matched to map points; inliers' residual {:.2f} px RMS.", where,
                     record.features_kept, record.matches, record.rms_px);
+    if (const int faint = weighing_little(record.features); faint > 0)
+      footer.caption += fmt::format(" {} drawn faintly weigh less than half in the pose.", faint);
     return footer;
   }
 

@@ -187,6 +187,8 @@ void tell_colour_motion(const FrameView& view, const Config& config, FeatureStor
                     : "is not held to move: evidence spread here from others, over like colours"));
 }
 
+constexpr float kFullTrust = 0.5F;  // below it a weight is worth telling
+
 std::string verdict_of(const FeatureStory& story, const std::string& method) {
   const FeatureRecord& feature = story.feature;
   switch (feature.fate) {
@@ -197,8 +199,11 @@ std::string verdict_of(const FeatureStory& story, const std::string& method) {
     case FeatureFate::unmatched:
       return "Kept, but no map point was found for it.";
     case FeatureFate::inlier:
-      return fmt::format("Kept and used: it agrees with the pose, {:.2f} px off.",
-                         static_cast<double>(feature.residual_px));
+      return fmt::format("Kept and used: it agrees with the pose, {:.2f} px off{}.",
+                         static_cast<double>(feature.residual_px),
+                         feature.trust < kFullTrust
+                             ? fmt::format(", and weighs {:.0f} %, for it may move", 100.0 * feature.trust)
+                             : "");
     case FeatureFate::outlier:
       return fmt::format("Kept and not used: matched to map point {}, but {:.1f} px off.", feature.map_point,
                          static_cast<double>(feature.residual_px));

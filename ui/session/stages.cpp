@@ -59,6 +59,7 @@ void add_pose_stages(const FrameRecord& record, std::vector<StageInfo>& stages) 
   add_figure(refined, "Inliers", record.inliers);
   add_figure(refined, "Outliers", record.matches - record.inliers);
   add_figure(refined, "Reprojection RMS", record.rms_px, "px", 3);
+  add_figure(refined, "Weigh under half", weighing_little(record.features));
   add_figure(refined, "Steps", record.refine_iterations);
   if (!record.estimated) refined.note = record.note;
 }

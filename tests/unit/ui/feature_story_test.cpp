@@ -132,6 +132,16 @@ TEST(FeatureStory, FollowsMapPointsThenFlowThenNeighbours) {
   EXPECT_EQ(moved[2].frame, 3);
 }
 
+TEST(FeatureStory, TellsWhatWeighsLittle) {
+  InspectScene scene;
+  const int trusted = scene.add_feature({100, 60}, FeatureFate::inlier, 9, 0.5F);
+  const int suspected = scene.add_feature({52, 40}, FeatureFate::inlier, 10, 0.5F);
+  scene.record().features.back().trust = 0.07F;
+  EXPECT_THAT(explain(scene, trusted).verdict, testing::Not(HasSubstr("weighs")));
+  EXPECT_THAT(explain(scene, suspected).verdict, HasSubstr("weighs 7 %"));
+  EXPECT_EQ(weighing_little(scene.record().features), 1);
+}
+
 TEST(FeatureStory, AChoiceIsFoundAgainInTheNextFrame) {
   InspectScene scene;
   scene.add_feature({10, 10}, FeatureFate::inlier, 4);

@@ -4,6 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+
 #include "core/run/record_codec.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -12,6 +17,30 @@
 namespace stillpoint {
 
 inline constexpr int kFrames = 12;
+
+/// A session with its worker, whose views can be waited for.
+class StartedSession {
+ public:
+  explicit StartedSession(std::unique_ptr<Session> session) : session_(std::move(session)) {
+    session_->start([this] {
+      const std::lock_guard lock(mutex_);
+      changed_.notify_all();
+    });
+  }
+  Session* operator->() { return session_.get(); }
+
+  /// Whether it comes true within two minutes.
+  template <typename Condition>
+  bool wait_for(Condition holds) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*session_->view()); });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::unique_ptr<Session> session_;  // last: its worker tells of changes until it is gone
+};
 
 /// A session over a small folder, asked without a worker unless a test starts one.
 class SessionDebug : public ::testing::Test {
@@ -56,7 +85,6 @@ struct ShownRunFixture {
 };
 
 /// True masks, one a frame: a square that stands for what moves.
-
 inline void write_masks(const SmallSequence& sequence) {
   std::string list;
   cv::Mat mask = cv::Mat::zeros(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1);

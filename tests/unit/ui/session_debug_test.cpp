@@ -1,8 +1,5 @@
 #include "tests/unit/ui/session_debug.hpp"
 
-#include <chrono>
-#include <condition_variable>
-
 namespace stillpoint {
 namespace {
 
@@ -200,26 +197,16 @@ TEST_F(SessionDebug, GhostsAreComparedWithARunThatBeginsAnew) {
 }
 
 TEST_F(SessionDebug, TheWorkerDoesTheSame) {
-  const auto s = session();
-  std::mutex mutex;
-  std::condition_variable changed;
-  s->start([&] {
-    const std::lock_guard lock(mutex);
-    changed.notify_all();
-  });
-  const auto wait_for = [&](auto&& holds) {
-    std::unique_lock lock(mutex);
-    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*s->view()); });
-  };
+  StartedSession s(session());
   s->request_speed(1000);
   s->request(request::Breakpoints{{{"frame == 6", true}}});
   s->request(request::Play{true});
   EXPECT_TRUE(
-      wait_for([](const SessionView& v) { return v.debug.stopped_by == 0 && v.current->index == 6; }));
+      s.wait_for([](const SessionView& v) { return v.debug.stopped_by == 0 && v.current->index == 6; }));
   Config other = config_;
   other.features.count = 300;
   s->request(request::AddGhost{other, "ghost", 4});
-  EXPECT_TRUE(wait_for([](const SessionView& v) {
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) {
     return v.debug.ghosts.size() == 1 && !v.debug.ghosts[0].busy &&
            v.debug.ghosts[0].run->records.size() == 7;
   }));
@@ -227,7 +214,7 @@ TEST_F(SessionDebug, TheWorkerDoesTheSame) {
     other.features.count = count;
     s->request(request::Preview{other});
   }
-  EXPECT_TRUE(wait_for(
+  EXPECT_TRUE(s.wait_for(
       [](const SessionView& v) { return v.debug.preview && v.debug.preview_config->features.count == 310; }));
 }
 

@@ -1,6 +1,3 @@
-#include <chrono>
-#include <condition_variable>
-
 #include "core/run/open_run.hpp"
 #include "tests/unit/ui/session_debug.hpp"
 
@@ -72,32 +69,22 @@ TEST_F(SessionDebug, ExportedFramesKeepTheirNumbers) {
 }
 
 TEST_F(SessionDebug, ExportsGoOnBesideTheSessionAndCanBeStopped) {
-  const auto s = session();
-  std::mutex mutex;
-  std::condition_variable changed;
-  s->start([&] {
-    const std::lock_guard lock(mutex);
-    changed.notify_all();
-  });
-  const auto wait_for = [&](auto&& holds) {
-    std::unique_lock lock(mutex);
-    return changed.wait_for(lock, std::chrono::seconds(120), [&] { return holds(*s->view()); });
-  };
+  StartedSession s(session());
   s->request_frame(kFrames - 1);
-  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.processed == kFrames; }));
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.processed == kFrames; }));
   const TemporaryFolder out;
   s->request(request::ExportSession{out.path("first")});
   s->request(request::ExportSession{out.path("second")});
-  EXPECT_TRUE(wait_for([](const SessionView& v) { return !v.message.empty() || !v.debug.notice.empty(); }));
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return !v.message.empty() || !v.debug.notice.empty(); }));
   s->request_frame(2);  // clears the message, and is done whatever is written meanwhile
-  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.current->index == 2; }));
-  EXPECT_TRUE(wait_for([](const SessionView& v) { return !v.debug.exporting && !v.debug.notice.empty(); }));
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.current->index == 2; }));
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return !v.debug.exporting && !v.debug.notice.empty(); }));
   EXPECT_THAT(s->view()->debug.notice, HasSubstr("12 frames, their run"));
   EXPECT_EQ(open_run(out.path("first")).recorded->hash, s->view()->debug.run_hash);
 
   s->request(request::ExportSession{out.path("third")});
   s->request(request::StopExport{});
-  EXPECT_TRUE(wait_for([](const SessionView& v) { return v.debug.notice.find("Stopped") == 0; }));
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.debug.notice.find("Stopped") == 0; }));
   EXPECT_FALSE(fs::exists(out.path("third")));
 }
 
