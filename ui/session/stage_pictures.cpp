@@ -252,7 +252,7 @@ StagePicture direct_picture(const FrameView& view, const DirectRecord& direct) {
           PictureLook::kSigned,
           values,
           {},
-          std::max(10.0, 3.0 * direct.rms_after),
+          std::max(10.0, std::ceil(2.0 * direct.rms_after)),
           "grey levels"};
 }
 
