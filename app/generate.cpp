@@ -62,7 +62,10 @@ void add_generate_command(CLI::App& app) {
   auto options = std::make_shared<GenerateOptions>();
   CLI::App* command =
       app.add_subcommand("generate", "Film a generated room and write it as a TUM RGB-D folder");
-  command->add_option("kind", options->kind, fmt::format("one of: {}", fmt::join(generated_kinds(), ", ")))
+  command
+      ->add_option("kind", options->kind,
+                   fmt::format("one of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
+                               fmt::join(hard_generated_kinds(), ", ")))
       ->required();
   command->add_option("--out", options->out, "the folder to write, created when missing")->required();
   command->add_option("--frames", options->frames, "how many frames; 0 = the kind's own length (300)");

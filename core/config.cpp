@@ -236,6 +236,25 @@ std::vector<Parameter> parameters(Config& c) {
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
          "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 
+  DirectConfig& a = c.direct;
+  number("direct.below_inliers", &a.below_inliers, 0, 1000, "matches",
+         "methods stillpoint and oracle align frames with fewer inliers directly too; 0 never any");
+  number("direct.below_share", &a.below_share, 0, 1, "",
+         "… and those with fewer than this share of what was usual lately");
+  number("direct.cell_px", &a.cell_px, 8, 64, "px", "a cell of this side holds one patch");
+  number("direct.coarsest_level", &a.coarsest_level, 0, 6, "", "pyramid level at which alignment begins");
+  number("direct.finest_level", &a.finest_level, 0, 6, "", "pyramid level at which alignment ends");
+  number("direct.iterations", &a.iterations, 1, 100, "steps", "most Gauss-Newton steps a level");
+  number("direct.min_patches", &a.min_patches, 10, 5000, "patches",
+         "with fewer in view no directly aligned pose is believed");
+  number("direct.min_correlation", &a.min_correlation, 0, 1, "",
+         "least correlation of the patches' brightness with the frame's");
+  number("direct.min_agreement", &a.min_agreement, 0, 1, "",
+         "least share of patches at whose place the expected depth is measured");
+  number("direct.max_age", &a.max_age, 1, 30, "frames", "how far back the frame aligned with may lie");
+  number("direct.pixel_share", &a.pixel_share, 0.0001, 1, "",
+         "independent measurements a patch's pixel counts for when poses are fused");
+
   MapConfig& k = c.map;
   number("map.far_depth_m", &k.far_depth_m, 0.1, 50, "m",
          "points are made from depth up to here, farther only when few are near");

@@ -120,6 +120,23 @@ struct TrackingConfig {
   bool operator==(const TrackingConfig&) const = default;
 };
 
+/// Sparse direct alignment where corners starve, in methods `stillpoint` and `oracle`: the paper's odometry,
+/// which `paper` and `none` keep to, has none.
+struct DirectConfig {
+  int below_inliers = 50;    ///< frames with fewer inliers than this are aligned directly too; 0 = never any
+  double below_share = 0.5;  ///< … and those with fewer than this share of what was usual lately
+  int cell_px = 16;          ///< each cell of the image holds one patch at most
+  int coarsest_level = 4;    ///< pyramid level at which alignment begins
+  int finest_level = 1;      ///< … and at which it ends
+  int iterations = 10;       ///< most Gauss-Newton steps a level
+  int min_patches = 80;      ///< patches in view below which nothing is believed
+  double min_correlation = 0.6;  ///< least correlation of the patches' brightness with the frame's
+  double min_agreement = 0.5;    ///< least share of patches at whose place the depth expected was measured
+  int max_age = 10;              ///< frames back to what is aligned with, at most
+  double pixel_share = 0.3;      ///< independent measurements a patch's pixel counts for when poses are fused
+  bool operator==(const DirectConfig&) const = default;
+};
+
 /// The local map and its keyframes.
 struct MapConfig {
   double far_depth_m = 3.0;   ///< points are made from depth up to here, beyond only if few are near
@@ -165,6 +182,7 @@ struct Config {
   ColourMotionConfig colour_motion;
   FeatureConfig features;
   TrackingConfig tracking;
+  DirectConfig direct;
   MapConfig map;
   BundleConfig bundle;
   bool operator==(const Config&) const = default;

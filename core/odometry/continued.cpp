@@ -38,6 +38,8 @@ void Odometry::drop_images() {
   preparer_.forget();
   for (PastView& past : past_views_) past.view.reset();
   if (memory_) memory_->view.reset();
+  for (auto* reference : {&last_reference_, &sharp_reference_})
+    if (*reference) (*reference)->gray.release(), (*reference)->depth.release();
 }
 
 void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
@@ -57,6 +59,15 @@ void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
         make_rgbd_view(frame.gray, frame.depth, camera_, config_.depth_motion.factor));
   }
   if (memory_ && !memory_->view) memory_->view = past_views_.back().view;
+  for (auto* reference : {&last_reference_, &sharp_reference_}) {
+    // One that is too old for the next frame is never looked at again.
+    if (!*reference || !(*reference)->gray.empty() ||
+        next - (*reference)->frame_index > config_.direct.max_age)
+      continue;
+    const Frame frame = read((*reference)->frame_index);
+    (*reference)->gray = frame.gray;
+    (*reference)->depth = frame.depth;
+  }
 }
 
 int Odometry::frames_wanted(const Config& config) const {

@@ -36,6 +36,8 @@ std::string_view to_string(PoseStart start) {
       return "wide search";
     case PoseStart::epnp:
       return "EPnP";
+    case PoseStart::direct:
+      return "direct alignment";
   }
   return "";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -44,9 +45,30 @@ struct FeatureRecord {
 [[nodiscard]] int weighing_little(const std::vector<FeatureRecord>& features);
 
 /// How the pose in a record was first come by.
-enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp };
+enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp, direct };
 
 [[nodiscard]] std::string_view to_string(PoseStart start);
+
+/// A patch that was aligned directly.
+struct DirectPatch {
+  cv::Point2f pixel;      ///< px, where the frame shows it under the final pose
+  float residual = 0.0F;  ///< grey levels, mean over its pixels at the finest level, signed
+  float weight = 0.0F;    ///< how far it was trusted, 0 to 1
+};
+
+/// What direct alignment did in a frame whose corners starved.
+struct DirectRecord {
+  int reference_frame = kNone;  ///< the frame it was aligned with; kNone: it was not called for
+  bool believed = false;        ///< it passed the checks, and had its share in the pose
+  int patches = 0;              ///< of the reference that lie in the frame's view
+  int iterations = 0;           ///< Gauss-Newton steps over all levels
+  double rms_before = 0.0,
+         rms_after = 0.0;    ///< grey levels at the finest level, robust: as begun, as aligned
+  double correlation = 0.0;  ///< of the patches' brightness with the frame's, -1 to 1
+  double agreement = 0.0;    ///< share of patches at whose place the depth expected was measured, 0 to 1
+  double share = 0.0;        ///< of the pose's information that is its own, 0 to 1: the rest is the corners'
+  std::shared_ptr<const std::vector<DirectPatch>> seen;  ///< those in view; null where there are none
+};
 
 /// What each stage took, in milliseconds of wall time. For reading only: no result depends on it.
 struct StageTimes {
@@ -63,6 +85,7 @@ struct StageTimes {
   double epnp = 0.0;       ///< EPnP in RANSAC
   double consensus = 0.0;  ///< the pose most of the image agrees on
   double refine = 0.0;     ///< eq. (5)
+  double direct = 0.0;     ///< direct alignment
 };
 
 /// The frame's pose as it would have been with other features taken out, solved from the same map and the
@@ -106,6 +129,7 @@ struct FrameRecord {
       prior_pose;  ///< camera_from_world under which method `stillpoint` remembered what moves
   std::optional<Pose> motion_pose;  ///< … and under which it then found it
   RemovalCheck removal_check;
+  DirectRecord direct;
   StageTimes ms;
   std::vector<FeatureRecord> features;
 };

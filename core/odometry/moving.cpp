@@ -1,6 +1,7 @@
 // Method `stillpoint`'s part of Odometry: what is remembered to move, what moves under a first pose, and what
 // the next frame is to know of it.
 #include <algorithm>
+#include <array>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/depth_evidence.hpp"
@@ -93,6 +94,24 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
                           frame_index - past.frame_index >= kOld});
   }
   return references;
+}
+
+bool Odometry::leaves_too_little(const Current& current) const {
+  constexpr int kColumns = 8, kRows = 6;
+  constexpr int kLeastParts = 5;  // of those 48 that features must lie in, or they tell no room from a mover
+  if (current.record_of.size() == current.records.size()) return false;
+  std::array<bool, kColumns * kRows> before{}, after{};
+  for (const FeatureRecord& feature : current.records) {
+    const int column =
+        std::clamp(static_cast<int>(feature.pixel.x) * kColumns / camera_.width, 0, kColumns - 1);
+    const int row = std::clamp(static_cast<int>(feature.pixel.y) * kRows / camera_.height, 0, kRows - 1);
+    const auto part = static_cast<std::size_t>(row * kColumns + column);
+    before[part] = true;
+    after[part] = after[part] || feature.fate != FeatureFate::removed;
+  }
+  const auto had = std::count(before.begin(), before.end(), true);
+  const auto has = std::count(after.begin(), after.end(), true);
+  return has < std::min<std::ptrdiff_t>(kLeastParts, had);
 }
 
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {

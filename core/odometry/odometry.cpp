@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/odometry/mapping.hpp"
 #include "core/odometry/rolling_shutter.hpp"
@@ -13,6 +12,7 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kUsualFades = 0.98;      // a frame, of how many inliers are usual
 constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to track against
 
 }  // namespace
@@ -63,6 +63,7 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
     Current current = last_ ? track_frame(frame, prepared, result) : initialise(frame, prepared, result);
     record.features = std::move(current.records);
     if (config_.run.method == "stillpoint") remember_view(frame, result);
+    if (aligns_directly()) remember_reference(frame, result);
   }
   record.map_points = static_cast<int>(map_.point_count());
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
@@ -133,6 +134,7 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
   if (config_.tracking.correct_rolling_shutter != 0)
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
+  current.mask = mask;
   all.trust = trust_at(pixels, config_.tracking.soft_weights != 0 ? log_odds : cv::Mat(), frame.gray.size(),
                        config_.tracking.half_trust_log_odds);
   std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
@@ -191,7 +193,10 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     first.camera_from_world = start;
     first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
-    if (estimate(first, record)) {
+    bool begun = estimate(first, record);
+    if (aligns_directly() && (begins_starved(first) || !begun))
+      begun = begin_directly(frame, first, record) || begun;
+    if (begun) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
       if (finds_movers_by_pose) detect_by_pose(frame, start, result);
@@ -222,24 +227,6 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
   return current;
 }
 
-bool Odometry::leaves_too_little(const Current& current) const {
-  constexpr int kColumns = 8, kRows = 6;
-  constexpr int kLeastParts = 5;  // of those 48 that features must lie in, or they tell no room from a mover
-  if (current.record_of.size() == current.records.size()) return false;
-  std::array<bool, kColumns * kRows> before{}, after{};
-  for (const FeatureRecord& feature : current.records) {
-    const int column =
-        std::clamp(static_cast<int>(feature.pixel.x) * kColumns / camera_.width, 0, kColumns - 1);
-    const int row = std::clamp(static_cast<int>(feature.pixel.y) * kRows / camera_.height, 0, kRows - 1);
-    const auto part = static_cast<std::size_t>(row * kColumns + column);
-    before[part] = true;
-    after[part] = after[part] || feature.fate != FeatureFate::removed;
-  }
-  const auto had = std::count(before.begin(), before.end(), true);
-  const auto has = std::count(after.begin(), after.end(), true);
-  return has < std::min<std::ptrdiff_t>(kLeastParts, had);
-}
-
 bool Odometry::is_taken_at_once(const Frame& frame) const {
   return (camera_.readout_s == 0.0 || config_.tracking.correct_rolling_shutter == 0) &&
          depth_lag(frame) == 0.0;
@@ -257,13 +244,18 @@ bool Odometry::estimate(Current& current, FrameRecord& record) const {
 
 std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& record) {
   const bool was_lost = lost_frames_ > 0;
-  if (!estimate(current, record))
+  const int needed = inliers_needed();
+  PoseRefinement refined;
+  const bool begun = estimate(current, record);
+  if (begun) refined = track_local_map(current, record);
+  const bool starved = starves(refined.inliers);
+  const bool directly = starved && refine_directly(frame, current, refined, record);
+  // That a blurred frame does not show a point's corner tells nothing of the point.
+  if (begun && !directly) count_sightings(current);
+  if (!begun && !directly)
     return fmt::format("{} of {} features match the local map; {} must agree with a pose", record.matches,
                        record.features_kept, config_.tracking.min_initial_matches);
-  const PoseRefinement refined = track_local_map(current, record);
-  count_sightings(current);
-  const int needed = inliers_needed();
-  if (refined.inliers < needed)
+  if (refined.inliers < needed && !directly)
     return fmt::format("{} matches agree with the pose; {} are needed", refined.inliers, needed);
   record.status = was_lost ? FrameStatus::relocalised : FrameStatus::tracked;
   record.estimated = true;
@@ -271,8 +263,16 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   velocity_ =
       was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
-  if (wants_keyframe(frame, current, record)) add_keyframe(frame, current, record);
-  remember(current, record);
+  starved_frames_ = directly ? starved_frames_ + 1 : 0;
+  if (!starved) usual_inliers_ = std::max(kUsualFades * usual_inliers_, 1.0 * refined.inliers);
+  const bool keyframe =
+      directly ? is_starved_keyframe(frame, current) : wants_keyframe(frame, current, record);
+  if (keyframe) add_keyframe(frame, current, record);
+  // Points that so few corners show are looked for again from the frame that showed them well.
+  if (refined.inliers < needed && !keyframe)
+    remember_pose(current, record);
+  else
+    remember(current, record);
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "core/motion/colour_motion.hpp"
 #include "core/motion/depth_motion.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/direct_alignment.hpp"
 #include "core/odometry/frame_preparer.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/odometry/local_map.hpp"
@@ -88,6 +89,7 @@ class Odometry {
     Pose camera_from_world = Pose::Identity();
     std::vector<FeatureRecord> records;  // of all features, removed ones too
     std::vector<int> record_of;          // feature -> index into records
+    cv::Mat mask;                        // what was removed; empty when nothing was
     bool seek_consensus =
         false;               // movers may be among the features: least squares alone is not to be trusted
     std::uint32_t seed = 0;  // of the samples consensus is sought with
@@ -139,6 +141,18 @@ class Odometry {
                                       FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
   void count_sightings(const Current& current);
+  [[nodiscard]] bool aligns_directly() const;
+  [[nodiscard]] bool starves(int inliers) const;
+  [[nodiscard]] std::optional<DirectAlignment> align(const Frame& frame, const Current& current,
+                                                     FrameRecord& record) const;
+  [[nodiscard]] bool begins_starved(const Current& current);
+  [[nodiscard]] double noise_of_corners(const Current& current, const Pose& camera_from_world) const;
+  [[nodiscard]] bool begin_directly(const Frame& frame, Current& current, FrameRecord& record) const;
+  [[nodiscard]] PoseRefinement search_again(Current& current, const Pose& camera_from_world,
+                                            FrameRecord& record) const;
+  [[nodiscard]] bool refine_directly(const Frame& frame, Current& current, PoseRefinement& refined,
+                                     FrameRecord& record) const;
+  void remember_reference(const Frame& frame, const FrameResult& result);
   [[nodiscard]] RemovalCheck check_removal(const Frame& frame, const PreparedFrame& prepared,
                                            const cv::Mat& known_mask) const;
   [[nodiscard]] std::optional<Pose> solve_with_mask(const Frame& frame, const PreparedFrame& prepared,
@@ -148,8 +162,10 @@ class Odometry {
   [[nodiscard]] std::vector<int> local_points(const Current& current) const;
   [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current,
                                     const FrameRecord& record) const;
+  [[nodiscard]] bool is_starved_keyframe(const Frame& frame, const Current& current) const;
   void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
   void remember(const Current& current, FrameRecord& record);
+  void remember_pose(const Current& current, FrameRecord& record);
   void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
   [[nodiscard]] double depth_lag(
       const Frame& frame) const;  // s, of depth after colour, as far as it is to be corrected
@@ -170,11 +186,16 @@ class Odometry {
   int lost_frames_ = 0;          // in a row
   int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
   std::optional<PendingBundle> pending_;
-  std::deque<PastView> past_views_;             // newest last: what method `stillpoint` compares with
-  std::optional<MotionMemory> memory_;          // of the newest past view
-  std::shared_ptr<const RgbdView> view_;        // of the frame at hand
-  SurfacePatches patches_;                      // … and its surfaces, until its motion is judged
-  std::optional<ColourMotionDetector> colour_;  // while frames have no depth
+  std::deque<PastView> past_views_;                 // newest last: what method `stillpoint` compares with
+  std::optional<MotionMemory> memory_;              // of the newest past view
+  std::shared_ptr<const RgbdView> view_;            // of the frame at hand
+  SurfacePatches patches_;                          // … and its surfaces, until its motion is judged
+  std::optional<ColourMotionDetector> colour_;      // while frames have no depth
+  std::optional<DirectReference> last_reference_;   // the newest frame with a pose and depth
+  std::optional<DirectReference> sharp_reference_;  // … that had corners enough
+  double usual_first_inliers_ = 0.0;                // of first poses, lately
+  double usual_inliers_ = 0.0;                      // what frames had lately that did not starve
+  int starved_frames_ = 0;                          // in a row
 };
 
 }  // namespace stillpoint

@@ -56,6 +56,7 @@ const std::vector<Ingredient>& ingredients() {
       {"slow_reference", "the farthest of the three references", {"depth_motion.slow_reference=10"}},
       {"neighbours", "patches of one surface agreeing", {"depth_motion.smoothing=0"}},
       {"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=0"}},
+      {"direct", "direct alignment where corners starve", {"direct.below_inliers=0"}},
       {"soft_weights", "weighing features by how likely they stand still", {"tracking.soft_weights=0"}},
       {"purge", "taking map points on movers out of the map", {"map.purge_moving=0"}},
       {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},

@@ -31,6 +31,36 @@ void transfer_optional_pose(ByteReader& from, std::optional<Pose>& pose) {
   if (known) transfer_pose(from, pose.emplace(Pose::Identity()));
 }
 
+template <typename Archive, typename Patch>
+void transfer_patch(Archive& archive, Patch& patch) {
+  archive(patch.pixel.x);
+  archive(patch.pixel.y);
+  archive(patch.residual);
+  archive(patch.weight);
+}
+
+template <typename Archive, typename Direct>
+void transfer_direct_fields(Archive& archive, Direct& d) {
+  for (auto* count : {&d.reference_frame, &d.patches, &d.iterations}) archive(*count);
+  archive(d.believed);
+  for (auto* figure : {&d.rms_before, &d.rms_after, &d.correlation, &d.agreement, &d.share}) archive(*figure);
+}
+
+void transfer_direct(ByteWriter& to, const DirectRecord& direct) {
+  transfer_direct_fields(to, direct);
+  to(static_cast<std::uint32_t>(direct.seen ? direct.seen->size() : 0));
+  if (direct.seen)
+    for (const DirectPatch& patch : *direct.seen) transfer_patch(to, patch);
+}
+
+void transfer_direct(ByteReader& from, DirectRecord& direct) {
+  constexpr std::size_t kPatchBytes = 16;
+  transfer_direct_fields(from, direct);
+  std::vector<DirectPatch> seen(from.count(kPatchBytes));
+  for (DirectPatch& patch : seen) transfer_patch(from, patch);
+  direct.seen = seen.empty() ? nullptr : std::make_shared<const std::vector<DirectPatch>>(std::move(seen));
+}
+
 template <typename Archive, typename Record>
 void transfer_fields(Archive& archive, Record& r) {
   archive(r.index);
@@ -55,6 +85,7 @@ void transfer_fields(Archive& archive, Record& r) {
   for (auto* pose :
        {&r.prior_pose, &r.motion_pose, &r.removal_check.nothing_removed, &r.removal_check.truth_removed})
     transfer_optional_pose(archive, *pose);
+  transfer_direct(archive, r.direct);
 }
 
 /// Field by field over all features: what is alike lies together, which packs better.

@@ -73,6 +73,8 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
   row.count("inliers", r.inliers);
   row.number("rms_px", r.rms_px);
   row.count("refine_iterations", r.refine_iterations);
+  row.count("direct_patches", r.direct.patches);
+  row.number("direct_share", r.direct.share, 3);
   row.count("map_points", r.map_points);
   row.count("map_keyframes", r.map_keyframes);
   row.count("new_points", r.new_points);

@@ -9,10 +9,12 @@
 namespace stillpoint {
 
 int frames_looked_back(const Config& config) {
-  if (config.run.method == "none" || config.run.method == "oracle") return 0;
+  if (config.run.method == "none") return 0;
+  const int directly = config.direct.below_inliers > 0 ? config.direct.max_age : 0;
+  if (config.run.method == "oracle") return directly;
   if (config.run.method != "stillpoint") return config.motion.reference_gap;
   const DepthMotionConfig& motion = config.depth_motion;
-  return std::max({motion.near_reference, motion.far_reference, motion.slow_reference});
+  return std::max({motion.near_reference, motion.far_reference, motion.slow_reference, directly});
 }
 
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)

@@ -238,6 +238,24 @@ StagePictures stillpoint_pictures(const FrameView& view, const Camera& camera, c
   return {{target_photo(view)}, photo("Small view", small.gray, FrameSpace::kSmall)};
 }
 
+/// Patches that were aligned directly, as squares of their residual.
+StagePicture direct_picture(const FrameView& view, const DirectRecord& direct) {
+  constexpr int kHalf = 4;  // px
+  cv::Mat values(view.frame.gray.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
+  if (direct.seen)
+    for (const DirectPatch& patch : *direct.seen) {
+      const cv::Point middle(cvRound(patch.pixel.x), cvRound(patch.pixel.y));
+      const cv::Rect square(middle.x - kHalf, middle.y - kHalf, 2 * kHalf + 1, 2 * kHalf + 1);
+      values(square & cv::Rect({0, 0}, values.size())).setTo(patch.residual);
+    }
+  return {"Patches by their residual",
+          PictureLook::kSigned,
+          values,
+          {},
+          std::max(10.0, std::ceil(2.0 * direct.rms_after)),
+          "grey levels"};
+}
+
 StagePictures odometry_pictures(const FrameView& view, StageKind kind) {
   const StagePicture plain = target_photo(view);
   if (view.record == nullptr) return {{}, plain};
@@ -251,6 +269,8 @@ StagePictures odometry_pictures(const FrameView& view, StageKind kind) {
     case StageKind::kFeatureRemoval:
       return {{view.mask.empty() ? plain : mask_over("Mask", view.mask, plain)},
               dotted("Kept and removed", plain, feature_dots(*view.record, false))};
+    case StageKind::kDirectRefinement:
+      return {{plain, judged}, direct_picture(view, view.record->direct)};
     case StageKind::kMatching:
       return {{found}, dotted("Matched, and not", plain, feature_dots(*view.record, true))};
     default:

@@ -64,6 +64,28 @@ void add_pose_stages(const FrameRecord& record, std::vector<StageInfo>& stages) 
   if (!record.estimated) refined.note = record.note;
 }
 
+/// Of a frame whose corners starved; of all others there is nothing to tell.
+void add_direct_stage(const FrameRecord& record, std::vector<StageInfo>& stages) {
+  const DirectRecord& direct = record.direct;
+  if (direct.reference_frame == kNone) return;
+  StageInfo& stage = add_stage(stages, StageKind::kDirectRefinement, kOdometry, "Direct refinement",
+                               "Too few corners: small patches of an earlier frame are laid where they look "
+                               "alike, coarse to fine, outside the motion mask.");
+  stage.ms = record.ms.direct;
+  add_figure(stage, "Frames back", record.index - direct.reference_frame);
+  add_figure(stage, "Patches in view", direct.patches);
+  add_figure(stage, "Steps", direct.iterations);
+  add_figure(stage, "Residual before", direct.rms_before, "grey levels", 2);
+  add_figure(stage, "Residual after", direct.rms_after, "grey levels", 2);
+  add_figure(stage, "Correlation", direct.correlation, "", 3);
+  add_figure(stage, "At the depth expected", 100.0 * direct.agreement, "%", 1);
+  add_figure(stage, "Share in the pose", 100.0 * direct.share, "%", 1);
+  stage.note = !direct.believed      ? "It is not believed: the patches are too few, too unlike or elsewhere."
+               : direct.share >= 1.0 ? "The pose is by patches alone."
+               : direct.share > 0.0  ? "The pose is by corners and patches, each by its information."
+                                     : "The first pose, under which motion is judged, is by patches.";
+}
+
 void add_map_stages(const FrameRecord& record, std::vector<StageInfo>& stages) {
   StageInfo& mapping =
       add_stage(stages, StageKind::kMapping, kOdometry, "Keyframe and map",
@@ -113,6 +135,7 @@ void compare_matches(const FrameRecord& now, const FrameRecord& before, std::vec
 void add_odometry_stages(const FrameRecord& record, std::vector<StageInfo>& stages) {
   add_feature_stages(record, stages);
   add_pose_stages(record, stages);
+  add_direct_stage(record, stages);
   add_map_stages(record, stages);
 }
 

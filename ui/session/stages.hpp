@@ -46,6 +46,7 @@ enum class StageKind {
   kMatching,
   kInitialPose,
   kRefinement,
+  kDirectRefinement,
   kMapping,
   kBundle,
 };

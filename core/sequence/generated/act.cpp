@@ -63,11 +63,25 @@ constexpr Kind kKinds[] = {
     {"cup", Handling::kXyz, Kind::kCup},
 };
 
+constexpr Kind kHardKinds[] = {
+    {"room_shaken", Handling::kShaken, Kind::kNobody},
+    {"walking_shaken", Handling::kShaken, Kind::kWalking},
+};
+
+template <std::size_t kCount>
+std::vector<std::string> names_of(const Kind (&kinds)[kCount]) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) names.emplace_back(kind.name);
+  return names;
+}
+
 const Kind& find_kind(std::string_view name) {
   for (const Kind& kind : kKinds)
     if (name == kind.name) return kind;
-  throw InputError(fmt::format("there is no generated sequence '{}'; the kinds are: {}", name,
-                               fmt::join(act_kinds(), ", ")));
+  for (const Kind& kind : kHardKinds)
+    if (name == kind.name) return kind;
+  throw InputError(fmt::format("there is no generated sequence '{}'; the kinds are: {}, {}", name,
+                               fmt::join(act_kinds(), ", "), fmt::join(hard_act_kinds(), ", ")));
 }
 
 /// Chairs, people and where the camera is.
@@ -119,18 +133,21 @@ void stage(const Kind& kind, Furnisher& f, unsigned seed, double seconds, Act& a
 }  // namespace
 
 const std::vector<std::string>& act_kinds() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Kind& kind : kKinds) all.emplace_back(kind.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = names_of(kKinds);
+  return names;
+}
+
+const std::vector<std::string>& hard_act_kinds() {
+  static const std::vector<std::string> names = names_of(kHardKinds);
   return names;
 }
 
 Act make_act(std::string_view name, unsigned seed, double seconds) {
   const Kind& kind = find_kind(name);
   Act act;
+  constexpr double kDimRoom = 0.025;  // s: by lamplight a camera exposes for most of a frame
   act.camera.handling = kind.handling;
+  if (kind.handling == Handling::kShaken) act.exposure = kDimRoom;
   act.scene.pictures = draw_pictures(seed);
   Dice dice(hash(seed, 0xF00Du));
   Furnisher furnisher(act.scene, dice);

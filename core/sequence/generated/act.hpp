@@ -14,6 +14,7 @@ namespace stillpoint::generated {
 struct Act {
   Scene scene;
   CameraPlan camera;
+  double exposure = 0.012;  ///< s, of colour
   /// Adds all that can move, as it is at a time in seconds; const and safe from several threads.
   std::function<void(double seconds, Instant& instant)> play;
 };
@@ -23,5 +24,7 @@ struct Act {
 [[nodiscard]] Act make_act(std::string_view kind, unsigned seed, double seconds);
 
 [[nodiscard]] const std::vector<std::string>& act_kinds();
+/// Beside them, harder ones that no set of standard sequences holds.
+[[nodiscard]] const std::vector<std::string>& hard_act_kinds();
 
 }  // namespace stillpoint::generated

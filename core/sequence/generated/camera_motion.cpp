@@ -35,8 +35,18 @@ Amplitudes drift_of(Handling handling) {
       return {0.03, 2.0 * kDegree};
     case Handling::kSweep:
       return {0.04, 2.2 * kDegree};
+    case Handling::kShaken:
+      return {0.03, 1.0 * kDegree};
   }
   return {0, 0};
+}
+
+/// 0 for most of a first half of the period, 1 for most of the other, and from one to the other within
+/// `jerk`.
+double to_and_fro(double seconds, double period, double jerk) {
+  const double phase = seconds - period * std::floor(seconds / period);
+  const auto smooth = [](double t) { return t <= 0 ? 0.0 : t >= 1 ? 1.0 : t * t * (3 - 2 * t); };
+  return smooth((phase - 0.5 * period) / jerk) - smooth((phase - period) / jerk + 1);
 }
 
 }  // namespace
@@ -63,6 +73,13 @@ Pose CameraMotion::world_from_camera(double s) const {
     target += e * by;
   } else if (plan_.handling == Handling::kRpy) {
     turn = e * kDegree * Eigen::Vector3d(13 * wave(0, 1.15), 22 * wave(1, 0.9), 17 * wave(2, 1.35));
+  } else if (plan_.handling == Handling::kShaken) {
+    // Calm for most of a second, then off to the other side: a turn begins and ends without warning.
+    const double aside = 20 * to_and_fro(s + start_[0], 2.4, 0.18) - 10,
+                 up = 9 * to_and_fro(s + start_[1], 3.4, 0.15) - 4.5;
+    const double roll = 14 * to_and_fro(s + start_[2], 4.6, 0.2) - 7;
+    turn = e * kDegree * Eigen::Vector3d(up + 2 * wave(0, 1.15), aside + 3 * wave(1, 0.9), roll);
+    position += e * Eigen::Vector3d(0.12 * wave(2, 0.8), 0.05 * wave(1, 0.6), 0.03 * wave(0, 1.1));
   } else if (plan_.handling == Handling::kHalfsphere || plan_.handling == Handling::kSweep) {
     const bool sweep = plan_.handling == Handling::kSweep;
     const Eigen::Vector3d out = position - target;

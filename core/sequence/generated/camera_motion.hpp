@@ -14,6 +14,7 @@ enum class Handling {
   kRpy,         ///< turned about three axes in place
   kHalfsphere,  ///< carried on an arc about the scene, looking at its middle
   kSweep,       ///< carried slowly round the desk
+  kShaken,      ///< turned in place by jerks, up to some 170 degrees a second
 };
 
 struct CameraPlan {

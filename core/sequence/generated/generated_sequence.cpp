@@ -54,11 +54,7 @@ class GeneratedSequence : public FrameSource {
   [[nodiscard]] Frame read(int index) const override {
     const double seconds = timestamp(index) - kEpoch;
     const Instant middle = instant(seconds);
-    std::array<Instant, 4> exposure;
-    for (std::size_t k = 0; k < exposure.size(); ++k)
-      exposure[k] = instant(seconds + kExposure * (static_cast<double>(k) - 1.5) / 4);
-    const Rendering ideal =
-        cast_frame(act_.scene, camera_, middle, exposure, blur(exposure.front(), exposure.back()));
+    const Rendering ideal = expose(seconds, middle);
 
     Frame frame;
     frame.index = index;
@@ -87,6 +83,26 @@ class GeneratedSequence : public FrameSource {
   }
 
  private:
+  /// What the camera sees while it exposes. Four instants do for a little blur; more is made of whole images.
+  [[nodiscard]] Rendering expose(double seconds, const Instant& middle) const {
+    constexpr double kMostBlur = 24.0, kStep = 1.5;  // px
+    const auto at = [&](int k, int count) {
+      return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count);
+    };
+    const std::array<Instant, 4> few = {at(0, 4), at(1, 4), at(2, 4), at(3, 4)};
+    const double blurred = blur(few.front(), few.back());
+    if (blurred <= kMostBlur || act_.camera.handling != Handling::kShaken)
+      return cast_frame(act_.scene, camera_, middle, few, std::min(kMostBlur, blurred));
+    const int count = std::min(40, static_cast<int>(std::ceil(4.0 / 3.0 * blurred / kStep)));
+    Rendering whole = cast_depth(act_.scene, camera_, middle);
+    whole.colour = cv::Mat::zeros(whole.depth.size(), CV_32FC3);
+    for (int k = 0; k < count; ++k) {
+      const Instant one = at(k, count);
+      whole.colour += cast_frame(act_.scene, camera_, one, {&one, 1}, 1.0).colour / count;
+    }
+    return whole;
+  }
+
   [[nodiscard]] Instant instant(double seconds) const {
     Instant result;
     result.world_from_camera = motion_.world_from_camera(seconds);
@@ -114,7 +130,7 @@ class GeneratedSequence : public FrameSource {
       const double distance = std::max(0.4, (a - first.world_from_camera.translation()).norm());
       fastest = std::max(fastest, camera_.fx * (b - a).norm() / distance);
     }
-    return std::min(24.0, camera_blur + 1.3 * fastest);
+    return camera_blur + 1.3 * fastest;
   }
 
   std::string name_;
@@ -130,6 +146,7 @@ class GeneratedSequence : public FrameSource {
 }  // namespace
 
 const std::vector<std::string>& generated_kinds() { return act_kinds(); }
+const std::vector<std::string>& hard_generated_kinds() { return hard_act_kinds(); }
 
 std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed) {
   if (frames < 0 || frames > kMostFrames)

@@ -12,6 +12,10 @@ namespace stillpoint {
 /// The kinds of generated sequence: the benchmark's nine by name, `room` (nothing moves), `approach` (motion
 /// along the optical axis) and `cup` (a small thing pushed across a table).
 [[nodiscard]] const std::vector<std::string>& generated_kinds();
+/// Beside them `room_shaken` and `walking_shaken`: the camera is turned by jerks while it exposes long, so
+/// that for some frames in a row there is little but blur. Harder than the benchmark, and not among
+/// generated:all.
+[[nodiscard]] const std::vector<std::string>& hard_generated_kinds();
 
 /// A sequence filmed in a furnished room by ray casting: 640x480 at 30 Hz through camera `generated` and a
 /// Kinect-like sensor (generated/sensor.hpp), with exact poses and masks.

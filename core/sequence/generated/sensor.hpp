@@ -9,8 +9,6 @@
 
 namespace stillpoint::generated {
 
-constexpr double kExposure = 0.012;  // s
-
 /// A structured-light depth camera beside a colour camera, of the first Kinect's kind.
 ///
 /// Depth noise and step sizes grow with the square of depth (deviation 1.2 mm + 1.9 mm/m² (z - 0.4 m)²;
