@@ -11,6 +11,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/image_memory.hpp"
 
 namespace {
 
@@ -26,8 +27,9 @@ bool output_arrived() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Images come and go by the frame: kept by the allocator, their pages need not be had from the kernel anew
+  // Images come and go by the frame, and so do tables: kept, their pages need not be had from the kernel anew
   // each time.
+  stillpoint::keep_image_memory();
   constexpr int kKeptBytes = 256 << 20;
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);

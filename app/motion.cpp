@@ -253,7 +253,7 @@ void run_colour_sequence(const MotionOptions& options, const Config& config) {
     const Frame frame = source->read(index);
     ColourMotionTrace trace;
     if (frame.readable())
-      trace = detector.next(frame.colour.empty() ? frame.gray : frame.colour);
+      trace = detector.next(frame.colour.empty() ? frame.gray : frame.colour, frame.timestamp);
     else
       trace.note = "no mask: " + frame.problem;
     if (index < range.begin || (index - range.begin) % range.step != 0) continue;

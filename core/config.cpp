@@ -179,7 +179,7 @@ std::vector<Parameter> parameters(Config& c) {
   number("colour_motion.close_px", &u.close_px, 0, 50, "quarter px",
          "gaps in the mask up to twice this are closed");
   number("colour_motion.shave_px", &u.shave_px, 0, 20, "quarter px",
-         "taken off the mask's outline at the end");
+         "so far within its outline the mask goes with its colours");
   number("colour_motion.min_age", &u.min_age, 1, 60, "frames",
          "so long a point is followed before it has a say");
   number("colour_motion.same_motion_px", &u.same_motion_px, 0.05, 20, "small px",

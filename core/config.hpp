@@ -76,10 +76,10 @@ struct ColourMotionConfig {
   double same_motion_px = 0.5;   ///< difference of two points' paths that sets them apart, small px
   double sharing = 2.0;          ///< weight of a neighbour that moves alike against a point's own evidence
   double colour_price = 0.15;    ///< what a grey level of change costs evidence on its way, quarter-size px
-  double longest_way = 8.0;      ///< way after which evidence ends, quarter-size px
+  double longest_way = 8.0;      ///< way after which evidence ends, or, up to twice it, colours must agree
   double moving_evidence = 0.3;  ///< above it a pixel moves
   int close_px = 8;              ///< gaps in the mask up to twice this are closed, quarter-size px
-  int shave_px = 3;  ///< taken off the outline, which windows that see both sides push out, quarter-size px
+  int shave_px = 3;              ///< within the outline: so far pixels go with their colours, quarter-size px
   double min_area_share = 0.008;  ///< smaller regions are noise, share of the image
   int min_points = 8;             ///< regions with fewer moving points are noise
 

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/geometry/se3.hpp"
+#include "core/motion/colour_outline.hpp"
 #include "core/motion/regions.hpp"
 #include "core/motion/shared_evidence.hpp"
 #include "core/stopwatch.hpp"
@@ -18,11 +20,15 @@ constexpr int kSmallerBy = 2;  // full-size pixels a side of a small pixel, in w
 constexpr int kFewestPairs = 40;
 constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
 constexpr float kExpectedNoise = 0.3F;  // px, small image: of a followed point
-// A turn of the camera mistaken for its going sideways, as before a plane, looks like places behind infinity,
-// so lying there is no evidence.
-constexpr double kNoTurn = 1e9;
-constexpr float kGreyNoise = 8.0F;  // grey levels, in a window that is followed
-constexpr float kEdge = 0.06F;      // smaller over larger eigenvalue, below which a point lies on an edge
+constexpr double kNowhere = 1e9;        // focal lengths behind infinity
+constexpr float kGreyNoise = 8.0F;      // grey levels, in a window that is followed
+constexpr float kEdge = 0.06F;          // smaller over larger eigenvalue, below which a point lies on an edge
+constexpr double kFar = 2.0;            // longest ways within which what looks like a mover is part of it
+constexpr int kAbout = 10;         // quarter-size px: what lies so near is what a mover is told apart from
+constexpr double kSure = 3.0;      // standard deviations beyond which places lie behind infinity
+constexpr double kPlainly = 4.0;   // so many times more must lie before the camera than behind infinity
+constexpr double kRestless = 1.5;  // the rate's own change, measured on few frames, is taken so much larger
+constexpr double kMostSay = 1.0;   // evidence of one frame
 constexpr float kLeastNoise = 0.1F, kMostNoise = 0.4F;
 
 Eigen::Vector3d bearing(const cv::Point2f& pixel, const Camera& camera) {
@@ -55,6 +61,21 @@ double weighted_median(std::vector<std::pair<double, double>> value_and_weight) 
   return 0.0;
 }
 
+/// Whether parallax plainly goes one way, so that where infinity lies is known. Before a plane, a turn of the
+/// camera mistaken for its going sideways looks like places behind infinity.
+bool lies_before_camera(const std::vector<BearingPair>& pairs, const CameraTurn& motion, double sigma) {
+  if (motion.turns_only) return false;
+  double before = 0.0, behind = 0.0;
+  for (const BearingPair& pair : pairs) {
+    if (std::abs(sampson_distance(motion, pair)) > kSure * sigma) continue;
+    double unsure = 0.0;
+    const double near = nearness(motion, pair, unsure), least = kSure * std::hypot(unsure, sigma);
+    if (near > least) before += pair.weight;
+    if (near < -least) behind += pair.weight;
+  }
+  return before > kPlainly * behind;
+}
+
 /// A residual by its own noise: that of all points, and what a point is free to slide where it has little
 /// gradient, all the farther the longer it is followed.
 float in_sigmas(const cv::Point2f& residual, double sigma, int gap, const cv::Matx22f& gradients) {
@@ -76,19 +97,28 @@ bool is_edge(const cv::Matx22f& gradients) {
   return determinant < kEdge * trace * trace;  // nearly the ratio of the two eigenvalues
 }
 
+cv::Mat disc(int radius) {
+  return cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1});
+}
+
+/// What points near by say moves, its gaps closed; and farther off, and at its outline, what looks like it.
+cv::Mat moving_pixels(const cv::Mat& image, const SpreadEvidence& spread, const ColourMotionConfig& config) {
+  const cv::Mat moving = spread.evidence > config.moving_evidence;
+  cv::Mat near = moving & (spread.way <= config.longest_way);
+  cv::Mat far = moving & (spread.way <= kFar * config.longest_way);
+  cv::morphologyEx(near, near, cv::MORPH_OPEN, cv::Mat());
+  cv::morphologyEx(far, far, cv::MORPH_OPEN, cv::Mat());
+  if (config.close_px > 0) cv::morphologyEx(near, near, cv::MORPH_CLOSE, disc(config.close_px));
+  cv::Mat sure = near;
+  if (config.shave_px > 0) cv::erode(near, sure, disc(config.shave_px));
+  cv::Mat mask = settle_outline(image, sure, near | far, kAbout);
+  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc(2));
+  return mask;
+}
+
 /// Regions large enough and with enough points that move, their holes filled.
-cv::Mat moving_regions(const cv::Mat& evidence, const std::vector<PointTrack>& tracks,
-                       const std::vector<float>& shared, const ColourMotionConfig& config) {
-  cv::Mat mask = evidence > config.moving_evidence;
-  cv::morphologyEx(mask, mask, cv::MORPH_OPEN, cv::Mat());
-  if (config.close_px > 0)
-    cv::morphologyEx(
-        mask, mask, cv::MORPH_CLOSE,
-        cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * config.close_px + 1, 2 * config.close_px + 1}));
-  if (config.shave_px > 0)
-    cv::erode(
-        mask, mask,
-        cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * config.shave_px + 1, 2 * config.shave_px + 1}));
+cv::Mat moving_regions(cv::Mat mask, const std::vector<PointTrack>& tracks, const std::vector<float>& shared,
+                       const ColourMotionConfig& config) {
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
   std::vector<int> moving_points(static_cast<std::size_t>(count), 0);
@@ -115,33 +145,64 @@ cv::Mat moving_regions(const cv::Mat& evidence, const std::vector<PointTrack>& t
 ColourMotionDetector::ColourMotionDetector(const Camera& camera, const ColourMotionConfig& config)
     : camera_(camera), config_(config) {}
 
-void ColourMotionDetector::judge(ColourReference& reference, const std::vector<cv::Point2f>& now) {
+/// Points seen both now and `gap` frames ago, each with its share of the image and the trust that it stands
+/// still.
+std::vector<BearingPair> ColourMotionDetector::pairs_with(int gap, bool level,
+                                                          std::vector<int>& points) const {
   const std::vector<PointTrack>& tracks = tracks_.all();
-  std::vector<cv::Point2f> then, places;
+  std::vector<cv::Point2f> then, now;
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (const cv::Point2f* back = tracks[i].back(reference.gap)) {
-      reference.points.push_back(static_cast<int>(i));
+    if (const cv::Point2f* back = tracks[i].back(gap)) {
+      points.push_back(static_cast<int>(i));
       then.push_back(*back);
-      places.push_back(now[i]);
+      now.push_back(tracks[i].path.back());
     }
-  if (static_cast<int>(then.size()) < kFewestPairs) return;
-  then = small_.undistort(then);
-  const std::vector<cv::Point2f> straight = small_.undistort(places);
-  const std::vector<double> even = even_weights(places, static_cast<float>(4 * config_.cell_px));
+  if (points.empty()) return {};
+  std::vector<cv::Point2f> straight_then = small_.undistort(then), straight_now = small_.undistort(now);
+  if (level) {
+    undo_shutter(small_, rates_.at(gap), then, straight_then);
+    undo_shutter(small_, rates_.at(0), now, straight_now);
+  }
+  const std::vector<double> even = even_weights(now, static_cast<float>(4 * config_.cell_px));
   std::vector<BearingPair> pairs;
-  for (std::size_t k = 0; k < then.size(); ++k) {
-    const float held = tracks[static_cast<std::size_t>(reference.points[k])].evidence;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const float held = tracks[static_cast<std::size_t>(points[k])].evidence;
     const double trust = 0.02 + 1.0 / (1.0 + std::exp(2.0 * held));
-    pairs.push_back({bearing(straight[k], small_), bearing(then[k], small_), even[k] * trust});
+    pairs.push_back({bearing(straight_now[k], small_), bearing(straight_then[k], small_), even[k] * trust,
+                     after_middle(small_, now[k].y)});
+  }
+  return pairs;
+}
+
+void ColourMotionDetector::measure_turn(double seconds) {
+  std::vector<int> points;
+  std::vector<BearingPair> pairs = pairs_with(1, false, points);
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (static_cast<int>(pairs.size()) >= kFewestPairs)
+    rotation = estimate_rotation(pairs, kExpectedNoise / small_.fx);
+  rates_.add(so3_log(rotation), seconds, config_.far_reference);
+}
+
+void ColourMotionDetector::judge(ColourReference& reference) {
+  const std::vector<PointTrack>& tracks = tracks_.all();
+  const std::vector<BearingPair> pairs = pairs_with(reference.gap, true, reference.points);
+  if (static_cast<int>(pairs.size()) < kFewestPairs) {
+    reference.points.clear();
+    return;
   }
   CameraTurnOptions options;
   options.sigma = kExpectedNoise / small_.fx;
   options.least_sigma = 1.2 * kLeastNoise / small_.fx;
+  if (small_.readout_s != 0.0) options.rate_sigma = kRestless * rates_.sigma();
   reference.motion = estimate_camera_turn(pairs, options);
+  const bool sided = lies_before_camera(pairs, reference.motion, options.sigma);
   std::vector<std::pair<double, double>> noise;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const BearingPair& pair = pairs[k];
-    const Eigen::Vector2d off = unexplained(reference.motion, pair, kNoTurn) * small_.fx;
+    double unsure = 0.0;
+    (void)nearness(reference.motion, pair, unsure);
+    const double tolerance = sided ? kSure * unsure : kNowhere;
+    const Eigen::Vector2d off = unexplained(reference.motion, pair, tolerance) * small_.fx;
     const Eigen::Vector2d shift = parallax(reference.motion, pair) * small_.fx;
     reference.residuals.emplace_back(static_cast<float>(off.x()), static_cast<float>(off.y()));
     reference.shifts.emplace_back(static_cast<float>(-shift.x()), static_cast<float>(-shift.y()));
@@ -158,32 +219,39 @@ void ColourMotionDetector::judge(ColourReference& reference, const std::vector<c
 
 void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& references) {
   std::vector<PointTrack>& tracks = tracks_.all();
-  std::vector<float> heard(tracks.size(), 0.0F);
+  std::vector<float> heard(tracks.size(), 0.0F), most(tracks.size(), -1.0F);
   std::vector<int> times(tracks.size(), 0);
-  for (const ColourReference& reference : references)
+  for (const ColourReference& reference : references) {
+    // Over less time than to the nearest reference, what moves may hardly have moved yet.
+    const double still = -0.5 * std::min(1.0, static_cast<double>(reference.gap) / config_.near_reference);
     for (std::size_t k = 0; k < reference.sigmas.size(); ++k) {
       const auto i = static_cast<std::size_t>(reference.points[k]);
       if (is_edge(tracks[i].gradients)) continue;
-      const double sigmas = reference.sigmas[k];
-      heard[i] +=
-          static_cast<float>(std::clamp(config_.evidence_a_sigma * (sigmas - config_.sigmas), -0.5, 1.0));
+      const double say = config_.evidence_a_sigma * (reference.sigmas[k] - config_.sigmas);
+      const auto said = static_cast<float>(std::clamp(say, still, kMostSay));
+      heard[i] += said;
+      most[i] = std::max(most[i], said);
       ++times[i];
     }
+  }
   const auto limit = static_cast<float>(config_.max_evidence);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (times[i] == 0) continue;
-    const float now = heard[i] / static_cast<float>(times[i]);
+    // What stands still in one comparison may move in another, but one alone may be wrong.
+    const float now = 0.5F * (heard[i] / static_cast<float>(times[i]) + most[i]);
     tracks[i].evidence = std::clamp(static_cast<float>(config_.memory) * tracks[i].evidence + now,
                                     -static_cast<float>(config_.max_static_evidence), limit);
   }
 }
 
-ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
+ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional<double> timestamp) {
   if (image.empty() || (image.type() != CV_8UC3 && image.type() != CV_8UC1))
     throw InputError("colour motion needs an 8-bit image of one or three channels");
   ColourMotionTrace trace;
   if (image.size() != size_) {
     tracks_.clear();
+    rates_.clear();
+    timestamp_.reset();
     size_ = image.size();
     small_ = camera_.scaled_to(size_.width / kSmallerBy, size_.height / kSmallerBy);
   }
@@ -198,8 +266,12 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
   tracks_.advance(small, config_);
   trace.ms.points = watch.lap();
 
-  std::vector<cv::Point2f> now;
-  for (const PointTrack& track : tracks_.all()) now.push_back(track.path.back());
+  if (small_.readout_s != 0.0 && timestamp && timestamp_ && *timestamp > *timestamp_)
+    measure_turn(*timestamp - *timestamp_);
+  else
+    rates_.clear();
+  timestamp_ = timestamp;
+
   int last_gap = 0;
   for (const int wanted : {config_.near_reference, config_.far_reference / 2, config_.far_reference}) {
     const int gap = std::min(wanted, tracks_.frames() - 1);
@@ -207,7 +279,7 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
     last_gap = gap;
     ColourReference reference;
     reference.gap = gap;
-    judge(reference, now);
+    judge(reference);
     reference.ms = watch.lap();
     if (!reference.residuals.empty()) trace.references.push_back(std::move(reference));
   }
@@ -218,9 +290,12 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image) {
   cv::Mat smaller;
   cv::resize(image, smaller, small.size() / 2, 0, 0, cv::INTER_AREA);
   cv::GaussianBlur(smaller, smaller, {3, 3}, 0);
-  trace.evidence = spread_evidence(smaller, tracks_.all(), shared, config_);
+  const SpreadEvidence spread = spread_evidence(smaller, tracks_.all(), shared, config_);
+  trace.evidence = spread.evidence.clone();
+  trace.evidence.setTo(0.0F, spread.way > config_.longest_way);
   trace.ms.spread = watch.lap();
-  const cv::Mat small_mask = moving_regions(trace.evidence, tracks_.all(), shared, config_);
+  const cv::Mat small_mask =
+      moving_regions(moving_pixels(smaller, spread, config_), tracks_.all(), shared, config_);
   cv::resize(small_mask, trace.mask, size_, 0, 0, cv::INTER_LINEAR);
   trace.mask = trace.mask > 127;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,16 @@
 #include "core/motion/camera_turn.hpp"
 #include "core/motion/motion_trace.hpp"
 #include "core/motion/point_tracks.hpp"
+#include "core/motion/shutter.hpp"
 
 namespace stillpoint {
 
 // What moves, judged from colour alone: points are followed over some tenths of a second, the camera's own
 // motion is found from where they go, and what no place in a still room explains is held to move. A point may
-// shift along its epipolar line however it likes, for that is what parallax does; beside the line only what
-// moves can go. Evidence stays with its point from frame to frame, is shared among neighbours that have moved
-// alike all along, and spreads to the image up to colour's edges.
+// shift along its epipolar line up to infinity, for that is what parallax does; beside the line, and beyond
+// infinity, only what moves can go. Rows that a rolling shutter took at other times are first carried to
+// where the middle one's time would show them. Evidence stays with its point from frame to frame, is shared
+// among neighbours that have moved alike all along, and spreads to the image up to colour's edges.
 
 /// Comparison of the current frame with one some frames back.
 struct ColourReference {
@@ -66,17 +69,22 @@ class ColourMotionDetector {
 
   /// The next frame.
   /// @param image CV_8UC3 or CV_8UC1. A frame of another size than the last begins anew.
+  /// @param timestamp s, when its middle row was taken; without it a rolling shutter is not undone
   /// @throws InputError for another type, or none
-  [[nodiscard]] ColourMotionTrace next(const cv::Mat& image);
+  [[nodiscard]] ColourMotionTrace next(const cv::Mat& image, std::optional<double> timestamp = std::nullopt);
 
  private:
-  void judge(ColourReference& reference, const std::vector<cv::Point2f>& now);
+  [[nodiscard]] std::vector<BearingPair> pairs_with(int gap, bool level, std::vector<int>& points) const;
+  void measure_turn(double seconds);
+  void judge(ColourReference& reference);
   void gather_evidence(const std::vector<ColourReference>& references);
 
   Camera camera_;  ///< as given; scaled to the frames' size
   Camera small_;   ///< of the small image
   ColourMotionConfig config_;
   PointTracks tracks_;
+  TurnRates rates_;
+  std::optional<double> timestamp_;  ///< of the last frame
   cv::Size size_;
 };
 

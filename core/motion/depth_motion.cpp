@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/image_memory.hpp"
 #include "core/motion/depth_evidence.hpp"
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/segments.hpp"
@@ -147,6 +150,24 @@ class Neighbourhood {
     return value;
   }
 
+  /// The same of a block's row, its unmeasured pixels 0; four at a time, as blocks mostly are wide.
+  void most_like(const float* z, int width, uchar* out) const {
+    int x = 0;
+    for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
+      const cv::v_float32x4 depth = cv::v_load(z + x);
+      cv::v_float32x4 best = cv::v_setall_f32(std::numeric_limits<float>::max()), value = cv::v_setzero_f32();
+      for (std::size_t i = 0; i < count_; ++i) {
+        const cv::v_float32x4 difference = cv::v_abs(cv::v_setall_f32(depth_[i]) - depth);
+        const cv::v_float32x4 nearer = difference < best;
+        best = cv::v_select(nearer, difference, best);
+        value = cv::v_select(nearer, cv::v_setall_f32(moving_[i]), value);
+      }
+      const int moving = cv::v_signmask((value > cv::v_setzero_f32()) & (depth > cv::v_setzero_f32()));
+      for (int k = 0; k < cv::v_float32x4::nlanes; ++k) out[x + k] = (moving >> k & 1) != 0 ? 255 : 0;
+    }
+    for (; x < width; ++x) out[x] = z[x] > 0 ? most_like(z[x]) : uchar{0};
+  }
+
  private:
   std::array<float, 9> depth_{};
   std::array<uchar, 9> moving_{};
@@ -163,17 +184,18 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   const cv::Mat edge = low != high;
   cv::resize(small_mask, mask, full_depth.size(), 0, 0, cv::INTER_NEAREST);
   const int f = view.factor;
-  std::vector<cv::Point> unmeasured, inside;
+  std::vector<cv::Point, KeptMemory<cv::Point>> unmeasured, inside;
   for (int sy = 0; sy < edge.rows; ++sy)
     for (int sx = 0; sx < edge.cols; ++sx) {
       if (edge.ptr<uchar>(sy)[sx] == 0) continue;
       const Neighbourhood about(small_mask, view.depth, sx, sy);
-      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y)
-        for (int x = sx * f; x < std::min((sx + 1) * f, mask.cols); ++x) {
-          const float z = full_depth.ptr<float>(y)[x];
-          mask.ptr<uchar>(y)[x] = z > 0 ? about.most_like(z) : uchar{0};
-          if (z <= 0) unmeasured.emplace_back(x, y);
-        }
+      const int first = sx * f, end = std::min((sx + 1) * f, mask.cols);
+      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y) {
+        const auto* z = full_depth.ptr<float>(y);
+        about.most_like(z + first, end - first, mask.ptr<uchar>(y) + first);
+        for (int x = first; x < end; ++x)
+          if (z[x] <= 0) unmeasured.emplace_back(x, y);
+      }
     }
   for (const cv::Point& p : unmeasured)
     if (enclosed_by_motion(mask, full_depth, p.x, p.y, kReach)) inside.push_back(p);
@@ -199,12 +221,28 @@ void remember_judgement(DepthMotionTrace& trace, const DepthMotionConfig& config
   }
 }
 
+/// What one reference says, told by the patches' labels and what is remembered.
+ReferenceEvidence evidence_of_reference(const RgbdView& current, ReferenceView reference,
+                                        const DepthMotionTrace& trace, const DepthMotionConfig& config) {
+  const Stopwatch watch;
+  PatchMotions measured;
+  if (reference.old) {
+    measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+    reference.reference_from_current = measured.reference_from_current;
+  }
+  ReferenceEvidence evidence = compare_with_reference(current, reference, trace.prior, config);
+  evidence.patches = std::move(measured.patches);
+  evidence.reference = reference;
+  evidence.ms = watch.milliseconds();
+  return evidence;
+}
+
 }  // namespace
 
 DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
                                      const cv::Mat& full_depth, const std::vector<ReferenceView>& references,
                                      const MotionMemory* memory, const Pose& previous_from_current,
-                                     const DepthMotionConfig& config) {
+                                     const DepthMotionConfig& config, int threads) {
   DepthMotionTrace trace;
   trace.labels = std::move(patches.labels);
   trace.segments = std::move(patches.segments);
@@ -212,19 +250,19 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
   trace.ms.memory = watch.lap();
+  // References know nothing of each other: all but the last are compared with beside it.
+  std::vector<std::future<ReferenceEvidence>> compared;
+  for (std::size_t i = 0; i < references.size(); ++i)
+    compared.push_back(
+        std::async(threads > 1 && i + 1 < references.size() ? std::launch::async : std::launch::deferred,
+                   [&, i] { return evidence_of_reference(current, references[i], trace, config); }));
+  if (!compared.empty()) compared.back().wait();
   cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  for (ReferenceView reference : references) {
-    PatchMotions measured;
-    if (reference.old) {
-      measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
-      reference.reference_from_current = measured.reference_from_current;
-    }
-    trace.references.push_back(compare_with_reference(current, reference, trace.prior, config));
-    trace.references.back().patches = std::move(measured.patches);
-    trace.references.back().reference = reference;
+  for (std::future<ReferenceEvidence>& one : compared) {
+    trace.references.push_back(one.get());
     add_pixels(trace.references.back(), trace.labels, evidence);
-    trace.references.back().ms = watch.lap();
   }
+  (void)watch.lap();
   trace.slow = evidence_of_patches(trace, config);
   evidence += trace.slow;
   trace.log_odds = with_memory(trace.prior, evidence, config);

@@ -93,12 +93,13 @@ struct MotionMemory {
 /// @param references earlier frames with depth; none gives an empty mask and a note
 /// @param memory of the frame before, with the motion to it; null where there is none
 /// @param full_depth CV_32FC1, m: the frame's own, to which the mask's outline is fitted
+/// @param threads above 1, references are compared with beside each other; the result is the same
 [[nodiscard]] DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
                                                    const cv::Mat& full_depth,
                                                    const std::vector<ReferenceView>& references,
                                                    const MotionMemory* memory,
                                                    const Pose& previous_from_current,
-                                                   const DepthMotionConfig& config);
+                                                   const DepthMotionConfig& config, int threads = 1);
 
 /// Standard deviation (m) of a Kinect-like sensor's depth at z metres: so much, and so much more with the
 /// square of the distance (Khoshelham & Oude Elberink 2012; Nguyen et al. 2012).

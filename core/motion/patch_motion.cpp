@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image_memory.hpp"
 #include "core/motion/carrier.hpp"
 #include "core/motion/segments.hpp"
 
@@ -148,10 +149,11 @@ struct TwistTerm {
   Matrix6d h;
   Vector6d g;
 };
+using TwistTerms = std::vector<TwistTerm, KeptMemory<TwistTerm>>;
 
-std::vector<TwistTerm> twist_terms(const Camera& camera, const std::vector<Measured>& measured,
-                                   const std::vector<double>& votes) {
-  std::vector<TwistTerm> terms;
+TwistTerms twist_terms(const Camera& camera, const std::vector<Measured>& measured,
+                       const std::vector<double>& votes) {
+  TwistTerms terms;
   terms.reserve(measured.size());
   for (std::size_t i = 0; i < measured.size(); ++i) {
     const Measured& m = measured[i];
@@ -171,7 +173,7 @@ std::vector<TwistTerm> twist_terms(const Camera& camera, const std::vector<Measu
 /// The twist most patches share: iteratively reweighted least squares (Geman-McClure), from the pose given.
 /// Strict from the first round: all patches together may be met by a slide and a turn that belong to none of
 /// them.
-Vector6d common_twist(const std::vector<TwistTerm>& terms) {
+Vector6d common_twist(const TwistTerms& terms) {
   Vector6d twist = Vector6d::Zero();
   for (const double strictness : {12.0, 8.0, 6.0, 6.0, 6.0}) {
     Matrix6d h = Matrix6d::Zero();

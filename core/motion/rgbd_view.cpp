@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace stillpoint {
@@ -40,6 +41,14 @@ void slopes(const cv::Mat& gray, cv::Mat& slope_x, cv::Mat& slope_y) {
   }
 }
 
+constexpr int kLanes = cv::v_float32x4::nlanes;
+
+/// same_surface() of four pixels at once.
+cv::v_float32x4 same_surface(const cv::v_float32x4& a, const cv::v_float32x4& b) {
+  const cv::v_float32x4 nearer = cv::v_min(a, b);
+  return cv::v_abs(a - b) < cv::v_setall_f32(0.02F) + cv::v_setall_f32(0.012F) * nearer * nearer;
+}
+
 /// Which pixels lie within their surface, and how steep it is there.
 void describe_surface(const cv::Mat& depth, cv::Mat& within, cv::Mat& slope) {
   within = cv::Mat::zeros(depth.size(), CV_8UC1);
@@ -48,13 +57,26 @@ void describe_surface(const cv::Mat& depth, cv::Mat& within, cv::Mat& slope) {
     const auto *above = depth.ptr<float>(y - 1), *row = depth.ptr<float>(y), *below = depth.ptr<float>(y + 1);
     auto* inner = within.ptr<uchar>(y);
     auto* steepest = slope.ptr<float>(y);
-    for (int x = 1; x + 1 < depth.cols; ++x) {
+    int x = 1;
+    for (; x + kLanes < depth.cols; x += kLanes) {
+      const cv::v_float32x4 z = cv::v_load(row + x), zero = cv::v_setzero_f32();
+      cv::v_float32x4 all = z > zero, step = zero;
+      for (const float* beside : {row + x - 1, row + x + 1, above + x, below + x}) {
+        const cv::v_float32x4 other = cv::v_load(beside), same = (other > zero) & same_surface(z, other);
+        all = all & same;
+        step = cv::v_max(step, same & cv::v_abs(other - z));
+      }
+      const int within_all = cv::v_signmask(all);
+      for (int k = 0; k < kLanes; ++k) inner[x + k] = (within_all >> k & 1) != 0 ? 255 : 0;
+      cv::v_store(steepest + x, (z > zero) & step);
+    }
+    for (; x + 1 < depth.cols; ++x) {
       const float z = row[x];
       if (z <= 0) continue;
       bool all = true;
       float step = 0.0F;
       for (const float other : {row[x - 1], row[x + 1], above[x], below[x]}) {
-        const bool same = (other > 0) & same_surface(z, other);
+        const bool same = (other > 0) & stillpoint::same_surface(z, other);
         all &= same;
         step = std::max(step, same ? std::abs(other - z) : 0.0F);
       }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <opencv2/core/hal/intrin.hpp>
+#include <span>
 
 namespace stillpoint {
 namespace {
@@ -100,16 +101,33 @@ void offer(const Candidate& candidate, float y, float side, Row& row) {
   }
 }
 
+/// What giving pixels to patches is done in, round after round.
+struct Workspace {
+  Workspace(int width, std::size_t segments, int side)
+      : columns((width + side - 1 - side / 2) / side),
+        rows(static_cast<int>(segments) / std::max(1, columns)),
+        padded(static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes)),
+        candidates(static_cast<int>(padded), side, columns, rows),
+        row{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded),
+            std::vector<float>(padded), std::vector<int>(padded)},
+        sums(segments) {
+    std::iota(row.x.begin(), row.x.end(), 0.0F);
+  }
+
+  int columns, rows;   // of patches
+  std::size_t padded;  // px
+  Candidates candidates;
+  Row row;
+  std::vector<Sum> sums;
+};
+
 /// Gives each pixel to the nearest patch.
-void assign(const RgbdView& view, const std::vector<Segment>& segments, int side, cv::Mat& labels) {
-  const int columns = (view.depth.cols + side - 1 - side / 2) / side;
-  const int rows = static_cast<int>(segments.size()) / std::max(1, columns);
-  const int width = view.depth.cols, padded = (width + kLanes - 1) / kLanes * kLanes;
-  Candidates candidates(padded, side, columns, rows);
-  const auto n = static_cast<std::size_t>(padded);
-  Row row{std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<float>(n),
-          std::vector<int>(n)};
-  std::iota(row.x.begin(), row.x.end(), 0.0F);
+void assign(const RgbdView& view, const std::vector<Segment>& segments, int side, Workspace& work,
+            cv::Mat& labels) {
+  const int rows = work.rows, width = view.depth.cols;
+  const std::size_t n = work.padded;
+  Candidates& candidates = work.candidates;
+  Row& row = work.row;
   int gathered = -1;
   for (int y = 0; y < view.depth.rows; ++y) {
     if (const int r = std::min(y / side, rows - 1); r != gathered) candidates.gather(segments, gathered = r);
@@ -134,6 +152,7 @@ struct Contact {
 
 std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
   std::vector<std::pair<int, int>> touching;
+  touching.reserve(labels.total() / 4);
   const auto look = [&](int a, int b, float za, float zb) {
     if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
     touching.emplace_back(std::min(a, b), std::max(a, b));
@@ -156,15 +175,49 @@ std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
   return result;
 }
 
+/// Who touches whom, patch after patch in one list.
+class Neighbours {
+ public:
+  struct Neighbour {
+    std::size_t segment;
+    float weight;
+  };
+
+  Neighbours(const std::vector<Contact>& contacts, std::size_t segments, const DepthMotionConfig& config)
+      : start_(segments + 1, 0), all_(2 * contacts.size()) {
+    for (const Contact& contact : contacts)
+      ++start_[static_cast<std::size_t>(contact.a) + 1], ++start_[static_cast<std::size_t>(contact.b) + 1];
+    for (std::size_t s = 1; s < start_.size(); ++s) start_[s] += start_[s - 1];
+    std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+    for (const Contact& contact : contacts) {
+      const auto a = static_cast<std::size_t>(contact.a), b = static_cast<std::size_t>(contact.b);
+      const float weight = static_cast<float>(config.smoothing) * static_cast<float>(contact.boundary) /
+                           static_cast<float>(config.segment_px);
+      all_[next[a]++] = {b, weight};
+      all_[next[b]++] = {a, weight};
+    }
+  }
+
+  [[nodiscard]] std::span<const Neighbour> of(std::size_t segment) const {
+    return {all_.data() + start_[segment], start_[segment + 1] - start_[segment]};
+  }
+
+ private:
+  std::vector<std::size_t> start_;  // of each patch's part of all_
+  std::vector<Neighbour> all_;
+};
+
 }  // namespace
 
 SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& config) {
   SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),
                          seeds(view, config.segment_px)};
   auto& [labels, segments] = patches;
+  Workspace work(view.depth.cols, segments.size(), config.segment_px);
+  std::vector<Sum>& sums = work.sums;
   for (int round = 0; round < kRounds; ++round) {
-    assign(view, segments, config.segment_px, labels);
-    std::vector<Sum> sums(segments.size());
+    assign(view, segments, config.segment_px, work, labels);
+    std::fill(sums.begin(), sums.end(), Sum{});
     for (int y = 0; y < labels.rows; ++y) {
       const auto* label = labels.ptr<int>(y);
       const auto* depth = view.depth.ptr<float>(y);
@@ -199,22 +252,11 @@ void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat
     segment.log_odds = segment.evidence;
   }
 
-  struct Neighbour {
-    std::size_t segment;
-    float weight;
-  };
-  std::vector<std::vector<Neighbour>> neighbours(segments.size());
-  for (const Contact& contact : contacts(view, labels)) {
-    const auto a = static_cast<std::size_t>(contact.a), b = static_cast<std::size_t>(contact.b);
-    const float weight = static_cast<float>(config.smoothing) * static_cast<float>(contact.boundary) /
-                         static_cast<float>(config.segment_px);
-    neighbours[a].push_back({b, weight});
-    neighbours[b].push_back({a, weight});
-  }
+  const Neighbours neighbours(contacts(view, labels), segments.size(), config);
   for (int i = 0; i < kRelaxations; ++i)
     for (std::size_t s = 0; s < segments.size(); ++s) {
       float sum = segments[s].evidence, weights = 1.0F;
-      for (const Neighbour& n : neighbours[s]) {
+      for (const Neighbours::Neighbour& n : neighbours.of(s)) {
         sum += n.weight * segments[n.segment].log_odds;
         weights += n.weight;
       }

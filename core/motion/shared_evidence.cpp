@@ -64,6 +64,34 @@ std::vector<std::vector<Link>> link_neighbours(const std::vector<PointTrack>& tr
   return links;
 }
 
+/// What a point's own evidence counts against its neighbours'. One that is new has nothing of its own to say.
+/// Off its line, a point has moved for sure; on it, it may move as well, and has been seen to stand still
+/// only after some time.
+float own_weight(const PointTrack& track, const ColourMotionConfig& config) {
+  if (track.age < config.min_age) return 1e-3F;
+  if (track.evidence >= 0.0F) return 1.0F;
+  return std::min(1.0F, 2.0F * static_cast<float>(track.age) / static_cast<float>(config.far_reference));
+}
+
+/// From a moving point towards the side on which others move: a window that sees an outline moves with what
+/// lies before, but its middle may lie beside it. None within what moves; up to a cell at its outline.
+cv::Point2f inward(const std::vector<PointTrack>& tracks, const std::vector<float>& shared, std::size_t point,
+                   const ColourMotionConfig& config) {
+  const auto unit = static_cast<float>(config.cell_px);
+  cv::Point2f sum;
+  float all = 0.0F;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const cv::Point2f apart = tracks[i].path.back() - tracks[point].path.back();
+    const float distance = std::sqrt(apart.dot(apart));
+    if (i == point || distance > kReach * unit || distance < 1e-3F || tracks[i].age < config.min_age)
+      continue;
+    const float say = std::clamp(shared[i], -1.0F, 1.0F);
+    sum += apart * (say / distance);
+    all += std::abs(say);
+  }
+  return all > 0.0F ? sum * (unit / all) : cv::Point2f();
+}
+
 }  // namespace
 
 std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Size small,
@@ -74,8 +102,7 @@ std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Siz
   const auto sharing = static_cast<float>(config.sharing);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      // A point that is new has nothing of its own to say.
-      const float own = tracks[i].age < config.min_age ? 1e-3F : 1.0F;
+      const float own = own_weight(tracks[i], config);
       float sum = own * tracks[i].evidence, weight = own;
       for (const Link& link : links[i]) {
         sum += sharing * link.weight * shared[static_cast<std::size_t>(link.to)];
@@ -86,14 +113,16 @@ std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Siz
   return shared;
 }
 
-cv::Mat spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
-                        const std::vector<float>& shared, const ColourMotionConfig& config) {
+SpreadEvidence spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
+                               const std::vector<float>& shared, const ColourMotionConfig& config) {
   const int rows = image.rows, cols = image.cols, channels = image.channels();
   cv::Mat way(rows, cols, CV_32FC1, cv::Scalar(1e6)), value = cv::Mat::zeros(rows, cols, CV_32FC1);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (tracks[i].age < config.min_age) continue;
-    const int x = std::clamp(static_cast<int>(tracks[i].path.back().x / 2), 0, cols - 1);
-    const int y = std::clamp(static_cast<int>(tracks[i].path.back().y / 2), 0, rows - 1);
+    cv::Point2f at = tracks[i].path.back();
+    if (shared[i] > static_cast<float>(config.moving_evidence)) at += inward(tracks, shared, i, config);
+    const int x = std::clamp(static_cast<int>(at.x / 2), 0, cols - 1);
+    const int y = std::clamp(static_cast<int>(at.y / 2), 0, rows - 1);
     way.at<float>(y, x) = 0.0F;
     value.at<float>(y, x) = shared[i];
   }
@@ -126,8 +155,7 @@ cv::Mat spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tra
         reach_from(y, x, y, x + 1, 1.0F);
       }
   }
-  value.setTo(0.0F, way > config.longest_way);
-  return value;
+  return {value, way};
 }
 
 }  // namespace stillpoint

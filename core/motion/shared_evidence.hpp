@@ -14,11 +14,17 @@ namespace stillpoint {
 [[nodiscard]] std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Size small,
                                                 const ColourMotionConfig& config);
 
+/// Evidence over the image.
+struct SpreadEvidence {
+  cv::Mat evidence;  ///< CV_32FC1: of the nearest point
+  cv::Mat way;       ///< CV_32FC1: how far that is, px and changes of colour at config.colour_price
+};
+
 /// Spreads the points' evidence over the image: a pixel takes that of the point it reaches with the least
-/// change of colour on the way, the less the longer the way.
+/// change of colour on the way.
 /// @param image CV_8UC3 or CV_8UC1, half the small image's side
-/// @return CV_32FC1 of the image's size
-[[nodiscard]] cv::Mat spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
-                                      const std::vector<float>& shared, const ColourMotionConfig& config);
+[[nodiscard]] SpreadEvidence spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
+                                             const std::vector<float>& shared,
+                                             const ColourMotionConfig& config);
 
 }  // namespace stillpoint

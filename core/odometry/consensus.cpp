@@ -26,8 +26,9 @@ std::vector<double> weights_by_place(const Camera& camera, const std::vector<Pos
   };
   std::vector<int> counts(static_cast<std::size_t>(columns * rows), 0);
   for (const auto& o : observations) ++counts[cell(o)];
-  std::vector<double> weights;
-  std::vector<double> depths;
+  std::vector<double> weights, depths;
+  weights.reserve(observations.size());
+  depths.reserve(observations.size());
   for (const auto& o : observations)
     if (o.depth > 0) depths.push_back(o.depth);
   std::sort(depths.begin(), depths.end());
@@ -92,6 +93,7 @@ Pose polished(const Camera& camera, const std::vector<PoseObservation>& observat
   plain.refine_iterations = 3;
   for (const double loosened : {2.5, 1.3}) {
     std::vector<PoseObservation> agreeing;
+    agreeing.reserve(observations.size());
     for (const PoseObservation& o : observations) {
       const Eigen::Vector3d p = pose * o.point_in_world;
       const double bound = loosened * kBoundPx * std::sqrt(o.sigma_px);
@@ -125,6 +127,7 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
   }
 
   std::vector<std::size_t> with_depth;
+  with_depth.reserve(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     if (observations[i].depth > 0) with_depth.push_back(i);
   std::mt19937 random(seed);
@@ -141,6 +144,7 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
       continue;
     offer(polished(camera, observations, rough));
   }
+  best.inlier.reserve(observations.size());
   for (const PoseObservation& o : observations) {
     best.inlier.push_back(truncated(camera, o, best.camera_from_world) < 1.0);
     best.inliers += best.inlier.back();

@@ -47,6 +47,13 @@ void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, in
 
 FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height) {
   FeatureSet kept;
+  const auto count =
+      static_cast<std::size_t>(std::count_if(keep.begin(), keep.end(), [](auto k) { return k != 0; }));
+  kept.keypoints.reserve(count);
+  kept.undistorted.reserve(count);
+  kept.descriptors.reserve(count);
+  kept.depth.reserve(count);
+  kept.trust.reserve(count);
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (!keep[i]) continue;
     kept.keypoints.push_back(all.keypoints[i]);

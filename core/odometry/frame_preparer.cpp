@@ -10,11 +10,15 @@ namespace stillpoint {
 FramePreparer::FramePreparer(const Camera& camera, const Config& config)
     : camera_(camera), config_(config), extractor_(config.features) {}
 
-PreparedFrame FramePreparer::prepare(const Frame& frame) {
+PreparedFrame FramePreparer::prepare(const Frame& frame, bool beside_tracking) {
   PreparedFrame prepared;
+  // Method `stillpoint` tracks for longer than it prepares: what a second thread would gain here it would
+  // take from there, unless there is a third.
+  const bool tracking_is_longer = beside_tracking && config_.run.method == "stillpoint";
+  const int threads = tracking_is_longer ? config_.run.threads - 1 : config_.run.threads;
   const auto find_features = [&] {
     const Stopwatch watch;
-    prepared.found = extractor_.extract(frame.gray, config_.run.threads);
+    prepared.found = extractor_.extract(frame.gray, threads);
     cv::KeyPoint::convert(prepared.found.keypoints, prepared.pixels);
     prepared.undistorted = camera_.undistort(prepared.pixels);
     prepared.features_ms = watch.milliseconds();

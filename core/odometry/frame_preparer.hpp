@@ -34,7 +34,8 @@ class FramePreparer {
   FramePreparer(const Camera& camera, const Config& config);
 
   /// @param frame readable
-  [[nodiscard]] PreparedFrame prepare(const Frame& frame);
+  /// @param beside_tracking another frame is tracked meanwhile: no more threads are taken than that leaves
+  [[nodiscard]] PreparedFrame prepare(const Frame& frame, bool beside_tracking = false);
 
   /// Takes note of a frame that another preparer prepared; null where the method compares no frames.
   void pass(const std::shared_ptr<const MotionFrame>& motion_frame);

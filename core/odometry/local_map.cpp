@@ -7,12 +7,15 @@
 namespace stillpoint {
 namespace {
 
-std::vector<std::pair<int, int>> by_weight(const std::map<int, int>& counts, int min_shared) {
+/// Keyframes by how many points they share, most first, then by id. @param counts by keyframe id
+std::vector<std::pair<int, int>> by_weight(const std::vector<int>& counts, int min_shared) {
   std::vector<std::pair<int, int>> order;
-  for (const auto& [keyframe, shared] : counts)
-    if (shared >= min_shared) order.emplace_back(keyframe, shared);
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  for (std::size_t keyframe = 0; keyframe < counts.size(); ++keyframe)
+    if (counts[keyframe] > 0 && counts[keyframe] >= min_shared)
+      order.emplace_back(static_cast<int>(keyframe), counts[keyframe]);
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second > b.second : a.first < b.first;
+  });
   return order;
 }
 
@@ -103,24 +106,27 @@ void LocalMap::retire_keyframe(int id) {
 
 void LocalMap::update_point(int id, double scale_factor, int levels) {
   MapPoint& point = points_.at(id);
-  std::vector<const Descriptor*> descriptors;
+  const std::size_t count = point.observations.size();
+  // Few points are seen by more keyframes than fit on the stack.
+  cv::AutoBuffer<const Descriptor*, 64> descriptors(count);
   point.viewing_direction.setZero();
-  for (const Observation& o : point.observations) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Observation& o = point.observations[i];
     const Keyframe& keyframe = keyframes_.at(o.keyframe);
-    descriptors.push_back(&keyframe.features->descriptors[static_cast<std::size_t>(o.feature)]);
+    descriptors[i] = &keyframe.features->descriptors[static_cast<std::size_t>(o.feature)];
     point.viewing_direction += (point.position - centre(keyframe.camera_from_world)).normalized();
   }
   point.viewing_direction.normalize();
 
   // The descriptor with the least median distance to the others speaks for the point.
   int best_median = std::numeric_limits<int>::max();
-  std::vector<int> distances;
-  for (const Descriptor* candidate : descriptors) {
-    distances.clear();
-    for (const Descriptor* other : descriptors) distances.push_back(descriptor_distance(*candidate, *other));
-    auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) best_median = *middle, point.descriptor = *candidate;
+  cv::AutoBuffer<int, 64> distances(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j)
+      distances[j] = descriptor_distance(*descriptors[i], *descriptors[j]);
+    int* const middle = distances.data() + (count - 1) / 2;
+    std::nth_element(distances.data(), middle, distances.data() + count);
+    if (*middle < best_median) best_median = *middle, point.descriptor = *descriptors[i];
   }
 
   const Observation& latest = point.observations.back();
@@ -140,19 +146,19 @@ std::vector<int> LocalMap::point_ids() const {
 }
 
 std::vector<std::pair<int, int>> LocalMap::covisible(int keyframe, int min_shared) const {
-  std::map<int, int> shared;
+  std::vector<int> shared(static_cast<std::size_t>(next_keyframe_), 0);
   for (const int point : keyframes_.at(keyframe).points)
     if (point != kNone)
       for (const Observation& o : points_.at(point).observations)
-        if (o.keyframe != keyframe) ++shared[o.keyframe];
+        if (o.keyframe != keyframe) ++shared[static_cast<std::size_t>(o.keyframe)];
   return by_weight(shared, min_shared);
 }
 
 std::vector<std::pair<int, int>> LocalMap::observers(const std::vector<int>& points) const {
-  std::map<int, int> seen;
+  std::vector<int> seen(static_cast<std::size_t>(next_keyframe_), 0);
   for (const int point : points)
     if (const auto it = points_.find(point); it != points_.end())
-      for (const Observation& o : it->second.observations) ++seen[o.keyframe];
+      for (const Observation& o : it->second.observations) ++seen[static_cast<std::size_t>(o.keyframe)];
   return by_weight(seen, 1);
 }
 

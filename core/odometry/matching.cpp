@@ -44,6 +44,7 @@ class Assignment {
 
   [[nodiscard]] std::vector<Match> matches() const {
     std::vector<Match> result;
+    result.reserve(best_.size());
     std::copy_if(best_.begin(), best_.end(), std::back_inserter(result),
                  [](const Match& m) { return m.point != kNone; });
     return result;
@@ -109,6 +110,7 @@ std::vector<Match> consistently_turned(const std::vector<Match>& matches) {
     keep[b] = counts[b] * 10 >= counts[order[0]];
   }
   std::vector<Match> kept;
+  kept.reserve(matches.size());
   std::copy_if(matches.begin(), matches.end(), std::back_inserter(kept),
                [&](const Match& m) { return keep[bin(m)]; });
   return kept;

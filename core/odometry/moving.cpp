@@ -43,7 +43,7 @@ void Odometry::detect_in_colour(const Frame& frame, FrameResult& result) {
   }
   const Stopwatch watch;
   if (!colour_) colour_.emplace(camera_, config_.colour_motion);
-  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour);
+  result.colour_motion = colour_->next(frame.colour.empty() ? frame.gray : frame.colour, frame.timestamp);
   result.mask = result.colour_motion.mask;
   result.record.mask_share = result.colour_motion.mask_share;
   result.record.ms.motion += watch.milliseconds();
@@ -58,7 +58,7 @@ void Odometry::detect_by_pose(const Frame& frame, const Pose& camera_from_world,
                                          : past_views_.back().camera_from_world * camera_from_world.inverse();
   result.depth_motion = detect_depth_motion(
       *view_, std::move(patches_), frame.depth, reference_views(frame.index, camera_from_world),
-      memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion);
+      memory_ ? &*memory_ : nullptr, previous_from_current, config_.depth_motion, config_.run.threads);
   result.mask = result.depth_motion.mask;
   result.record.mask_share = result.depth_motion.mask_share;
   purge_moving_points(frame, result.mask, camera_from_world);

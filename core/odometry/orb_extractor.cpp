@@ -9,6 +9,8 @@
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 
+#include "core/odometry/fast_corners.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -57,39 +59,31 @@ float centroid_angle(const cv::Mat& image, const cv::Point2f& corner) {
 }
 
 /// FAST corners inside `inside`, at the low threshold in cells that have none at the high one.
-std::vector<cv::KeyPoint> fast_corners(const cv::Mat& image, const cv::Rect& inside, int threshold, int low) {
-  constexpr int kMargin = 3;  // FAST looks this far about a pixel
-  const cv::Rect seen(inside.x - kMargin, inside.y - kMargin, inside.width + 2 * kMargin,
-                      inside.height + 2 * kMargin);
-  std::vector<cv::KeyPoint> corners, faint;
-  cv::FAST(image(seen), corners, threshold, true);
+void fast_corners(const cv::Mat& image, const cv::Rect& inside, int threshold, int low,
+                  std::vector<cv::KeyPoint>& corners) {
+  corners.clear();
+  append_fast_corners(image, inside, threshold, corners);
+  if (low >= threshold) return;
   const int columns = (inside.width + kFastCell - 1) / kFastCell,
             rows = (inside.height + kFastCell - 1) / kFastCell;
-  std::vector<std::uint8_t> occupied(static_cast<std::size_t>(columns * rows), 0);
-  for (auto& corner : corners) {
-    const int column = (static_cast<int>(corner.pt.x) - kMargin) / kFastCell;
-    const int row = (static_cast<int>(corner.pt.y) - kMargin) / kFastCell;
+  cv::AutoBuffer<std::uint8_t> occupied(static_cast<std::size_t>(columns * rows));
+  std::fill_n(occupied.data(), occupied.size(), std::uint8_t{0});
+  for (const auto& corner : corners) {
+    const int column = (static_cast<int>(corner.pt.x) - inside.x) / kFastCell;
+    const int row = (static_cast<int>(corner.pt.y) - inside.y) / kFastCell;
     occupied[static_cast<std::size_t>(row * columns + column)] = 1;
-    corner.pt += cv::Point2f(seen.tl());
   }
-  if (low >= threshold) return corners;
   for (int r = 0; r < rows; ++r) {
     const std::uint8_t* of_row = occupied.data() + r * columns;
     for (int c = 0; c < columns; ++c) {
       if (of_row[c]) continue;
       const int first = c;  // empty cells beside each other are searched in one go
       while (c + 1 < columns && !of_row[c + 1]) ++c;
-      const cv::Rect strip(seen.x + first * kFastCell, seen.y + r * kFastCell,
-                           (c - first + 1) * kFastCell + 2 * kMargin, kFastCell + 2 * kMargin);
-      const cv::Rect window = strip & seen;
-      cv::FAST(image(window), faint, low, true);
-      for (auto& corner : faint) {
-        corner.pt += cv::Point2f(window.tl());
-        corners.push_back(corner);
-      }
+      const cv::Rect strip(inside.x + first * kFastCell, inside.y + r * kFastCell,
+                           (c - first + 1) * kFastCell, kFastCell);
+      append_fast_corners(image, strip & inside, low, corners);
     }
   }
-  return corners;
 }
 
 /// Candidates by cell, the best of each first: index into the candidates, and where each cell begins.
@@ -123,11 +117,10 @@ ByCell sort_by_cell(const std::vector<cv::KeyPoint>& candidates, double side, in
 
 }  // namespace
 
-std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wanted, int width, int height) {
-  if (static_cast<int>(candidates.size()) <= wanted || wanted <= 0) {
-    if (wanted <= 0) candidates.clear();
-    return candidates;
-  }
+std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& candidates, int wanted, int width,
+                                 int height) {
+  if (wanted <= 0) return {};
+  if (static_cast<int>(candidates.size()) <= wanted) return candidates;
   const double side = std::max(1.0, std::sqrt(static_cast<double>(width) * height / wanted));
   const ByCell cells = sort_by_cell(candidates, side, width, height);
   const std::size_t count = cells.start.size() - 1;
@@ -146,6 +139,7 @@ std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wante
     std::size_t cell;
   };
   std::vector<Last> last;
+  last.reserve(count);
   for (std::size_t c = 0; c < count; ++c)
     if (size_of(c) > rounds) {
       const int index = cells.index[static_cast<std::size_t>(cells.start[c] + rounds)];
@@ -178,83 +172,93 @@ OrbExtractor::OrbExtractor(const FeatureConfig& config) : config_(config) {
       cv::ORB::create(config.count, 2.0F, 1, kBorder, 0, 2, cv::ORB::FAST_SCORE, 2 * kPatchRadius + 1);
 }
 
-std::vector<cv::KeyPoint> OrbExtractor::corners(const cv::Mat& level_image, int wanted) const {
-  const cv::Rect inside(kBorder, kBorder, level_image.cols - 2 * kBorder, level_image.rows - 2 * kBorder);
-  if (inside.width < 1 || inside.height < 1) return {};
-  auto chosen = spread(fast_corners(level_image, inside, config_.fast_threshold, config_.fast_threshold_low),
-                       wanted, level_image.cols, level_image.rows);
-  for (auto& corner : chosen) {
-    corner.angle = centroid_angle(level_image, corner.pt);
+void OrbExtractor::find_corners(int wanted, Level& level) const {
+  const cv::Mat& image = level.image;
+  auto& keypoints = level.found.keypoints;
+  keypoints.clear();
+  const cv::Rect inside(kBorder, kBorder, image.cols - 2 * kBorder, image.rows - 2 * kBorder);
+  if (inside.width < 1 || inside.height < 1) return;
+  fast_corners(image, inside, config_.fast_threshold, config_.fast_threshold_low, level.candidates);
+  keypoints = spread(level.candidates, wanted, image.cols, image.rows);
+  for (auto& corner : keypoints) {
+    corner.angle = centroid_angle(image, corner.pt);
     corner.octave = 0;
   }
-  return chosen;
 }
 
-OrbFeatures OrbExtractor::extract_level(const cv::Mat& level_image, int level, const cv::Size& full) const {
-  OrbFeatures features;
-  features.keypoints = corners(level_image, wanted_[static_cast<std::size_t>(level)]);
-  if (features.keypoints.empty()) return features;
-  cv::Mat rows;
-  descriptor_->compute(level_image, features.keypoints, rows);
-  features.descriptors.resize(features.keypoints.size());
-  const double scale = std::pow(config_.scale_factor, level);
-  for (std::size_t i = 0; i < features.keypoints.size(); ++i) {
-    cv::KeyPoint& keypoint = features.keypoints[i];
+void OrbExtractor::extract_level(int index, const cv::Size& full, Level& level) const {
+  OrbFeatures& found = level.found;
+  find_corners(wanted_[static_cast<std::size_t>(index)], level);
+  found.descriptors.resize(found.keypoints.size());
+  if (found.keypoints.empty()) return;
+  descriptor_->compute(level.image, found.keypoints, level.descriptor_rows);
+  found.descriptors.resize(found.keypoints.size());
+  const double scale = std::pow(config_.scale_factor, index);
+  for (std::size_t i = 0; i < found.keypoints.size(); ++i) {
+    cv::KeyPoint& keypoint = found.keypoints[i];
     // Pixel centres lie at whole numbers, hence the halves: without them coarse levels sit a pixel off.
     keypoint.pt.x =
-        (keypoint.pt.x + 0.5F) * static_cast<float>(full.width) / static_cast<float>(level_image.cols) - 0.5F;
+        (keypoint.pt.x + 0.5F) * static_cast<float>(full.width) / static_cast<float>(level.image.cols) - 0.5F;
     keypoint.pt.y =
-        (keypoint.pt.y + 0.5F) * static_cast<float>(full.height) / static_cast<float>(level_image.rows) -
+        (keypoint.pt.y + 0.5F) * static_cast<float>(full.height) / static_cast<float>(level.image.rows) -
         0.5F;
-    keypoint.octave = level;
+    keypoint.octave = index;
     keypoint.size = static_cast<float>((2 * kPatchRadius + 1) * scale);
-    std::memcpy(features.descriptors[i].data(), rows.ptr(static_cast<int>(i)), sizeof(Descriptor));
+    std::memcpy(found.descriptors[i].data(), level.descriptor_rows.ptr(static_cast<int>(i)),
+                sizeof(Descriptor));
   }
-  return features;
 }
 
-std::vector<cv::Mat> OrbExtractor::pyramid(const cv::Mat& gray) const {
-  std::vector<cv::Mat> levels = {gray};
+int OrbExtractor::fill_pyramid(const cv::Size& full, std::vector<Level>& levels) const {
   double scale = config_.scale_factor;
-  for (int level = 1; level < config_.levels; ++level, scale *= config_.scale_factor) {
-    const cv::Size size(cvRound(gray.cols / scale), cvRound(gray.rows / scale));
+  int level = 1;
+  for (; level < config_.levels; ++level, scale *= config_.scale_factor) {
+    const cv::Size size(cvRound(full.width / scale), cvRound(full.height / scale));
     if (size.width <= 2 * kBorder || size.height <= 2 * kBorder) break;
-    cv::Mat smaller;
-    cv::resize(levels.back(), smaller, size, 0, 0, cv::INTER_LINEAR);
-    levels.push_back(smaller);
+    const auto at = static_cast<std::size_t>(level);
+    cv::resize(levels[at - 1].image, levels[at].image, size, 0, 0, cv::INTER_LINEAR);
   }
-  return levels;
+  return level;
 }
 
-OrbFeatures OrbExtractor::extract(const cv::Mat& gray, int threads) const {
-  std::vector<OrbFeatures> of_level(static_cast<std::size_t>(config_.levels));
-  std::vector<cv::Mat> levels;
-  std::atomic<std::size_t> next = 1;
+OrbFeatures OrbExtractor::extract(const cv::Mat& gray, int threads) {
+  std::vector<Level>& levels = *levels_;
+  levels.resize(static_cast<std::size_t>(config_.levels));
+  levels[0].image = gray;
+  std::atomic<int> next = 1;
+  int count = 0;
   const auto take_levels = [&] {
-    for (std::size_t level = next++; level < levels.size(); level = next++)
-      of_level[level] = extract_level(levels[level], static_cast<int>(level), gray.size());
+    for (int level = next++; level < count; level = next++)
+      extract_level(level, gray.size(), levels[static_cast<std::size_t>(level)]);
   };
   if (threads > 1) {
     // The full image needs no pyramid and is a third of the work: it is begun while the pyramid is made.
     std::future<void> beside;
     std::promise<void> pyramid_made;  // given up before `beside` is waited for, should anything throw
     beside = std::async(std::launch::async, [&, made = pyramid_made.get_future()] {
-      of_level[0] = extract_level(gray, 0, gray.size());
+      extract_level(0, gray.size(), levels[0]);
       made.wait();
       take_levels();
     });
-    levels = pyramid(gray);
+    count = fill_pyramid(gray.size(), levels);
     pyramid_made.set_value();
     take_levels();
     beside.get();
   } else {
-    levels = pyramid(gray);
+    count = fill_pyramid(gray.size(), levels);
     next = 0;
     take_levels();
   }
-  OrbFeatures features = std::move(of_level[0]);
-  for (std::size_t level = 1; level < of_level.size(); ++level) {
-    const OrbFeatures& more = of_level[level];
+  levels[0].image.release();  // the caller's, to be let go of
+
+  std::size_t total = 0;
+  for (int level = 0; level < count; ++level)
+    total += levels[static_cast<std::size_t>(level)].found.keypoints.size();
+  OrbFeatures features;
+  features.keypoints.reserve(total);
+  features.descriptors.reserve(total);
+  for (int level = 0; level < count; ++level) {
+    const OrbFeatures& more = levels[static_cast<std::size_t>(level)].found;
     features.keypoints.insert(features.keypoints.end(), more.keypoints.begin(), more.keypoints.end());
     features.descriptors.insert(features.descriptors.end(), more.descriptors.begin(), more.descriptors.end());
   }

@@ -5,6 +5,7 @@
 
 #include "core/config.hpp"
 #include "core/odometry/feature_set.hpp"
+#include "core/scratch.hpp"
 
 namespace stillpoint {
 
@@ -23,21 +24,31 @@ class OrbExtractor {
 
   /// Features of a grey image, CV_8UC1. Images too small for a level simply have none there.
   /// @param threads above 1, the levels are shared between two; the result is the same
-  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray, int threads = 1) const;
+  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray, int threads = 1);
 
  private:
-  [[nodiscard]] std::vector<cv::KeyPoint> corners(const cv::Mat& level_image, int wanted) const;
-  [[nodiscard]] OrbFeatures extract_level(const cv::Mat& level_image, int level, const cv::Size& full) const;
-  [[nodiscard]] std::vector<cv::Mat> pyramid(const cv::Mat& gray) const;
+  /// One level of the pyramid, with the memory it is worked on in.
+  struct Level {
+    cv::Mat image;                         // CV_8UC1
+    std::vector<cv::KeyPoint> candidates;  // all its corners
+    cv::Mat descriptor_rows;               // CV_8UC1, one row a feature
+    OrbFeatures found;
+  };
+
+  void find_corners(int wanted, Level& level) const;
+  void extract_level(int index, const cv::Size& full, Level& level) const;
+  /// Makes every level but the first; returns how many levels the image has room for.
+  int fill_pyramid(const cv::Size& full, std::vector<Level>& levels) const;
 
   FeatureConfig config_;
   std::vector<int> wanted_;      // corners a level
   cv::Ptr<cv::ORB> descriptor_;  // computes descriptors of one level at a time
+  Scratch<std::vector<Level>> levels_;
 };
 
 /// Picks `wanted` of the candidates so that they spread over a `width` x `height` image: round by round, the
 /// best not yet taken of each cell. Order of the result is by cell, then response.
-[[nodiscard]] std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> candidates, int wanted, int width,
-                                               int height);
+[[nodiscard]] std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& candidates, int wanted,
+                                               int width, int height);
 
 }  // namespace stillpoint

@@ -1,5 +1,8 @@
 // Finding the pose of one frame: the part of Odometry between removal and the map's upkeep.
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
 
 #include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
@@ -10,6 +13,31 @@ namespace {
 
 constexpr int kConsensusSamples = 200;
 constexpr int kMinModelInliers = 10;  // matches that must agree before the motion model's pose is believed
+
+/// The points of some keyframes, each once, ascending. Most are seen by several: a bit for each is sorted as
+/// it is set.
+std::vector<int> points_seen_by(const LocalMap& map, const std::vector<int>& keyframes) {
+  constexpr int kBits = 64;
+  int first = std::numeric_limits<int>::max(), last = kNone;
+  for (const int keyframe : keyframes)
+    for (const int point : map.keyframe(keyframe).points)
+      if (point != kNone) first = std::min(first, point), last = std::max(last, point);
+  std::vector<int> points;
+  if (last == kNone) return points;
+  std::vector<std::uint64_t> marks(static_cast<std::size_t>((last - first) / kBits) + 1, 0);
+  for (const int keyframe : keyframes)
+    for (const int point : map.keyframe(keyframe).points)
+      if (point != kNone)
+        marks[static_cast<std::size_t>((point - first) / kBits)] |= std::uint64_t{1}
+                                                                    << (point - first) % kBits;
+  std::size_t count = 0;
+  for (const std::uint64_t mark : marks) count += static_cast<std::size_t>(std::popcount(mark));
+  points.reserve(count);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::uint64_t mark = marks[i]; mark != 0; mark &= mark - 1)
+      points.push_back(first + static_cast<int>(i) * kBits + std::countr_zero(mark));
+  return points;
+}
 
 }  // namespace
 
@@ -47,6 +75,7 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
   for (const double radius : {tracking.search_radius_px, tracking.search_radius_wide_px}) {
     Stopwatch watch;
     std::vector<Candidate> candidates;
+    candidates.reserve(last_->points.size());
     for (std::size_t i = 0; i < last_->points.size(); ++i) {
       const int id = last_->points[i];
       if (id == kNone || !map_.has_point(id)) continue;
@@ -148,19 +177,15 @@ std::vector<int> Odometry::local_points(const Current& current) const {
           std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
         keyframes.push_back(neighbour);
 
-  std::vector<int> points;
-  for (const int keyframe : keyframes)
-    for (const int point : map_.keyframe(keyframe).points)
-      if (point != kNone) points.push_back(point);
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
+  return points_seen_by(map_, keyframes);
 }
 
 PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) const {
   Stopwatch watch;
   std::vector<Match> matches;
   std::vector<int> matched;
+  matches.reserve(current.points.size());
+  matched.reserve(current.points.size());
   for (std::size_t f = 0; f < current.points.size(); ++f)
     if (current.points[f] != kNone) {
       matches.push_back({static_cast<int>(f), current.points[f], 0, 0});
@@ -168,8 +193,12 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
     }
   std::sort(matched.begin(), matched.end());
 
+  const std::vector<int> local = local_points(current);
   std::vector<Candidate> candidates;
-  for (const int id : local_points(current)) {
+  candidates.reserve(local.size());
+  current.points_in_view.reserve(local.size());
+  current.points_found.reserve(current.points.size());
+  for (const int id : local) {
     const MapPoint& point = map_.point(id);
     if (std::binary_search(matched.begin(), matched.end(), id)) {
       current.points_in_view.push_back(id);

@@ -48,9 +48,11 @@ class ReadAhead {
 class PreparedNext {
  public:
   PreparedNext(Frame frame, FramePreparer& preparer, int threads) : frame_(std::move(frame)) {
-    prepared_ = std::async(
-        threads > 1 ? std::launch::async : std::launch::deferred,
-        [frame = frame_, &preparer] { return frame.readable() ? preparer.prepare(frame) : PreparedFrame{}; });
+    const bool beside = threads > 1;
+    prepared_ =
+        std::async(beside ? std::launch::async : std::launch::deferred, [frame = frame_, &preparer, beside] {
+          return frame.readable() ? preparer.prepare(frame, beside) : PreparedFrame{};
+        });
   }
   void wait() {
     const Stopwatch watch;
@@ -130,6 +132,8 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   const auto begin = [&](int index) {
     return PreparedNext(reader.read(index), preparer, config.run.threads);
   };
+  result.records.reserve(static_cast<std::size_t>(std::max(0, end - options.first)));
+  result.scores.reserve(result.records.capacity());
   std::vector<double> units;
   std::optional<PreparedNext> next;
   if (options.first < end) next.emplace(begin(options.first));

@@ -1,7 +1,9 @@
 #include "core/sequence/image_file.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -25,25 +27,10 @@ std::uint32_t big_endian(const unsigned char* p) {
          static_cast<std::uint32_t>(p[2]) << 8 | p[3];
 }
 
-/// CRC-32 as PNG's specification (ISO 15948, annex D) defines it.
-std::uint32_t crc32(const unsigned char* data, std::size_t size) {
-  static const auto table = [] {
-    std::array<std::uint32_t, 256> t{};
-    for (std::uint32_t n = 0; n < 256; ++n) {
-      std::uint32_t c = n;
-      for (int k = 0; k < 8; ++k) c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1) : c >> 1;
-      t[n] = c;
-    }
-    return t;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (std::size_t i = 0; i < size; ++i) crc = table[(crc ^ data[i]) & 0xFFU] ^ (crc >> 8);
-  return crc ^ 0xFFFFFFFFU;
-}
-
 /// Why a PNG is not whole, or nothing; `kept` receives it without the chunks that say nothing about pixels,
 /// which are what libpng prints warnings about.
 std::string check_png(const Bytes& bytes, Bytes& kept) {
+  kept.reserve(bytes.size());
   kept.assign(bytes.begin(), bytes.begin() + kPngSignature.size());
   for (std::size_t at = kPngSignature.size();;) {
     if (bytes.size() - at < 12) return "is truncated";
@@ -51,7 +38,8 @@ std::string check_png(const Bytes& bytes, Bytes& kept) {
     const std::size_t length = big_endian(chunk);
     if (length > bytes.size() - at - 12) return "is truncated";
     const std::string_view type(reinterpret_cast<const char*>(chunk + 4), 4);
-    if (crc32(chunk + 4, length + 4) != big_endian(chunk + 8 + length))
+    // CRC-32 as PNG's specification (ISO 15948, annex D) defines it.
+    if (crc32_z(0, chunk + 4, length + 4) != big_endian(chunk + 8 + length))
       return "is damaged (a checksum is wrong)";
     if (at == kPngSignature.size()) {
       if (type != "IHDR" || length != 13) return "is damaged (it has no PNG header)";
@@ -83,7 +71,14 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
-  bytes.assign(std::istreambuf_iterator<char>(file), {});
+  constexpr std::size_t kAtOnce = 64 << 10;
+  bytes.clear();
+  // Whatever its size was said to be: it may still be growing.
+  for (std::size_t had = 0; file; had = bytes.size()) {
+    bytes.resize(had + std::max(kAtOnce, had));
+    file.read(reinterpret_cast<char*>(bytes.data() + had), static_cast<std::streamsize>(bytes.size() - had));
+    bytes.resize(had + static_cast<std::size_t>(file.gcount()));
+  }
   if (bytes.empty()) return "is empty (0 bytes)";
   return {};
 }

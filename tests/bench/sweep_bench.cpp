@@ -5,27 +5,14 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <opencv2/imgproc.hpp>
 
+#include "core/image_memory.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
-#include "memory_source.hpp"
+#include "tests/support/allocations.hpp"
+#include "tests/support/memory_source.hpp"
 
 namespace stillpoint {
-
-MemorySource::MemorySource(const FrameSource& source, int frames, const cv::Size& size)
-    : source_(source), camera_(source.camera().scaled_to(size.width, size.height)) {
-  for (int i = 0; i < std::min(frames, source.size()); ++i) {
-    Frame frame = source.read(i);
-    frame.colour.release();
-    if (frame.readable() && frame.gray.size() != size) {
-      cv::resize(frame.gray, frame.gray, size, 0, 0,
-                 size.width < frame.gray.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
-      if (frame.has_depth()) cv::resize(frame.depth, frame.depth, size, 0, 0, cv::INTER_NEAREST);
-    }
-    frames_.push_back(std::move(frame));
-  }
-}
 
 namespace {
 
@@ -61,6 +48,11 @@ void run(benchmark::State& state, const char* method, int features, const cv::Si
   config.features.count = features;
   RunOptions options;
   options.measure_orb_unit = true;
+  Allocations before, after;
+  options.on_frame = [&](const FrameResult& frame) {
+    if (frame.record.index == kFrames / 2) before = allocations_so_far();
+    after = allocations_so_far();
+  };
   for (auto _ : state) {
     const RunResult result = run_sequence(source, config, options);
     const SpeedFigures speed = report_on(result, source).speed;
@@ -73,6 +65,13 @@ void run(benchmark::State& state, const char* method, int features, const cv::Si
     state.counters["pose"] = speed.mean.pose;
     state.counters["mapping"] = speed.mean.mapping;
     state.counters["bundle"] = speed.mean.bundle;
+    // A frame's mean over the second half, keyframes and their adjustment included.
+    const Allocations spent = after - before;
+    const double frames = std::max(1, source.size() - kFrames / 2 - 1);
+    state.counters["allocations"] = static_cast<double>(spent.calls) / frames;
+    state.counters["allocated_kB"] = static_cast<double>(spent.bytes) / frames / 1e3;
+    state.counters["large"] = static_cast<double>(spent.large_calls) / frames;
+    state.counters["large_kB"] = static_cast<double>(spent.large_bytes) / frames / 1e3;
   }
 }
 
@@ -88,6 +87,7 @@ void add(const char* sweep, const char* method, int features, const cv::Size& si
 }
 
 const bool kRegistered = [] {
+  keep_image_memory();  // as the program does
   constexpr int kUsual = 1000;
   const cv::Size usual(640, 480);
   const auto methods = {"none", "paper", "stillpoint"};

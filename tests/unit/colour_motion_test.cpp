@@ -138,14 +138,16 @@ TEST(ColourMotion, ParallaxIsNoMotion) {
 
 TEST(ColourMotion, ACopyGoesOnWithTheSameBytesWhateverTheThreads) {
   const Scene scene;
-  ColourMotionDetector one(camera(), ColourMotionConfig{});
-  for (int i = 0; i < 5; ++i) (void)one.next(scene.frame(i));
+  Camera rolling = camera();
+  rolling.readout_s = 0.03;
+  ColourMotionDetector one(rolling, ColourMotionConfig{});
+  for (int i = 0; i < 5; ++i) (void)one.next(scene.frame(i), i / 30.0);
   ColourMotionDetector other = one;
   const int threads = cv::getNumThreads();
   cv::setNumThreads(1);
-  const ColourMotionTrace a = one.next(scene.frame(5));
+  const ColourMotionTrace a = one.next(scene.frame(5), 5 / 30.0);
   cv::setNumThreads(4);
-  const ColourMotionTrace b = other.next(scene.frame(5));
+  const ColourMotionTrace b = other.next(scene.frame(5), 5 / 30.0);
   cv::setNumThreads(threads);
   EXPECT_EQ(cv::norm(a.mask, b.mask, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(a.evidence, b.evidence, cv::NORM_INF), 0.0);

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <set>
 
+#include "core/odometry/fast_corners.hpp"
 #include "core/odometry/feature_set.hpp"
 #include "core/odometry/matching.hpp"
 #include "core/odometry/orb_extractor.hpp"
@@ -26,6 +28,69 @@ TEST(Descriptor, DistanceCountsBits) {
   EXPECT_EQ(descriptor_distance(a, b), 0);
   b[0] = 0b1011, b[3] = ~std::uint64_t{0};
   EXPECT_EQ(descriptor_distance(a, b), 3 + 64);
+}
+
+/// Blocks, noise, and gradients that end at black and white.
+cv::Mat rich(int width, int height, unsigned seed) {
+  cv::Mat image = textured(width, height, seed), noise(height, width, CV_8UC1);
+  cv::RNG random(seed + 1);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 60);
+  cv::GaussianBlur(image, image, {5, 5}, 1.2);
+  return image + noise - 30;
+}
+
+TEST(FastCorners, AreThoseOfOpenCv) {
+  constexpr int kMargin = 3;
+  // Widths about multiples of the lanes, and images that end where corners do.
+  for (const auto& size : {cv::Size(7, 7), cv::Size(22, 9), cv::Size(23, 31), cv::Size(39, 40),
+                           cv::Size(203, 97), cv::Size(640, 480)})
+    for (const int threshold : {1, 7, 20, 60, 254}) {
+      const cv::Mat image = rich(size.width, size.height, static_cast<unsigned>(size.width + threshold));
+      std::vector<cv::KeyPoint> expected, found;
+      cv::FAST(image, expected, threshold, true);
+      append_fast_corners(image, {kMargin, kMargin, size.width - 2 * kMargin, size.height - 2 * kMargin},
+                          threshold, found);
+      ASSERT_EQ(found.size(), expected.size()) << size << " at " << threshold;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].pt, expected[i].pt);
+        EXPECT_EQ(found[i].response, expected[i].response);
+      }
+      if (size.width == 640 && threshold <= 20) {
+        EXPECT_GT(found.size(), 1000u);
+      }
+    }
+}
+
+TEST(FastCorners, AreComparedWithinTheirWindowAlone) {
+  const cv::Mat image = rich(200, 150, 4);
+  const cv::Rect window(61, 40, 37, 32);
+  std::vector<cv::KeyPoint> expected, found = {cv::KeyPoint(1.0F, 2.0F, 3.0F)};
+  cv::FAST(image(cv::Rect(window.x - 3, window.y - 3, window.width + 6, window.height + 6)), expected, 10,
+           true);
+  append_fast_corners(image, window, 10, found);
+  ASSERT_EQ(found.size(), expected.size() + 1);  // appended
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(found[i + 1].pt, expected[i].pt + cv::Point2f(58.0F, 37.0F));
+  append_fast_corners(image, {}, 10, found);
+  EXPECT_EQ(found.size(), expected.size() + 1);
+  EXPECT_THROW(append_fast_corners(image, {2, 3, 20, 20}, 10, found), cv::Exception);
+}
+
+TEST(OrbExtractor, KeepsNothingOfTheImageBefore) {
+  OrbExtractor used({});
+  (void)used.extract(textured(640, 480, 3), 2);
+  (void)used.extract(textured(33, 20), 2);
+  for (const cv::Size& size : {cv::Size(320, 240), cv::Size(640, 480)}) {
+    const cv::Mat image = textured(size.width, size.height, 9);
+    OrbExtractor copy = used;
+    const OrbFeatures fresh = OrbExtractor({}).extract(image);
+    for (const OrbFeatures& again : {used.extract(image, 2), copy.extract(image)}) {
+      ASSERT_EQ(again.keypoints.size(), fresh.keypoints.size());
+      EXPECT_EQ(again.descriptors, fresh.descriptors);
+      for (std::size_t i = 0; i < fresh.keypoints.size(); ++i)
+        EXPECT_EQ(again.keypoints[i].pt, fresh.keypoints[i].pt);
+    }
+  }
 }
 
 TEST(OrbExtractor, FeaturesAreSpreadOverTheImage) {
