@@ -138,15 +138,16 @@ PoseRefinement Odometry::search_again(Current& current, const Pose& camera_from_
 
 bool Odometry::refine_directly(const Frame& frame, Current& current, PoseRefinement& refined,
                                FrameRecord& record) const {
+  // Where nearly all matches agree nothing is smeared: they are few because the view is a new one, for which
+  // a keyframe is the remedy.
+  constexpr double kSharp = 0.85;
+  if (refined.inliers >= std::max(inliers_needed(), config_.direct.below_inliers) &&
+      refined.inliers > kSharp * record.matches)
+    return false;
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
   const Pose& directly = aligned->target_from_reference;
   const int needed = inliers_needed();
-  // Patches that look alike tell that nothing is blurred: corners are few because the view is a new one, for
-  // which a keyframe is the remedy, and those few lie where they should.
-  constexpr double kSharp = 0.95;
-  if (refined.inliers >= std::max(needed, config_.direct.below_inliers) && record.direct.correlation > kSharp)
-    return false;
   if (refined.inliers < needed) {
     // Searched from where patches say the camera stands, corners may be found after all.
     record.pose_start = PoseStart::direct;

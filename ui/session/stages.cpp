@@ -80,12 +80,10 @@ void add_direct_stage(const FrameRecord& record, std::vector<StageInfo>& stages)
   add_figure(stage, "Correlation", direct.correlation, "", 3);
   add_figure(stage, "At the depth expected", 100.0 * direct.agreement, "%", 1);
   add_figure(stage, "Share in the pose", 100.0 * direct.share, "%", 1);
-  stage.note =
-      !direct.believed      ? "It is not believed: the patches are too few, too unlike or elsewhere."
-      : direct.share >= 1.0 ? "The pose is by patches alone."
-      : direct.share > 0.0
-          ? "The pose is by corners and patches, each by its information."
-          : "The pose is by corners: patches began it at most, or look so alike that nothing is blurred.";
+  stage.note = !direct.believed      ? "It is not believed: the patches are too few, too unlike or elsewhere."
+               : direct.share >= 1.0 ? "The pose is by patches alone."
+               : direct.share > 0.0  ? "The pose is by corners and patches, each by its information."
+                                     : "The first pose, under which motion is judged, is by patches.";
 }
 
 void add_map_stages(const FrameRecord& record, std::vector<StageInfo>& stages) {
