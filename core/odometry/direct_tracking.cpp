@@ -138,6 +138,12 @@ PoseRefinement Odometry::search_again(Current& current, const Pose& camera_from_
 
 bool Odometry::refine_directly(const Frame& frame, Current& current, PoseRefinement& refined,
                                FrameRecord& record) const {
+  // Where nearly all matches agree nothing is smeared: they are few because the view is a new one, for which
+  // a keyframe is the remedy.
+  constexpr double kSharp = 0.85;
+  if (refined.inliers >= std::max(inliers_needed(), config_.direct.below_inliers) &&
+      refined.inliers > kSharp * record.matches)
+    return false;
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
   const Pose& directly = aligned->target_from_reference;
