@@ -6,6 +6,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/median.hpp"
 #include "core/motion/carrier.hpp"
 
 namespace stillpoint {
@@ -68,13 +69,6 @@ void depth_residuals(const float* measured, const Expected& expected, int width,
     cv::v_store(out + x, cv::v_select(m > zero, residual, unknown));
   }
   for (; x < width; ++x) out[x] = depth_residual(measured[x], expected, x);
-}
-
-float median_of(std::vector<float>& values) {
-  if (values.empty()) return 0.0F;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// By how much of a pixel slanted surfaces lie beside where they are expected: the pose is not exact, depth

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/image_memory.hpp"
+#include "core/median.hpp"
 #include "core/motion/carrier.hpp"
 #include "core/motion/segments.hpp"
 
@@ -198,12 +199,6 @@ struct Slack {
   double step = 0.0;             // m
 };
 
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::Vector3d>& residuals,
                const std::vector<double>& votes) {
   constexpr double kMedianOfTwo = 1.386, kMedianOfOne = 0.455;  // of chi-square variables
@@ -218,9 +213,9 @@ Slack slack_of(const std::vector<Measured>& measured, const std::vector<Eigen::V
   if (shifts.size() < kMinPatches) return slack;
   // The worse registration is, the longer its tails are.
   constexpr double kTail = 1.6, kNoTail = 0.06;
-  const double usual = std::sqrt(std::max(0.0, middle_of(shifts)));
+  const double usual = std::sqrt(std::max(0.0, median_of(shifts)));
   slack.shift = std::max(kRegistration, kTail * usual - kNoTail);
-  slack.step = std::sqrt(std::max(0.0, middle_of(steps)));
+  slack.step = std::sqrt(std::max(0.0, median_of(steps)));
   return slack;
 }
 

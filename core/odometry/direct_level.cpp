@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -116,9 +118,7 @@ DirectLevel::Comparison DirectLevel::compare(const DirectState& state) {
   }
   if (sizes.empty()) return result;
   result.mean_difference /= static_cast<double>(sizes.size());
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  result.noise = std::max(kLeastNoise, 1.4826 * static_cast<double>(*middle));
+  result.noise = std::max(kLeastNoise, 1.4826 * static_cast<double>(median_of(sizes)));
   if (own > 0 && theirs > 0) result.correlation = both / std::sqrt(own * theirs);
   double squares = 0.0, weights = 0.0;
   for (const float size : sizes) {

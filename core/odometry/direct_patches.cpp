@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/median.hpp"
 #include "core/motion/rgbd_view.hpp"
 #include "core/odometry/feature_set.hpp"
 #include "core/odometry/rolling_shutter.hpp"
@@ -27,14 +28,11 @@ cv::Mat steepness(const cv::Mat& half) {
   return larger;
 }
 
-float median_of(const cv::Mat& values) {
-  std::vector<std::int16_t> sorted;
+float median_of_image(const cv::Mat& values) {
+  std::vector<std::int16_t> some;
   for (int y = 2; y < values.rows; y += 4)
-    for (int x = 2; x < values.cols; x += 4) sorted.push_back(values.at<std::int16_t>(y, x));
-  if (sorted.empty()) return 0.0F;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return static_cast<float>(*middle);
+    for (int x = 2; x < values.cols; x += 4) some.push_back(values.at<std::int16_t>(y, x));
+  return static_cast<float>(median_of(some));
 }
 
 /// Whether a pixel and what lies about it were measured on one surface: beside an edge, depth is a guess.
@@ -82,7 +80,7 @@ std::vector<PatchPoint> choose_patches(const DirectReference& reference, const C
   cv::Mat half;
   cv::pyrDown(reference.gray, half);
   const cv::Mat steep = steepness(half);
-  const float least = std::max(kLeastStep, median_of(steep));
+  const float least = std::max(kLeastStep, median_of_image(steep));
 
   std::vector<PatchPoint> chosen;
   std::vector<cv::Point2f> pixels;

@@ -135,17 +135,21 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   current.mask = mask;
+  current.mask = mask;
+  std::vector<std::uint8_t> keep(pixels.size(), 1);
+  if (!mask.empty())
+    for (std::size_t i = 0; i < keep.size(); ++i)
+      keep[i] = mask.at<uchar>(cvRound(pixels[i].y), cvRound(pixels[i].x)) == 0;
   all.trust = trust_at(pixels, config_.tracking.soft_weights != 0 ? log_odds : cv::Mat(), frame.gray.size(),
                        config_.tracking.half_trust_log_odds);
-  std::vector<std::uint8_t> keep(found.keypoints.size(), 1);
-  current.records.resize(found.keypoints.size());
+  raise_least_trust(keep, all.trust);
+
+  current.records.resize(keep.size());
   for (std::size_t i = 0; i < keep.size(); ++i) {
-    const cv::KeyPoint& keypoint = found.keypoints[i];
-    if (!mask.empty()) keep[i] = mask.at<uchar>(cvRound(keypoint.pt.y), cvRound(keypoint.pt.x)) == 0;
     FeatureRecord& feature = current.records[i];
-    feature.pixel = keypoint.pt;
+    feature.pixel = pixels[i];
     feature.depth = all.depth[i];
-    feature.octave = static_cast<std::uint8_t>(keypoint.octave);
+    feature.octave = static_cast<std::uint8_t>(found.keypoints[i].octave);
     feature.trust = all.trust[i];
     if (keep[i])
       current.record_of.push_back(static_cast<int>(i));

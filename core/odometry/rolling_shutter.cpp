@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/median.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -10,9 +12,7 @@ double median_depth(const std::vector<float>& depth) {
   std::vector<float> measured;
   std::copy_if(depth.begin(), depth.end(), std::back_inserter(measured), [](float z) { return z > 0; });
   if (measured.empty()) return kRoom;
-  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
-  std::nth_element(measured.begin(), middle, measured.end());
-  return *middle;
+  return median_of(measured);
 }
 
 }  // namespace

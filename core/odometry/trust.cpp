@@ -19,4 +19,16 @@ std::vector<float> trust_at(const std::vector<cv::Point2f>& pixels, const cv::Ma
   return trust;
 }
 
+void raise_least_trust(const std::vector<std::uint8_t>& keep, std::vector<float>& trust) {
+  double sum = 0.0;
+  int kept = 0;
+  for (std::size_t i = 0; i < trust.size(); ++i)
+    if (keep[i] != 0) sum += static_cast<double>(trust[i]), ++kept;
+  if (kept == 0) return;
+  const double unknown = 1.0 - sum / kept;
+  const auto least = static_cast<float>(unknown * unknown);
+  for (std::size_t i = 0; i < trust.size(); ++i)
+    if (keep[i] != 0) trust[i] = std::max(trust[i], least);
+}
+
 }  // namespace stillpoint

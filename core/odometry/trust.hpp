@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -13,5 +14,10 @@ namespace stillpoint {
 /// @param half log-odds at which a feature counts half
 [[nodiscard]] std::vector<float> trust_at(const std::vector<cv::Point2f>& pixels, const cv::Mat& log_odds,
                                           const cv::Size& full, double half);
+
+/// The less of a view is known to stand still, the more of the rest has to be believed, or what little is
+/// known of a new or a blurred view decides alone: no kept feature's trust stays below (1 - mean trust)².
+/// @param keep one a feature; others neither count nor change
+void raise_least_trust(const std::vector<std::uint8_t>& keep, std::vector<float>& trust);
 
 }  // namespace stillpoint

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/median.hpp"
 #include "core/run/condition_words.hpp"
 #include "core/text_file.hpp"
 
@@ -62,12 +63,6 @@ FigureUnit common_unit(const Node& a, const Node& b, const Token& between) {
 
 // ---- Values ----
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 bool is_spike(const Node& x, double sigmas, const FrameFigures& figures, int row) {
   const double now = x.value(figures, row);
   if (std::isnan(now)) return false;
@@ -75,9 +70,9 @@ bool is_spike(const Node& x, double sigmas, const FrameFigures& figures, int row
   for (int i = std::max(0, row - kSpikeWindow); i < row; ++i)
     if (const double value = x.value(figures, i); !std::isnan(value)) before.push_back(value);
   if (static_cast<int>(before.size()) < kSpikeLeast) return false;
-  const double middle = median(before);
+  const double middle = median_of(before);
   for (double& value : before) value = std::abs(value - middle);
-  const double sigma = 1.4826 * median(before);  // of normally distributed values
+  const double sigma = 1.4826 * median_of(before);  // of normally distributed values
   return std::abs(now - middle) > sigmas * sigma;
 }
 

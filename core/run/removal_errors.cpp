@@ -6,6 +6,8 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/median.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -17,21 +19,14 @@ double step_error(const Pose& true_step, const Pose& before, const std::optional
   return (true_step.inverse() * (before.inverse() * *now)).translation().norm();
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void judge(std::vector<RemovalError>& errors) {
   std::vector<double> differences;
   for (const RemovalError& error : errors)
     if (const double worse = error.with_removal_m - error.without_removal_m; !std::isnan(worse))
       differences.push_back(worse);
-  const double middle = median(differences);
+  const double middle = median_of(differences);
   for (double& difference : differences) difference = std::abs(difference - middle);
-  const double noise = 1.4826 * median(std::move(differences));  // of normally distributed values, its sigma
+  const double noise = 1.4826 * median_of(differences);  // of normally distributed values, its sigma
   const double least = std::max(kNoticeable, kSigmas * noise);
   for (RemovalError& error : errors) {
     error.hurt = error.with_removal_m - error.without_removal_m > least;

@@ -6,6 +6,7 @@
 #include <opencv2/features2d.hpp>
 #include <optional>
 
+#include "core/median.hpp"
 #include "core/sequence/prefetch.hpp"
 #include "core/stopwatch.hpp"
 
@@ -72,13 +73,6 @@ class PreparedNext {
   std::future<PreparedFrame> prepared_;
   double waited_ms_ = 0.0;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -163,7 +157,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     if (!options.keep_features) processed.record.features = {};
     result.records.push_back(std::move(processed.record));
   }
-  result.orb_unit_ms = median(std::move(units));
+  result.orb_unit_ms = median_of(units);
   odometry.finish();
   for (const FrameRecord& record : result.records)
     if (record.estimated) result.live.push_back({record.timestamp, record.world_from_camera});

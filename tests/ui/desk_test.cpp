@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "tests/cli/small_sequence.hpp"
 #include "tests/ui/desk_example.hpp"
+#include "ui/shell/offscreen.hpp"
 
 namespace stillpoint::testing {
 namespace {

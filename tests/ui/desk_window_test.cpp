@@ -10,8 +10,11 @@
 #include <GLFW/glfw3.h>
 
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/golden.hpp"
 #include "tests/support/xvfb.hpp"
 #include "tests/ui/desk_example.hpp"
+#include "ui/shell/offscreen.hpp"
+#include "ui/shell/window.hpp"
 #include "ui/workbench/replay.hpp"
 
 namespace stillpoint::testing {

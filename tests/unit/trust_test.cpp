@@ -33,6 +33,24 @@ TEST(Trust, PixelsAtTheRimAreReadAtTheRim) {
   EXPECT_FLOAT_EQ(trust[1], 0.5F);
 }
 
+TEST(Trust, WhereLittleIsKnownTheRestIsBelieved) {
+  std::vector<float> known{0.9F, 0.9F, 0.9F, 0.1F};  // mean 0.7: at least 0.09
+  raise_least_trust({1, 1, 1, 1}, known);
+  EXPECT_EQ(known, (std::vector<float>{0.9F, 0.9F, 0.9F, 0.1F}));
+  std::vector<float> unknown{0.8F, 0.0F, 0.0F, 0.0F};  // mean 0.2
+  raise_least_trust({1, 1, 1, 1}, unknown);
+  EXPECT_EQ(unknown[0], 0.8F);
+  for (std::size_t i = 1; i < unknown.size(); ++i) EXPECT_NEAR(unknown[i], 0.64, 1e-6);
+}
+
+TEST(Trust, WhatIsRemovedNeitherCountsNorChanges) {
+  std::vector<float> trust{1.0F, 1.0F, 0.0F, 0.0F};
+  raise_least_trust({1, 1, 0, 0}, trust);
+  EXPECT_EQ(trust, (std::vector<float>{1.0F, 1.0F, 0.0F, 0.0F}));
+  raise_least_trust({0, 0, 0, 0}, trust);
+  EXPECT_EQ(trust[2], 0.0F);
+}
+
 /// Mean trust of what was kept, on what truly moves and on what stands still, over frames of slow people.
 struct MeanTrust {
   double moving = 0.0, still = 0.0;

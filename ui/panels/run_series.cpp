@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/median.hpp"
+
 namespace stillpoint {
 
 double series_start(const SessionView& session) {
@@ -17,11 +19,7 @@ Series error_series(const RelativePoseError& error, double start, bool rotation)
   for (std::size_t i = 1; i < error.errors.size(); ++i)
     steps.push_back(error.errors[i].to_timestamp - error.errors[i - 1].to_timestamp);
   double usual = std::numeric_limits<double>::infinity();
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    usual = *middle;
-  }
+  if (!steps.empty()) usual = median_of(steps);
   for (const RelativeError& one : error.errors) {
     const double x = one.to_timestamp - start;
     // Two motions may end at one pose, and their order there is of no account; a plot's x must not decrease.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/median.hpp"
 #include "ui/session/stage_pictures.hpp"
 
 namespace stillpoint {
@@ -105,8 +106,7 @@ void add_colour_stages(const FrameView& view, const Config& config, std::vector<
   add_figure(points, "Followed long enough", static_cast<double>(with_say));
   std::vector<int> ages;
   for (const ColourPoint& point : trace.points) ages.push_back(point.age);
-  std::nth_element(ages.begin(), ages.begin() + static_cast<std::ptrdiff_t>(ages.size() / 2), ages.end());
-  add_figure(points, "Median age", ages[ages.size() / 2], "frames");
+  add_figure(points, "Median age", median_of(ages), "frames");
 
   for (std::size_t i = 0; i < trace.references.size(); ++i)
     add_reference(trace.references[i], static_cast<int>(i), limits, stages);

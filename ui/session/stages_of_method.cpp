@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.hpp"
 #include "core/motion/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "ui/session/stages.hpp"
@@ -138,11 +139,7 @@ void add_paper_stages(const FrameView& view, std::vector<StageInfo>& stages) {
   for (const Track& track : motion.rounds.front().forward.tracks)
     lengths.push_back(std::hypot(static_cast<double>(track.to.x - track.from.x),
                                  static_cast<double>(track.to.y - track.from.y)));
-  if (!lengths.empty()) {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    add_figure(tracks, "Forward: median length", *middle, "px", 2);
-  }
+  if (!lengths.empty()) add_figure(tracks, "Forward: median length", median_of(lengths), "px", 2);
   for (std::size_t i = 0; i < motion.rounds.size(); ++i) {
     const auto index = static_cast<int>(i);
     add_warp_stages(motion.rounds[i], i > 0 ? &motion.rounds[i - 1] : nullptr, index, stages);

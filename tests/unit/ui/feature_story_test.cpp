@@ -137,7 +137,7 @@ TEST(FeatureStory, TellsWhatWeighsLittle) {
   const int trusted = scene.add_feature({100, 60}, FeatureFate::inlier, 9, 0.5F);
   const int suspected = scene.add_feature({52, 40}, FeatureFate::inlier, 10, 0.5F);
   scene.record().features.back().trust = 0.07F;
-  EXPECT_THAT(explain(scene, trusted).verdict, testing::Not(HasSubstr("weighs")));
+  EXPECT_THAT(explain(scene, trusted).verdict, ::testing::Not(HasSubstr("weighs")));
   EXPECT_THAT(explain(scene, suspected).verdict, HasSubstr("weighs 7 %"));
   EXPECT_EQ(weighing_little(scene.record().features), 1);
 }
