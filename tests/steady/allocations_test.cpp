@@ -62,6 +62,9 @@ struct Bounds {
   double large_calls, large_bytes, calls;  ///< a frame
 };
 
+/// What the test is called by.
+void PrintTo(const Bounds& bounds, std::ostream* to) { *to << bounds.method; }
+
 class SteadyState : public testing::TestWithParam<Bounds> {
  protected:
   void SetUp() override {

@@ -134,6 +134,9 @@ struct Wrong {
   const char* why;
 };
 
+/// What the test is called by.
+void PrintTo(const Wrong& wrong, std::ostream* to) { *to << wrong.why; }
+
 class WrongCondition : public ::testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongCondition, IsAnsweredAtThePlace) {

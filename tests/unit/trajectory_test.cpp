@@ -69,6 +69,9 @@ TEST(TumTrajectory, SortsAndDropsRepeatsWithAWarning) {
 struct BadTrajectory {
   const char *text, *complaint;
 };
+/// What the test is called by.
+void PrintTo(const BadTrajectory& bad, std::ostream* to) { *to << bad.complaint; }
+
 class BadTrajectories : public testing::TestWithParam<BadTrajectory> {};
 
 TEST_P(BadTrajectories, AreToldWithFileAndLine) {

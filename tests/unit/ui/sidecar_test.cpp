@@ -42,6 +42,9 @@ struct BadFile {
   const char* why;
 };
 
+/// What the test is called by.
+void PrintTo(const BadFile& file, std::ostream* to) { *to << file.why; }
+
 class BadMarks : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(BadMarks, AreRefusedInOneSentenceAndLeftAlone) {
