@@ -26,8 +26,8 @@ struct CameraTurn {
 
 struct CameraTurnOptions {
   double sigma = 1e-3;            ///< noise of a bearing, in units of the focal length
-  double rate_sigma = 0.0;        ///< rad / s: how far the rate may be off; 0 = not at all
   double least_sigma = 4e-4;      ///< the same at its best, by which parallax is told from noise
+  double rate_sigma = 0.0;        ///< rad / s: how far the rate may be off; 0 = not at all
   int samples = 60;               ///< directions tried
   double turns_only_share = 0.6;  ///< so many must agree with rotation alone …
   double between_share = 0.12;    ///< … and at most so many may disagree by little, as parallax does

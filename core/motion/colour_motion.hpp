@@ -79,7 +79,7 @@ class ColourMotionDetector {
   void judge(ColourReference& reference);
   void gather_evidence(const std::vector<ColourReference>& references);
 
-  Camera camera_;  ///< as given; scaled to the frames' size
+  Camera camera_;  ///< as given
   Camera small_;   ///< of the small image
   ColourMotionConfig config_;
   PointTracks tracks_;

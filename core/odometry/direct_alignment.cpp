@@ -46,7 +46,7 @@ Pose best_turn(const DirectLevel& level, const Camera& camera, const Pose& about
   constexpr double kFarthest = 0.2;  // rad
   const double step = std::ldexp(1.0, level.level()) / camera.fx;
   const int reach = static_cast<int>(kFarthest / step);
-  double best = -1.0;
+  double best = level.correlation_at(about);
   Pose turned = about;
   for (int up = -reach; up <= reach; ++up)
     for (int side = -reach; side <= reach; ++side) {
@@ -124,7 +124,8 @@ DirectAlignment align_directly(const DirectReference& reference, const DirectTar
     state = candidate;
   };
   for (const Pose& start : starts) begin_from(start);
-  constexpr double kPlain = 0.9;  // correlation beyond which there is no better place to look for
+  if (best < -1.0) return result;  // none has anything in view
+  constexpr double kPlain = 0.9;   // correlation beyond which there is no better place to look for
   if (best < kPlain) begin_from(best_turn(coarsest, camera, starts.back()));
 
   DirectLevel finest = level_of(direct.finest_level);

@@ -50,7 +50,7 @@ bool within_surface(const cv::Mat& depth, int x, int y) {
 }  // namespace
 
 cv::Mat small_mask(const cv::Mat& mask) {
-  if (mask.empty()) return {};
+  if (mask.cols < kMaskBlock || mask.rows < kMaskBlock) return {};
   cv::Mat mean;
   cv::resize(mask, mean, {mask.cols / kMaskBlock, mask.rows / kMaskBlock}, 0, 0, cv::INTER_AREA);
   return mean > 0;

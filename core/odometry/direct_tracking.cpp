@@ -9,7 +9,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kUsualFades = 0.98;  // a frame, of how many matches are usual
 constexpr int kMinFusedInliers = 10;  // fewer matches have no say beside the patches
 
 /// What two estimates of a pose that do not know of each other say together, each by its information: one
@@ -68,10 +67,11 @@ std::optional<DirectAlignment> Odometry::align(const Frame& frame, const Current
         return se3_log(target_from_reference * world_from_reference.inverse() * last_from_world.inverse()) /
                elapsed();
       };
-    DirectAlignment aligned = align_directly(
-        **reference, target,
-        {current.camera_from_world * world_from_reference, last_from_world * world_from_reference}, camera_,
-        config_);
+    DirectAlignment aligned =
+        align_directly(**reference, target,
+                       {current.camera_from_world * world_from_reference,
+                        current.start * world_from_reference, last_from_world * world_from_reference},
+                       camera_, config_);
     record.direct = aligned.record;
     record.direct.reference_frame = (*reference)->frame_index;
     // From here on it is where the camera stands in the world.
@@ -95,7 +95,7 @@ bool Odometry::begins_starved(const Current& current) {
   // not.
   const bool knows_movers = config_.run.method != "stillpoint" ||
                             static_cast<int>(past_views_.size()) > config_.depth_motion.far_reference;
-  if (!starved) usual_first_inliers_ = std::max(kUsualFades * usual_first_inliers_, found);
+  usual_first_inliers_ = std::max(kUsualFades * usual_first_inliers_, found);
   return starved && knows_movers;
 }
 
@@ -171,6 +171,7 @@ bool Odometry::is_starved_keyframe(const Frame& frame, const Current& current) c
   constexpr int kLong = 5;        // frames: by then the view is another one, and the map knows nothing of it
   constexpr int kFeatures = 100;  // with depth: fewer make no keyframe to track against
   if (starved_frames_ < kLong || !frame.has_depth() || pending_) return false;
+  if (map_.observers(current.points).empty()) return false;  // nothing would tie it to the map
   const auto& depth = current.features->depth;
   return std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; }) >= kFeatures;
 }

@@ -51,7 +51,7 @@ enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp, dir
 
 /// A patch that was aligned directly.
 struct DirectPatch {
-  cv::Point2f pixel;      ///< px, where the frame shows it under the final pose
+  cv::Point2f pixel;      ///< px, where the frame shows it as aligned
   float residual = 0.0F;  ///< grey levels, mean over its pixels at the finest level, signed
   float weight = 0.0F;    ///< how far it was trusted, 0 to 1
 };
@@ -59,7 +59,7 @@ struct DirectPatch {
 /// What direct alignment did in a frame whose corners starved.
 struct DirectRecord {
   int reference_frame = kNone;  ///< the frame it was aligned with; kNone: it was not called for
-  bool believed = false;        ///< it passed the checks, and had its share in the pose
+  bool believed = false;        ///< it passed the checks: the pose, or the first one, goes by it
   int patches = 0;              ///< of the reference that lie in the frame's view
   int iterations = 0;           ///< Gauss-Newton steps over all levels
   double rms_before = 0.0,

@@ -12,7 +12,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kUsualFades = 0.98;      // a frame, of how many inliers are usual
 constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to track against
 
 }  // namespace
@@ -135,7 +134,6 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   current.mask = mask;
-  current.mask = mask;
   std::vector<std::uint8_t> keep(pixels.size(), 1);
   if (!mask.empty())
     for (std::size_t i = 0; i < keep.size(); ++i)
@@ -194,7 +192,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     // then.
     if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
     Current first = remove_moving(frame, prepared, result.mask, velocity_, record);
-    first.camera_from_world = start;
+    first.camera_from_world = first.start = start;
     first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
     bool begun = estimate(first, record);
@@ -208,7 +206,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
   }
   Current current =
       remove_moving(frame, prepared, result.mask, velocity, record, result.depth_motion.log_odds);
-  current.camera_from_world = start;
+  current.camera_from_world = current.start = start;
   std::string why_lost;
   bool harms = finds_movers_by_pose && leaves_too_little(current);
   if (!harms) {
@@ -219,7 +217,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     // Better a pose disturbed by what moves than none: the frame is tracked by all of its features, and what
     // is remembered to move, which led here, is forgotten.
     current = remove_moving(frame, prepared, {}, velocity, record);
-    current.camera_from_world = start;
+    current.camera_from_world = current.start = start;
     why_lost = track(frame, current, record);
     result.mask.release();
     result.depth_motion.log_odds.setTo(0);
@@ -252,8 +250,7 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   PoseRefinement refined;
   const bool begun = estimate(current, record);
   if (begun) refined = track_local_map(current, record);
-  const bool starved = starves(refined.inliers);
-  const bool directly = starved && refine_directly(frame, current, refined, record);
+  const bool directly = starves(refined.inliers) && refine_directly(frame, current, refined, record);
   // That a blurred frame does not show a point's corner tells nothing of the point.
   if (begun && !directly) count_sightings(current);
   if (!begun && !directly)
@@ -267,10 +264,12 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
   velocity_ =
       was_lost ? Vector6d::Zero() : Vector6d(se3_log(current.camera_from_world * last.inverse()) / elapsed());
   lost_frames_ = 0;
-  starved_frames_ = directly ? starved_frames_ + 1 : 0;
-  if (!starved) usual_inliers_ = std::max(kUsualFades * usual_inliers_, 1.0 * refined.inliers);
+  if (directly) ++starved_frames_;
+  // Fading all the while: a view with fewer corners that lasts becomes the usual one.
+  usual_inliers_ = std::max(kUsualFades * usual_inliers_, 1.0 * refined.inliers);
   const bool keyframe =
       directly ? is_starved_keyframe(frame, current) : wants_keyframe(frame, current, record);
+  if (!directly || keyframe) starved_frames_ = 0;
   if (keyframe) add_keyframe(frame, current, record);
   // Points that so few corners show are looked for again from the frame that showed them well.
   if (refined.inliers < needed && !keyframe)
@@ -376,6 +375,7 @@ void Odometry::mark_lost(FrameRecord& record, FrameStatus status, const std::str
   last_timestamp_ = now_;
   velocity_ *= kVelocityDecay;
   ++lost_frames_;
+  starved_frames_ = 0;
 }
 
 Pose Odometry::last_camera_from_world() const {

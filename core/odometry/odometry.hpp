@@ -87,6 +87,7 @@ class Odometry {
     std::shared_ptr<const FeatureSet> features;  // static ones
     std::vector<int> points;                     // map point a feature, inliers of the pose only
     Pose camera_from_world = Pose::Identity();
+    Pose start = Pose::Identity();       // camera_from_world, as tracking began
     std::vector<FeatureRecord> records;  // of all features, removed ones too
     std::vector<int> record_of;          // feature -> index into records
     cv::Mat mask;                        // what was removed; empty when nothing was
@@ -195,6 +196,7 @@ class Odometry {
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
   double usual_first_inliers_ = 0.0;                // of first poses, lately
   double usual_inliers_ = 0.0;                      // what frames had lately that did not starve
+  static constexpr double kUsualFades = 0.98;       // a frame, of how many are usual
   int starved_frames_ = 0;                          // in a row
 };
 

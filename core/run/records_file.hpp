@@ -14,7 +14,7 @@ namespace stillpoint {
 // looked at again without being run again.
 //
 //   8 bytes  "STILLREC"
-//   u32      version: 3
+//   u32      version: 4
 //   chunks, each
 //     u8     kind: 'H' header, 'F' frame, 'E' end
 //     u32    bytes of the content as it lies here

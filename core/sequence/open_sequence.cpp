@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <string_view>
 
+#include "core/error.hpp"
 #include "core/sequence/first_frames.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/source.hpp"
@@ -12,6 +15,8 @@ std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenO
   if (where.starts_with(kGenerated))
     return make_generated_sequence(where.substr(kGenerated.size()), options.frames, options.seed);
   auto folder = std::make_unique<TumFolder>(where, options.camera);
+  if (options.frames < 0)
+    throw InputError(fmt::format("{}: expected a number of frames, not {}", where, options.frames));
   if (options.frames == 0) return folder;
   return first_frames(std::move(folder), options.frames);
 }

@@ -226,6 +226,8 @@ TEST(TumFolder, GivesItsFirstFramesAlone) {
   EXPECT_EQ(some->ground_truth().size(), all->ground_truth().size());
   options.frames = 9;
   EXPECT_EQ(open_sequence(folder.path(), options)->size(), 5);
+  options.frames = -1;
+  EXPECT_THROW((void)open_sequence(folder.path(), options), InputError);
 }
 
 TEST(TumFolder, ReadsGreySixteenBitAlphaAndJpegImages) {
