@@ -41,7 +41,7 @@ class KeptBlocks {
     std::unordered_map<std::size_t, std::vector<void*>> let_go;
     {
       const std::lock_guard lock(mutex_);
-      // What has gathered is of sizes no longer asked for, or it would not have gathered.
+      // Mostly sizes no longer asked for; which ones is not known, so all of them go.
       if (counts_.kept_bytes + size > kMostKept) {
         let_go.swap(kept_);
         counts_.kept_bytes = 0;

@@ -195,7 +195,7 @@ class Odometry {
   std::optional<DirectReference> last_reference_;   // the newest frame with a pose and depth
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
   double usual_first_inliers_ = 0.0;                // of first poses, lately
-  double usual_inliers_ = 0.0;                      // what frames had lately that did not starve
+  double usual_inliers_ = 0.0;                      // of whole frames, lately
   static constexpr double kUsualFades = 0.98;       // a frame, of how many are usual
   int starved_frames_ = 0;                          // in a row
 };
