@@ -146,6 +146,10 @@ std::vector<Parameter> parameters(Config& c) {
          "above it a pixel is firmly known to move");
   number("depth_motion.release", &d.release, 0, 1, "",
          "share of evidence for standing still that what firmly moves takes");
+  number("depth_motion.find_receding", &d.find_receding, 0, 1, "",
+         "1 looks for patches that go back along the line of sight");
+  number("depth_motion.inherit", &d.inherit, 0, 1, "",
+         "1 lets what comes into view take over what its surface is known to do");
   number("depth_motion.patch_share", &d.patch_share, 0, 1, "",
          "share of the log-odds by a patch's shift that counts in one frame");
   number("depth_motion.segment_px", &d.segment_px, 4, 100, "px", "side of a surface patch, in blocks");
@@ -229,10 +233,15 @@ std::vector<Parameter> parameters(Config& c) {
          "1 carries depth taken at another time than colour to colour's time");
   number("tracking.seek_consensus", &t.seek_consensus, 0, 1, "",
          "1 takes method stillpoint's first pose from where most samples agree");
+  number("tracking.start_looseness", &t.start_looseness, 0, 1000, "",
+         "matches off by more than so many chi-square bounds under the consensus do not begin the pose; 0 "
+         "all do");
   number("tracking.soft_weights", &t.soft_weights, 0, 1, "",
          "1 weighs each feature by how likely it stands still, where method stillpoint left it in");
   number("tracking.half_trust_log_odds", &t.half_trust_log_odds, -10, 10, "",
          "log-odds of moving at which a feature counts half");
+  number("tracking.look_back_frames", &t.look_back_frames, 0, 1000, "frames",
+         "methods stillpoint and oracle solve each pose once more, by the map so much later; 0 never");
   number("tracking.depth_weight", &t.depth_weight, 0, 10, "",
          "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 

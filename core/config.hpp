@@ -50,6 +50,8 @@ struct DepthMotionConfig {
   double max_log_odds = 6.0;   ///< evidence of motion saturates here, so that a change of mind stays possible
   double firm_log_odds = 3.0;  ///< above it a pixel is firmly known to move …
   double release = 0.015;      ///< … and takes this share of what speaks for standing still
+  int find_receding = 1;       ///< 1: patches that go back along the line of sight are looked for
+  int inherit = 1;             ///< 1: what comes into view takes over what its surface is known to do
   double patch_share = 0.15;   ///< of the log-odds by a patch's shift that counts in one frame
   int segment_px = 10;         ///< side of a surface patch, small pixels
   double smoothing = 0.6;      ///< weight of neighbours on the same surface against a patch's own evidence
@@ -113,8 +115,12 @@ struct TrackingConfig {
       1;                      ///< 1: features are carried to where their frame's middle row would show them
   int correct_depth_lag = 1;  ///< 1: depth taken at another time than colour is carried to colour's time
   int seek_consensus = 1;     ///< 1: method `stillpoint` takes its first pose from where most samples agree
-  int soft_weights = 1;       ///< 1: method `stillpoint` weighs features by how likely they stand still
+  double start_looseness = 2.0;  ///< matches that are off by more than this many times their χ² bound under
+                                 ///< the consensus do not begin the pose that follows it; 0 = all do
+  int soft_weights = 1;  ///< 1: method `stillpoint` weighs features by how likely they stand still
   double half_trust_log_odds = -2.0;  ///< log-odds of moving at which a feature counts half
+  int look_back_frames = 60;  ///< methods `stillpoint` and `oracle` solve each pose once more, by the map so
+                              ///< many frames later; 0 = never
   double depth_weight =
       1.0;  ///< weight of the depth residual beside the paper's two; 0 = the paper's eq. (5)
   bool operator==(const TrackingConfig&) const = default;

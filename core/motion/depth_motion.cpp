@@ -9,6 +9,7 @@
 
 #include "core/image_memory.hpp"
 #include "core/motion/depth_evidence.hpp"
+#include "core/motion/entering.hpp"
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/segments.hpp"
 #include "core/stopwatch.hpp"
@@ -249,6 +250,8 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
   Stopwatch watch;
   trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
                        : cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  if (memory && config.inherit != 0)
+    inherit_memory(current, trace.labels, trace.segments.size(), previous_from_current, trace.prior);
   trace.ms.memory = watch.lap();
   // References know nothing of each other: all but the last are compared with beside it.
   std::vector<std::future<ReferenceEvidence>> compared;

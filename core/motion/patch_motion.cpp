@@ -6,6 +6,7 @@
 #include "core/image_memory.hpp"
 #include "core/median.hpp"
 #include "core/motion/carrier.hpp"
+#include "core/motion/receding_patches.hpp"
 #include "core/motion/segments.hpp"
 
 namespace stillpoint {
@@ -233,8 +234,9 @@ double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& sla
   return by_shift + by_step;
 }
 
-void judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
-           const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
+/// Returns what registration leaves.
+Slack judge(const Camera& camera, const std::vector<Measured>& measured, const Vector6d& twist,
+            const std::vector<double>& votes, std::vector<PatchMotion>& patches) {
   std::vector<Eigen::Vector3d> residuals(measured.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < measured.size(); ++i)
     if (measured[i].valid)
@@ -247,6 +249,7 @@ void judge(const Camera& camera, const std::vector<Measured>& measured, const Ve
                   static_cast<float>(r.z()),
                   static_cast<float>(log_odds_of(measured[i], r, slack))};
   }
+  return slack;
 }
 
 }  // namespace
@@ -275,11 +278,14 @@ PatchMotions measure_patches(const RgbdView& current, const ReferenceView& refer
     }));
     if (result.measured < kMinPatches) return result;
     const Vector6d twist = common_twist(twist_terms(current.camera, measured, votes));
-    // The last measurement is judged against what is left of the twist.
-    if (twist.norm() < kSettled || round + 1 == kRounds)
-      judge(current.camera, measured, twist, votes, result.patches);
     result.reference_from_current = se3_exp(twist) * result.reference_from_current;
-    if (twist.norm() < kSettled) break;
+    if (twist.norm() >= kSettled && round + 1 < kRounds) continue;
+    // The last measurement is judged against what is left of the twist.
+    const Slack slack = judge(current.camera, measured, twist, votes, result.patches);
+    if (config.find_receding != 0)
+      measure_receding(current, *reference.view, result.reference_from_current, labels, segments, slack.step,
+                       result.patches);
+    break;
   }
   return result;
 }

@@ -143,38 +143,6 @@ void assign(const RgbdView& view, const std::vector<Segment>& segments, int side
   }
 }
 
-/// Two patches that touch on one surface, and how many pixels of boundary they share: the weight of their
-/// agreement.
-struct Contact {
-  int a = 0, b = 0;
-  int boundary = 0;
-};
-
-std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
-  std::vector<std::pair<int, int>> touching;
-  touching.reserve(labels.total() / 4);
-  const auto look = [&](int a, int b, float za, float zb) {
-    if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
-    touching.emplace_back(std::min(a, b), std::max(a, b));
-  };
-  for (int y = 0; y < labels.rows; ++y) {
-    const bool last = y + 1 == labels.rows;
-    const auto *label = labels.ptr<int>(y), *label_below = last ? label : labels.ptr<int>(y + 1);
-    const auto *z = view.depth.ptr<float>(y), *z_below = last ? z : view.depth.ptr<float>(y + 1);
-    for (int x = 0; x < labels.cols; ++x) {
-      if (x + 1 < labels.cols) look(label[x], label[x + 1], z[x], z[x + 1]);
-      look(label[x], label_below[x], z[x], z_below[x]);
-    }
-  }
-  std::sort(touching.begin(), touching.end());
-  std::vector<Contact> result;
-  for (const auto& [a, b] : touching) {
-    if (result.empty() || result.back().a != a || result.back().b != b) result.push_back({a, b, 0});
-    ++result.back().boundary;
-  }
-  return result;
-}
-
 /// Who touches whom, patch after patch in one list.
 class Neighbours {
  public:
@@ -208,6 +176,31 @@ class Neighbours {
 };
 
 }  // namespace
+
+std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
+  std::vector<std::pair<int, int>> touching;
+  touching.reserve(labels.total() / 4);
+  const auto look = [&](int a, int b, float za, float zb) {
+    if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
+    touching.emplace_back(std::min(a, b), std::max(a, b));
+  };
+  for (int y = 0; y < labels.rows; ++y) {
+    const bool last = y + 1 == labels.rows;
+    const auto *label = labels.ptr<int>(y), *label_below = last ? label : labels.ptr<int>(y + 1);
+    const auto *z = view.depth.ptr<float>(y), *z_below = last ? z : view.depth.ptr<float>(y + 1);
+    for (int x = 0; x < labels.cols; ++x) {
+      if (x + 1 < labels.cols) look(label[x], label[x + 1], z[x], z[x + 1]);
+      look(label[x], label_below[x], z[x], z_below[x]);
+    }
+  }
+  std::sort(touching.begin(), touching.end());
+  std::vector<Contact> result;
+  for (const auto& [a, b] : touching) {
+    if (result.empty() || result.back().a != a || result.back().b != b) result.push_back({a, b, 0});
+    ++result.back().boundary;
+  }
+  return result;
+}
 
 SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& config) {
   SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -17,6 +18,26 @@ constexpr double kRigidTolerance =
     0.01;  // m, and this share of the distance: three points of one rigid scene
 constexpr double kRigidShare = 0.02;
 
+/// The depth (m) on either side of which lies half of the image, as far as there are observations with depth:
+/// most observations may well be on one thing.
+double usual_depth(const std::vector<PoseObservation>& observations, const std::vector<double>& votes) {
+  std::vector<std::pair<double, double>> by_depth;  // with its vote
+  by_depth.reserve(observations.size());
+  double all = 0.0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (observations[i].depth <= 0) continue;
+    by_depth.emplace_back(observations[i].depth, votes[i]);
+    all += votes[i];
+  }
+  std::sort(by_depth.begin(), by_depth.end());
+  double nearer = 0.0;
+  for (const auto& [depth, vote] : by_depth) {
+    nearer += vote;
+    if (2 * nearer >= all) return depth;
+  }
+  return 1.0;
+}
+
 std::vector<double> weights_by_place(const Camera& camera, const std::vector<PoseObservation>& observations) {
   const int columns = camera.width / kCell + 1, rows = camera.height / kCell + 1;
   const auto cell = [&](const PoseObservation& o) {
@@ -26,19 +47,16 @@ std::vector<double> weights_by_place(const Camera& camera, const std::vector<Pos
   };
   std::vector<int> counts(static_cast<std::size_t>(columns * rows), 0);
   for (const auto& o : observations) ++counts[cell(o)];
-  std::vector<double> weights, depths;
+  std::vector<double> weights;
   weights.reserve(observations.size());
-  depths.reserve(observations.size());
-  for (const auto& o : observations)
-    if (o.depth > 0) depths.push_back(o.depth);
-  std::sort(depths.begin(), depths.end());
-  const double usual = depths.empty() ? 1.0 : depths[depths.size() / 2];
+  for (const auto& o : observations) weights.push_back(std::min(1.0, kFairShare / counts[cell(o)]));
+  const double usual = usual_depth(observations, weights);
   double sum = 0.0;
-  for (const auto& o : observations) {
+  for (std::size_t i = 0; i < observations.size(); ++i) {
     // Movers stand before the background, hardly ever behind it.
-    const double behind = o.depth > 0 ? std::clamp(o.depth / usual, kNearestShare, 1.0) : 1.0;
-    weights.push_back(behind * std::min(1.0, kFairShare / counts[cell(o)]));
-    sum += weights.back();
+    const double depth = observations[i].depth;
+    if (depth > 0) weights[i] *= std::clamp(depth / usual, kNearestShare, 1.0);
+    sum += weights[i];
   }
   for (double& w : weights) w /= sum;
   return weights;

@@ -1,7 +1,9 @@
 #include "core/odometry/local_map.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace stillpoint {
@@ -24,6 +26,29 @@ Eigen::Vector3d centre(const Pose& camera_from_world) {
 }
 
 }  // namespace
+
+std::vector<int> each_once(const std::vector<const std::vector<int>*>& lists) {
+  // Most are in several lists: a bit for each is sorted as it is set.
+  constexpr int kBits = 64;
+  int first = std::numeric_limits<int>::max(), last = kNone;
+  for (const std::vector<int>* list : lists)
+    for (const int id : *list)
+      if (id != kNone) first = std::min(first, id), last = std::max(last, id);
+  std::vector<int> ids;
+  if (last == kNone) return ids;
+  std::vector<std::uint64_t> marks(static_cast<std::size_t>((last - first) / kBits) + 1, 0);
+  for (const std::vector<int>* list : lists)
+    for (const int id : *list)
+      if (id != kNone)
+        marks[static_cast<std::size_t>((id - first) / kBits)] |= std::uint64_t{1} << (id - first) % kBits;
+  std::size_t count = 0;
+  for (const std::uint64_t mark : marks) count += static_cast<std::size_t>(std::popcount(mark));
+  ids.reserve(count);
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::uint64_t mark = marks[i]; mark != 0; mark &= mark - 1)
+      ids.push_back(first + static_cast<int>(i) * kBits + std::countr_zero(mark));
+  return ids;
+}
 
 int LocalMap::add_keyframe(Keyframe keyframe) {
   keyframe.id = next_keyframe_++;

@@ -58,6 +58,9 @@ struct MovedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, where it was last held to be
 };
 
+/// What is in any of the lists, each once, ascending; without kNone.
+[[nodiscard]] std::vector<int> each_once(const std::vector<const std::vector<int>*>& lists);
+
 /// Keyframes and map points, and who sees what. Plain values throughout: a copy is a checkpoint.
 class LocalMap {
  public:

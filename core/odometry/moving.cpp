@@ -117,8 +117,10 @@ bool Odometry::leaves_too_little(const Current& current) const {
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {
   constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves, not behind it
   if (mask.empty() || config_.map.purge_moving == 0) return;
-  for (int& id : last_->points) {
-    if (id == kNone || !map_.has_point(id)) continue;
+  std::vector<const std::vector<int>*> seen = hindsight_.points();
+  seen.push_back(&last_->points);
+  for (const int id : each_once(seen)) {
+    if (!map_.has_point(id)) continue;
     const Eigen::Vector3d p = camera_from_world * map_.point(id).position;
     if (p.z() < 0.05) continue;
     const Eigen::Vector2d pixel = camera_.distort(camera_.project(p));
@@ -127,7 +129,6 @@ void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, cons
     const float z = frame.depth.at<float>(y, x);
     if (z > 0 && p.z() < z + kLikeDepth) {
       map_.remove_moving_point(id);
-      id = kNone;
     }
   }
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/odometry/mapping.hpp"
 #include "core/odometry/rolling_shutter.hpp"
 #include "core/odometry/trust.hpp"
 #include "core/stopwatch.hpp"
@@ -68,28 +67,6 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
   record.map_keyframes = static_cast<int>(map_.keyframes().size());
   record.ms.total = whole.milliseconds() - check_ms;
   return result;
-}
-
-void Odometry::finish() {
-  FrameRecord unused;
-  apply_due_bundle(unused, true);
-}
-
-void Odometry::apply_due_bundle(FrameRecord& record, bool now) {
-  if (!pending_ || (!now && record.index < pending_->due)) return;
-  const Stopwatch watch;
-  const BundleSolution& solution = pending_->solution.get();
-  apply_bundle(solution, map_);
-  record.bundle_rms_before_px = solution.initial_rms_px;
-  record.bundle_rms_px = solution.rms_px;
-  record.bundle_iterations = solution.iterations;
-  if (map_.has_keyframe(pending_->keyframe)) {
-    for (const int point : map_.keyframe(pending_->keyframe).points)
-      if (point != kNone) map_.update_point(point, config_.features.scale_factor, config_.features.levels);
-    record.culled_keyframes += cull_keyframes(map_, pending_->keyframe, config_);
-  }
-  pending_.reset();
-  record.ms.bundle += watch.milliseconds();
 }
 
 void Odometry::take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask,
@@ -187,6 +164,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
   const bool finds_movers_by_pose = config_.run.method == "stillpoint";
   Pose start = predicted_camera_from_world();
   Vector6d velocity = velocity_;
+  bool agreed = false;
   if (finds_movers_by_pose || !is_taken_at_once(frame)) {
     // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only
     // then.
@@ -198,6 +176,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     bool begun = estimate(first, record);
     if (aligns_directly() && (begins_starved(first) || !begun))
       begun = begin_directly(frame, first, record) || begun;
+    agreed = begun && first.seek_consensus;
     if (begun) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
@@ -207,6 +186,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
   Current current =
       remove_moving(frame, prepared, result.mask, velocity, record, result.depth_motion.log_odds);
   current.camera_from_world = current.start = start;
+  current.start_agreed = agreed;
   std::string why_lost;
   bool harms = finds_movers_by_pose && leaves_too_little(current);
   if (!harms) {
@@ -276,75 +256,11 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
     remember_pose(current, record);
   else
     remember(current, record);
+  if (looks_back()) {
+    if (!keyframe && !directly) remember_sights(current, record);
+    look_back(record.index - config_.tracking.look_back_frames);
+  }
   return {};
-}
-
-bool Odometry::wants_keyframe(const Frame& frame, const Current& current, const FrameRecord& record) const {
-  // One adjustment at a time: a keyframe before the last one's is done would have to wait for it.
-  if (!frame.has_depth() || pending_) return false;
-  const FeatureSet& features = *current.features;
-  int near_tracked = 0, near_new = 0;
-  for (std::size_t i = 0; i < current.points.size(); ++i) {
-    if (features.depth[i] <= 0 || features.depth[i] > config_.map.far_depth_m) continue;
-    ++(current.points[i] != kNone ? near_tracked : near_new);
-  }
-  const bool near_wanted =
-      near_tracked < config_.map.keyframe_min_near && near_new > config_.map.keyframe_new_near;
-
-  const auto observers = map_.observers(current.points);
-  if (observers.empty()) return false;
-  // Points of the reference keyframe that have proved themselves: what there was to be tracked.
-  const int proven = map_.keyframes().size() <= 2 ? 1 : 2;
-  int reference_points = 0;
-  for (const int point : map_.keyframe(observers.front().first).points)
-    if (point != kNone && static_cast<int>(map_.point(point).observations.size()) >= proven)
-      ++reference_points;
-  const bool few_left = record.inliers < config_.map.keyframe_min_ratio * reference_points;
-  const bool long_ago = frame.index - last_keyframe_frame_ >= config_.map.keyframe_max_gap;
-  return few_left || near_wanted || (long_ago && near_new > config_.map.keyframe_new_near);
-}
-
-void Odometry::add_keyframe(const Frame& frame, Current& current, FrameRecord& record) {
-  apply_due_bundle(record, true);
-  // The adjustment may have taken points out of the map, and moved it under this frame.
-  for (int& point : current.points)
-    if (point != kNone && !map_.has_point(point)) point = kNone;
-
-  const Stopwatch watch;
-  Keyframe keyframe;
-  keyframe.frame_index = frame.index;
-  keyframe.timestamp = frame.timestamp;
-  keyframe.camera_from_world = current.camera_from_world;
-  keyframe.features = current.features;
-  keyframe.points = current.points;
-  const int id = map_.add_keyframe(std::move(keyframe));
-  for (const int point : current.points)
-    if (point != kNone) map_.update_point(point, config_.features.scale_factor, config_.features.levels);
-  record.culled_points = cull_points(map_, id, config_);
-  record.new_points = create_points(map_, id, camera_, config_);
-  record.fused_points = fuse_neighbours(map_, id, camera_, config_);
-  current.points = map_.keyframe(id).points;
-  record.keyframe = true;
-  last_keyframe_frame_ = frame.index;
-  record.ms.mapping = watch.milliseconds();
-
-  if (map_.keyframes().size() < 2) return;
-  auto solve = [problem = make_bundle_problem(map_, id, config_), camera = camera_, bundle = config_.bundle,
-                weight = config_.tracking.depth_weight]() mutable {
-    return solve_bundle(std::move(problem), camera, bundle, weight);
-  };
-  // When the result enters the map is fixed by the frame's number, so that threads change nothing but the
-  // time.
-  pending_ = PendingBundle{
-      std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred, std::move(solve))
-          .share(),
-      id, frame.index + config_.bundle.apply_after_frames};
-  if (config_.bundle.apply_after_frames == 0) {
-    apply_due_bundle(record, true);
-    current.camera_from_world = map_.pose_of(id);
-    for (int& point : current.points)
-      if (point != kNone && !map_.has_point(point)) point = kNone;
-  }
 }
 
 void Odometry::remember(const Current& current, FrameRecord& record) {

@@ -15,6 +15,7 @@
 #include "core/odometry/direct_alignment.hpp"
 #include "core/odometry/frame_preparer.hpp"
 #include "core/odometry/frame_record.hpp"
+#include "core/odometry/hindsight.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/matching.hpp"
 #include "core/odometry/pose_solver.hpp"
@@ -73,10 +74,12 @@ class Odometry {
   /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
   void restore_images(int next, const std::function<Frame(int)>& read);
 
-  /// Lets a pending bundle adjustment enter the map: after the last frame.
+  /// Lets a pending bundle adjustment enter the map and looks back at the last poses: after the last frame.
   void finish();
 
   [[nodiscard]] const LocalMap& map() const { return map_; }
+  /// By frame index: the poses of earlier frames that were solved once more, by the map as it was later.
+  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const { return hindsight_.revised(); }
   [[nodiscard]] const Config& config() const { return config_; }
 
  private:
@@ -92,8 +95,9 @@ class Odometry {
     std::vector<int> record_of;          // feature -> index into records
     cv::Mat mask;                        // what was removed; empty when nothing was
     bool seek_consensus =
-        false;               // movers may be among the features: least squares alone is not to be trusted
-    std::uint32_t seed = 0;  // of the samples consensus is sought with
+        false;                  // movers may be among the features: least squares alone is not to be trusted
+    std::uint32_t seed = 0;     // of the samples consensus is sought with
+    bool start_agreed = false;  // the start is a consensus: what is far from it is not to draw the pose away
     std::vector<int> points_in_view, points_found;  // map points that should be seen, and those that were
   };
   /// The frame before, as the next one needs it.
@@ -165,6 +169,9 @@ class Odometry {
                                     const FrameRecord& record) const;
   [[nodiscard]] bool is_starved_keyframe(const Frame& frame, const Current& current) const;
   void add_keyframe(const Frame& frame, Current& current, FrameRecord& record);
+  [[nodiscard]] bool looks_back() const;
+  void remember_sights(const Current& current, const FrameRecord& record);
+  void look_back(int last);
   void remember(const Current& current, FrameRecord& record);
   void remember_pose(const Current& current, FrameRecord& record);
   void mark_lost(FrameRecord& record, FrameStatus status, const std::string& why);
@@ -198,6 +205,7 @@ class Odometry {
   double usual_inliers_ = 0.0;                      // of whole frames, lately
   static constexpr double kUsualFades = 0.98;       // a frame, of how many are usual
   int starved_frames_ = 0;                          // in a row
+  Hindsight hindsight_;                             // of frames lately tracked
 };
 
 }  // namespace stillpoint

@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kLanes = 4;
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
+constexpr int kFewestInliers = 6;  // that a pose is sought from
+
 struct NormalEquations {
   Matrix6d h = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -49,13 +51,13 @@ class PoseProblem {
     }
   }
 
-  /// Marks the observations whose χ² is within its bound; returns how many.
-  int mark_inliers(const Pose& camera_from_world, std::vector<std::uint8_t>& inlier) const {
+  /// Marks the observations whose χ² is within so many times its bound; returns how many.
+  int mark_inliers(const Pose& camera_from_world, double looseness, std::vector<std::uint8_t>& inlier) const {
     int inliers = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Residual r = residual(blocks_[b], camera_from_world);
       for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k) {
-        const bool within = r.in_front[k] > 0 && r.chi2[k] <= blocks_[b].bound[k];
+        const bool within = r.in_front[k] > 0 && r.chi2[k] <= looseness * blocks_[b].bound[k];
         inlier[b * kLanes + k] = within;
         inliers += within;
       }
@@ -184,7 +186,8 @@ int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, 
 }  // namespace
 
 PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
-                           const Pose& initial_camera_from_world, const TrackingConfig& config) {
+                           const Pose& initial_camera_from_world, const TrackingConfig& config,
+                           double start_looseness) {
   PoseRefinement result;
   result.camera_from_world = initial_camera_from_world;
   result.inlier.assign(observations.size(), 1);
@@ -194,15 +197,18 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     return result;
   }
   PoseProblem problem(camera, observations, config.depth_weight);
+  if (start_looseness > 0 &&
+      problem.mark_inliers(initial_camera_from_world, start_looseness, result.inlier) >= kFewestInliers)
+    problem.use(result.inlier);
   for (int round = 0; round < config.refine_rounds; ++round) {
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.
     const bool robust = round < 2;
     Pose pose = result.camera_from_world;
     result.iterations += levenberg_marquardt(problem, robust, config.refine_iterations, pose);
     result.camera_from_world = pose;
-    result.inliers = problem.mark_inliers(pose, result.inlier);
+    result.inliers = problem.mark_inliers(pose, 1.0, result.inlier);
     problem.use(result.inlier);
-    if (result.inliers < 6) break;
+    if (result.inliers < kFewestInliers) break;
   }
 
   double before = 0.0, after = 0.0;

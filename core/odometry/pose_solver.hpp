@@ -42,9 +42,13 @@ struct PoseRefinement {
 /// pose. In rounds, after each of which inliers are told from outliers anew. With tracking.depth_weight above
 /// 0 a third residual compares depth. With fewer than 3 observations the pose is returned as it came, without
 /// inliers.
+/// @param start_looseness where what moves may have a large part in the observations, and the initial pose is
+/// known not to follow it: those beyond this many times their χ² bound at the start take no part in the first
+/// round; 0 = all do
 [[nodiscard]] PoseRefinement refine_pose(const Camera& camera,
                                          const std::vector<PoseObservation>& observations,
-                                         const Pose& initial_camera_from_world, const TrackingConfig& config);
+                                         const Pose& initial_camera_from_world, const TrackingConfig& config,
+                                         double start_looseness = 0.0);
 
 /// EPnP (Lepetit et al. 2009) inside RANSAC.
 struct InitialPose {

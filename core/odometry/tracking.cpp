@@ -1,8 +1,5 @@
 // Finding the pose of one frame: the part of Odometry between removal and the map's upkeep.
 #include <algorithm>
-#include <bit>
-#include <cstdint>
-#include <limits>
 
 #include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
@@ -13,31 +10,6 @@ namespace {
 
 constexpr int kConsensusSamples = 200;
 constexpr int kMinModelInliers = 10;  // matches that must agree before the motion model's pose is believed
-
-/// The points of some keyframes, each once, ascending. Most are seen by several: a bit for each is sorted as
-/// it is set.
-std::vector<int> points_seen_by(const LocalMap& map, const std::vector<int>& keyframes) {
-  constexpr int kBits = 64;
-  int first = std::numeric_limits<int>::max(), last = kNone;
-  for (const int keyframe : keyframes)
-    for (const int point : map.keyframe(keyframe).points)
-      if (point != kNone) first = std::min(first, point), last = std::max(last, point);
-  std::vector<int> points;
-  if (last == kNone) return points;
-  std::vector<std::uint64_t> marks(static_cast<std::size_t>((last - first) / kBits) + 1, 0);
-  for (const int keyframe : keyframes)
-    for (const int point : map.keyframe(keyframe).points)
-      if (point != kNone)
-        marks[static_cast<std::size_t>((point - first) / kBits)] |= std::uint64_t{1}
-                                                                    << (point - first) % kBits;
-  std::size_t count = 0;
-  for (const std::uint64_t mark : marks) count += static_cast<std::size_t>(std::popcount(mark));
-  points.reserve(count);
-  for (std::size_t i = 0; i < marks.size(); ++i)
-    for (std::uint64_t mark = marks[i]; mark != 0; mark &= mark - 1)
-      points.push_back(first + static_cast<int>(i) * kBits + std::countr_zero(mark));
-  return points;
-}
 
 }  // namespace
 
@@ -61,7 +33,8 @@ PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matc
                                 FrameRecord& record) const {
   const Stopwatch watch;
   PoseRefinement refined =
-      refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking);
+      refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking,
+                  current.start_agreed ? config_.tracking.start_looseness : 0.0);
   record.refine_iterations += refined.iterations;
   const double took = watch.milliseconds();
   record.ms.refine += took;
@@ -177,7 +150,9 @@ std::vector<int> Odometry::local_points(const Current& current) const {
           std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
         keyframes.push_back(neighbour);
 
-  return points_seen_by(map_, keyframes);
+  std::vector<const std::vector<int>*> seen;
+  for (const int keyframe : keyframes) seen.push_back(&map_.keyframe(keyframe).points);
+  return each_once(seen);
 }
 
 PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) const {

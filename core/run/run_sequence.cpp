@@ -103,11 +103,16 @@ std::vector<SavedPoint> moved_points(const LocalMap& map) {
   return points;
 }
 
-Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records) {
+Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records) {
   Trajectory trajectory;
   for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
-    const Pose camera_from_world = record.camera_from_reference * map.pose_of(record.reference_keyframe);
+    const auto revised = odometry.revised_poses().find(record.index);
+    const HangingPose pose = revised != odometry.revised_poses().end()
+                                 ? revised->second
+                                 : HangingPose{record.reference_keyframe, record.camera_from_reference};
+    const Pose camera_from_world =
+        pose.camera_from_reference * odometry.map().pose_of(pose.reference_keyframe);
     trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
   }
   return trajectory;
@@ -161,7 +166,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   odometry.finish();
   for (const FrameRecord& record : result.records)
     if (record.estimated) result.live.push_back({record.timestamp, record.world_from_camera});
-  result.trajectory = trajectory_so_far(odometry.map(), result.records);
+  result.trajectory = trajectory_so_far(odometry, result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
   result.moved = moved_points(odometry.map());

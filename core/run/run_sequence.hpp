@@ -37,7 +37,7 @@ struct SavedKeyframe {
 [[nodiscard]] std::vector<SavedPoint> moved_points(const LocalMap& map);
 
 /// The estimated poses among `records`, hung on their reference keyframes as these stand in the map now.
-[[nodiscard]] Trajectory trajectory_so_far(const LocalMap& map, const std::vector<FrameRecord>& records);
+[[nodiscard]] Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records);
 
 /// A whole sequence by one method.
 struct RunResult {

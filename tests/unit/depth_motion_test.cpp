@@ -4,6 +4,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "core/motion/carrier.hpp"
+#include "core/motion/entering.hpp"
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/segments.hpp"
 #include "core/odometry/consensus.hpp"
@@ -21,6 +23,7 @@ struct Scene {
   bool board = true;
   double brightness = 0.0;  // grey levels added to all
   bool relief = false;  // the wall is hilly: before a flat one a board's slide looks like a turn and a step
+  double board_pitch = 1.0;  // another one is another picture on the board
 
   static float texture(double x, double y, int salt) {
     // Smooth bumps of some centimetres, so that small errors of place stay small in brightness.
@@ -40,7 +43,8 @@ struct Scene {
         const bool on_board = board && std::abs(bx) < 0.2 && std::abs(by) < 0.25;
         const double hills = relief ? 0.5 * std::sin(7 * rx) + 0.4 * std::sin(9 * ry) : 0.0;
         const double z = on_board ? board_z : 2.0 + hills;
-        const float value = on_board ? texture(bx, by, 3) : texture(rx * z + camera_x, ry * z, 0);
+        const float value =
+            on_board ? texture(bx * board_pitch, by * board_pitch, 3) : texture(rx * z + camera_x, ry * z, 0);
         gray.at<uchar>(v, u) = cv::saturate_cast<uchar>(value + brightness + noise.gaussian(2.0));
         depth.at<float>(v, u) = static_cast<float>(z + noise.gaussian(0.0012 + 0.0019 * z * z));
         if (truth) truth->at<uchar>(v, u) = on_board ? 255 : 0;
@@ -238,6 +242,99 @@ TEST(PatchMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
   }
 }
 
+/// How many of the board's patches are found to move, and how far back most of them stepped.
+struct Receding {
+  int patches = 0, moving = 0;
+  float step = 0.0F;  // m, mean of the moving ones
+};
+
+Receding receding(const Scene& now, const Scene& before) {
+  std::vector<Segment> segments;
+  const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
+  Receding result;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i].pixels < 40 || std::abs(segments[i].depth - static_cast<float>(now.board_z)) > 0.04F)
+      continue;
+    ++result.patches;
+    if (motions.patches[i].log_odds <= 0) continue;
+    ++result.moving;
+    result.step += motions.patches[i].step;
+  }
+  if (result.moving > 0) result.step /= static_cast<float>(result.moving);
+  return result;
+}
+
+TEST(RecedingPatches, WhatGoesBackAlongTheLineOfSightMoves) {
+  // Far more than depth's noise: the patches' own surface is not found where they are expected.
+  const Receding board = receding({0.0, 0.1, 1.15}, {0.0, 0.1, 1.0});
+  ASSERT_GT(board.patches, 10);
+  EXPECT_GT(board.moving, 0.8 * board.patches);
+  EXPECT_NEAR(board.step, -0.15F, 0.01F);
+  const Receding sideways = receding({0.0, 0.12, 1.15}, {0.0, 0.1, 1.0});
+  EXPECT_GT(sideways.moving, 0.8 * sideways.patches) << "two centimetres sideways are followed too";
+}
+
+TEST(RecedingPatches, WhatAnotherThingStoodBeforeDoesNotMove) {
+  Scene before{0.0, 0.1, 1.0};
+  before.board_pitch = 1.9;
+  const Receding revealed = receding({0.0, 0.1, 1.15}, before);
+  ASSERT_GT(revealed.patches, 10);
+  EXPECT_LT(revealed.moving, 0.1 * revealed.patches);
+}
+
+TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
+  const Scene now{0.0, 0.1, 1.15}, before{0.0, 0.1, 1.0};
+  cv::Mat gray, depth, truth;
+  now.render(gray, depth, &truth);
+  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  ReferenceView then = reference(before, now);
+  then.old = true;
+  const auto mask = [&](int find_receding) {
+    DepthMotionConfig config;
+    config.find_receding = find_receding;
+    MotionMemory memory{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
+    DepthMotionTrace trace;
+    for (int i = 0; i < 2; ++i) {
+      trace = detect_depth_motion(view, segment_surfaces(view, config), depth, {then}, &memory,
+                                  Pose::Identity(), config);
+      memory.log_odds = trace.log_odds;
+    }
+    return trace.mask;
+  };
+  EXPECT_GT(overlap(mask(1), truth), 0.7);
+  EXPECT_EQ(cv::countNonZero(mask(0)), 0);
+}
+
+TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
+  // The board reaches over the image's right rim, and a fifth of what is seen of it was not in view before.
+  const RgbdView view = Scene{0.0, 0.5}.view();
+  const SurfacePatches patches = segment_surfaces(view, {});
+  Pose previous_from_current = Pose::Identity();
+  previous_from_current.translation().x() = 0.06;
+  Carrier carried(view.camera, previous_from_current);
+  cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1),
+          fresh = cv::Mat::zeros(view.depth.size(), CV_8UC1);
+  for (int y = 0; y < prior.rows; ++y) {
+    carried.carry_row(y, view.depth.ptr<float>(y));
+    for (int x = 0; x < prior.cols; ++x) {
+      if (view.depth.at<float>(y, x) <= 0) continue;
+      const bool on_board = view.depth.at<float>(y, x) < 1.2F;
+      if (!carried.inside(x))
+        fresh.at<uchar>(y, x) = on_board ? 2 : 1;
+      else
+        prior.at<float>(y, x) = on_board ? 5.0F : -2.0F;
+    }
+  }
+  ASSERT_GT(cv::countNonZero(fresh == 2), 100);
+  ASSERT_GT(cv::countNonZero(fresh == 1), 100);
+  inherit_memory(view, patches.labels, patches.segments.size(), previous_from_current, prior);
+  EXPECT_GT(cv::mean(prior, fresh == 2)[0], 4.0);
+  EXPECT_LT(cv::mean(prior, fresh == 1)[0], 0.1) << "of the wall beside it nothing is known yet";
+  double least = 0.0;
+  cv::minMaxLoc(prior, &least);
+  EXPECT_EQ(least, -2.0) << "what was seen before keeps what it had";
+}
+
 TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
   const DepthMotionTrace alone = detect({}, {});
   EXPECT_EQ(cv::countNonZero(alone.mask), 0);
@@ -293,6 +390,28 @@ TEST(Consensus, AMoverRichInFeaturesDoesNotCaptureTheCamera) {
   const Consensus again = consensus_pose(kCamera, observations, {Pose::Identity(), captured}, 200, 1);
   EXPECT_EQ(consensus.camera_from_world.matrix(), again.camera_from_world.matrix());
   EXPECT_EQ(consensus_pose(kCamera, {}, {Pose::Identity()}, 10, 1).inliers, 0);
+}
+
+TEST(Consensus, AThingThatHoldsMostFeaturesIsNotTheUsualDepth) {
+  // It starts slowly: both it and the room are about met by one pose, and three in five features are on it.
+  cv::RNG random(5);
+  Pose truth = Pose::Identity(), of_board = Pose::Identity();
+  of_board.translation().z() = -0.06;
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < 500; ++i) {
+    const bool board = i < 300;
+    PoseObservation o;
+    o.depth = board ? 1.8 : random.uniform(3.0, 5.0);
+    o.pixel = board ? Eigen::Vector2d(random.uniform(200.0, 420.0), random.uniform(120.0, 480.0))
+                    : Eigen::Vector2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0));
+    o.point_in_world = (board ? of_board : truth).inverse() * kCamera.back_project(o.pixel, o.depth);
+    o.pixel += Eigen::Vector2d(random.gaussian(0.3), random.gaussian(0.3));
+    observations.push_back(o);
+  }
+  const Pose captured = refine_pose(kCamera, observations, Pose::Identity(), {}).camera_from_world;
+  EXPECT_GT(captured.translation().norm(), 0.03) << "least squares follows the board";
+  const Consensus consensus = consensus_pose(kCamera, observations, {captured}, 200, 1);
+  EXPECT_LT(consensus.camera_from_world.translation().norm(), 0.015);
 }
 
 }  // namespace

@@ -121,6 +121,26 @@ TEST(RefinePose, InformationIsTheInverseOfTheSpread) {
     EXPECT_NEAR(variance[axis] / (predicted[axis] / draws), 1.0, 0.35) << axis;
 }
 
+TEST(RefinePose, AHeldStartIsNotDrawnAwayByWhatMoves) {
+  // Nearly half of what is seen has gone on by 3 cm as one thing, and near: it draws least squares along.
+  auto observations = observe(some_pose(), 200, 0.3, true);
+  Pose moved = some_pose();
+  moved.translation().x() += 0.03;
+  for (std::size_t i = 0; i < 95; ++i) {
+    const Eigen::Vector3d p = kCamera.back_project(observations[i].pixel, 1.0);
+    observations[i].point_in_world = moved.inverse() * p;
+    observations[i].depth = 1.0;
+  }
+  Pose start = some_pose();
+  start.translation().y() += 0.002;
+  const auto error = [&](double looseness) {
+    return distance(refine_pose(kCamera, observations, start, {}, looseness).camera_from_world, some_pose());
+  };
+  EXPECT_GT(error(0.0), 0.01);
+  EXPECT_LT(error(2.0), 0.003);
+  EXPECT_EQ(error(1e-9), error(0.0)) << "where next to nothing agrees with the start, all take part";
+}
+
 TEST(RefinePose, TooFewObservationsLeaveThePoseAlone) {
   const PoseRefinement refined = refine_pose(kCamera, observe(Pose::Identity(), 2, 0, true), some_pose(), {});
   EXPECT_EQ(refined.inliers, 0);

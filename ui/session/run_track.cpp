@@ -153,7 +153,7 @@ RunView RunTrack::view() const {
   view.records = records_;
   view.scores = scores_;
   view.trajectory =
-      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_.map(), records_);
+      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "core/odometry/local_map.hpp"
+#include "core/odometry/pose_solver.hpp"
+
+namespace stillpoint {
+
+/// A frame's pose, hanging on a keyframe of the map: it goes where bundle adjustment takes the keyframe.
+struct HangingPose {
+  int reference_keyframe = kNone;
+  Pose camera_from_reference = Pose::Identity();
+};
+
+/// Looks back at poses. When a frame is new, little is known of what it shows: its map points are as one
+/// keyframe measured them, and what has only begun to move is not known to. Some time later, when the points
+/// have been adjusted and those that moved have left the map, its pose is solved once more from the same
+/// matches. Copies share what is remembered.
+class Hindsight {
+ public:
+  /// A match that a frame's pose agreed with.
+  struct Sight {
+    int point = kNone;
+    float u = 0.0F, v = 0.0F;  ///< px, undistorted
+    float depth = 0.0F;        ///< m; 0 = none
+    float sigma_px = 1.0F;
+    float trust = 1.0F;
+  };
+
+  void remember(int frame_index, const HangingPose& pose, std::vector<Sight> sights);
+
+  /// Solves anew the poses of all frames up to `last`, each once.
+  void look_back(int last, const LocalMap& map, const Camera& camera, const TrackingConfig& config);
+
+  /// By frame index: the poses that were solved anew. Where too few of the matches were left, or agreed, the
+  /// pose stays as it was.
+  [[nodiscard]] const std::map<int, HangingPose>& revised() const { return revised_; }
+
+  /// The points of all frames not yet looked back at, a list a frame.
+  [[nodiscard]] std::vector<const std::vector<int>*> points() const;
+
+ private:
+  struct Past {
+    int frame_index = 0;
+    HangingPose pose;
+    std::vector<int> points;  // of each sight
+    std::vector<Sight> sights;
+  };
+  std::deque<std::shared_ptr<const Past>> past_;  // oldest first
+  std::map<int, HangingPose> revised_;
+};
+
+}  // namespace stillpoint
