@@ -393,12 +393,12 @@ TEST(Consensus, AMoverRichInFeaturesDoesNotCaptureTheCamera) {
 }
 
 TEST(Consensus, AThingThatHoldsMostFeaturesIsNotTheUsualDepth) {
-  // It starts slowly: both it and the room are about met by one pose, and three in five features are on it.
+  // It starts slowly: both it and the room are about met by one pose, and two in three features are on it.
   cv::RNG random(5);
   Pose truth = Pose::Identity(), of_board = Pose::Identity();
-  of_board.translation().z() = -0.06;
+  of_board.translation().z() = -0.045;
   std::vector<PoseObservation> observations;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 460; ++i) {
     const bool board = i < 300;
     PoseObservation o;
     o.depth = board ? 1.8 : random.uniform(3.0, 5.0);
@@ -411,7 +411,7 @@ TEST(Consensus, AThingThatHoldsMostFeaturesIsNotTheUsualDepth) {
   const Pose captured = refine_pose(kCamera, observations, Pose::Identity(), {}).camera_from_world;
   EXPECT_GT(captured.translation().norm(), 0.03) << "least squares follows the board";
   const Consensus consensus = consensus_pose(kCamera, observations, {captured}, 200, 1);
-  EXPECT_LT(consensus.camera_from_world.translation().norm(), 0.015);
+  EXPECT_LT(consensus.camera_from_world.translation().norm(), 0.02);
 }
 
 }  // namespace
