@@ -147,7 +147,7 @@ std::vector<Parameter> parameters(Config& c) {
   number("depth_motion.release", &d.release, 0, 1, "",
          "share of evidence for standing still that what firmly moves takes");
   number("depth_motion.find_receding", &d.find_receding, 0, 1, "",
-         "1 looks for patches that go back along the line of sight");
+         "1 looks for patches that go back, away from the camera");
   number("depth_motion.inherit", &d.inherit, 0, 1, "",
          "1 lets what comes into view take over what its surface is known to do");
   number("depth_motion.patch_share", &d.patch_share, 0, 1, "",

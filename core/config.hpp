@@ -50,7 +50,7 @@ struct DepthMotionConfig {
   double max_log_odds = 6.0;   ///< evidence of motion saturates here, so that a change of mind stays possible
   double firm_log_odds = 3.0;  ///< above it a pixel is firmly known to move …
   double release = 0.015;      ///< … and takes this share of what speaks for standing still
-  int find_receding = 1;       ///< 1: patches that go back along the line of sight are looked for
+  int find_receding = 1;       ///< 1: patches that go back, away from the camera, are looked for
   int inherit = 1;             ///< 1: what comes into view takes over what its surface is known to do
   double patch_share = 0.15;   ///< of the log-odds by a patch's shift that counts in one frame
   int segment_px = 10;         ///< side of a surface patch, small pixels
@@ -117,7 +117,7 @@ struct TrackingConfig {
   int seek_consensus = 1;     ///< 1: method `stillpoint` takes its first pose from where most samples agree
   double start_looseness = 2.0;  ///< matches that are off by more than this many times their χ² bound under
                                  ///< the consensus do not begin the pose that follows it; 0 = all do
-  int soft_weights = 1;  ///< 1: method `stillpoint` weighs features by how likely they stand still
+  int soft_weights = 1;          ///< 1: method `stillpoint` weighs features by how likely they stand still
   double half_trust_log_odds = -2.0;  ///< log-odds of moving at which a feature counts half
   int look_back_frames = 60;  ///< methods `stillpoint` and `oracle` solve each pose once more, by the map so
                               ///< many frames later; 0 = never

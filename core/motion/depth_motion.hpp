@@ -70,8 +70,8 @@ struct DepthMotionTimes {
 /// What depth-aware motion detection saw, stage by stage.
 struct DepthMotionTrace {
   std::vector<ReferenceEvidence> references;
-  cv::Mat slow;      ///< CV_32FC1 log-odds that patches say by how far they shifted
-  cv::Mat prior;     ///< CV_32FC1 log-odds remembered from the frame before, carried along
+  cv::Mat slow;      ///< CV_32FC1 log-odds that patches say by how far they shifted or went back
+  cv::Mat prior;     ///< CV_32FC1 log-odds remembered from the frame before, carried along and inherited
   cv::Mat log_odds;  ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
   cv::Mat labels;    ///< CV_32SC1: segment of each pixel, -1 = no depth
   std::vector<Segment> segments;

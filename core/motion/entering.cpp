@@ -9,7 +9,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kFewestKnown = 5;  // pixels of a patch that speak for the rest
+constexpr int kFewestKnown = 5;      // pixels of a patch that speak for the rest
+constexpr float kFromBeside = 1.5F;  // log-odds that neighbours hand on at most: they make nothing firm
 
 }  // namespace
 
@@ -31,7 +32,7 @@ void inherit_memory(const RgbdView& current, const cv::Mat& labels, std::size_t 
       if (label[x] < 0) continue;
       Known& patch = known[static_cast<std::size_t>(label[x])];
       if (carried.inside(x)) {
-        patch.sum += remembered[x], ++patch.pixels;
+        if (remembered[x] != 0) patch.sum += remembered[x], ++patch.pixels;  // 0: nothing is known of it
       } else {
         fresh.ptr<uchar>(y)[x] = 255, ++patch.fresh, ++all_fresh;
       }
@@ -62,7 +63,7 @@ void inherit_memory(const RgbdView& current, const cv::Mat& labels, std::size_t 
       for (const Contact& contact : touching)
         tell(contact.a, contact.b, contact.boundary), tell(contact.b, contact.a, contact.boundary);
       for (std::size_t i = 0; i < patches; ++i)
-        if (weights[i] > 0) value[i] = sums[i] / weights[i], has[i] = 1, grew = true;
+        if (weights[i] > 0) value[i] = std::min(kFromBeside, sums[i] / weights[i]), has[i] = 1, grew = true;
     }
   }
   for (int y = 0; y < labels.rows; ++y) {

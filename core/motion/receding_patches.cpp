@@ -9,13 +9,15 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMinPixels = 12;         // of a patch that meet the nearer surface
-constexpr float kFarthest = 0.5F;      // m: a step longer than this shows another surface
-constexpr double kLeastSigmas = 3.0;   // of depth: a shorter step is for patches that can be followed
-constexpr double kShape = 2.0;         // standard deviations of depth by which steps of one shape may spread
+constexpr int kMinPixels = 12;        // of a patch, for each of the tests
+constexpr float kFarthest = 0.5F;     // m: a step longer than this shows another surface
+constexpr double kLeastSigmas = 3.0;  // of depth: a shorter step is for patches that can be followed
+constexpr double kShape = 2.0;     // standard deviations of depth by which steps of one shape may spread …
+constexpr double kLeaning = 0.05;  // … and this share of the step: for what turns as it goes
 constexpr double kMinTexture = 3.0;    // grey levels, standard deviation: less is plain
 constexpr double kUnexplained = 0.35;  // share of its texture by which the same surface may look different
 constexpr int kSideways = 4;           // px, to all sides: how far a patch may have gone beside
+constexpr double kSameDepth = 4.0;     // standard deviations within which the nearer surface lies there
 constexpr double kTypicalStep = 0.1;   // m
 constexpr double kSurest = 20.0;       // log-odds: looks may deceive
 
@@ -26,10 +28,12 @@ struct Steps {
   [[nodiscard]] double spread() const { return std::sqrt(std::max(0.0, squares / n - mean() * mean())); }
 };
 
-/// A pixel of a patch, and where it was seen if the patch went back along the optical axis alone.
+/// A pixel of a patch, and where and how far away it was seen then.
 struct Seen {
   float gray, slope_x, slope_y;  // grey levels, and a pixel
-  float u, v;                    // px, reference
+  float u, v;                    // px, reference, had it gone straight along its ray
+  float along_u, along_v;        // … and had it gone along the optical axis
+  float z;                       // m
 };
 
 /// Calls `visit(patch, x, y, carrier)` for the pixels of the chosen patches that lie within their surface.
@@ -58,35 +62,53 @@ struct Looks {
   [[nodiscard]] double left() const { return bb - b * b / n; }
 };
 
-Looks compare(const std::vector<Seen>& pixels, const cv::Mat& gray, int du, int dv) {
-  const auto right = static_cast<float>(gray.cols - 1), bottom = static_cast<float>(gray.rows - 1);
+/// @param share where between the two ways a patch may have gone it is looked for: 0 its ray, 1 the axis
+Looks compare(const std::vector<Seen>& pixels, const RgbdView& then, float share, int du, int dv) {
+  const auto right = static_cast<float>(then.gray.cols - 1), bottom = static_cast<float>(then.gray.rows - 1);
   Looks s;
   for (const Seen& p : pixels) {
-    const float u = p.u + static_cast<float>(du), v = p.v + static_cast<float>(dv);
+    const float u = p.u + share * (p.along_u - p.u) + static_cast<float>(du),
+                v = p.v + share * (p.along_v - p.v) + static_cast<float>(dv);
     if (!(u >= 0 && v >= 0 && u < right && v < bottom)) continue;
-    const double b = p.gray - bilinear(gray, u, v), gx = p.slope_x, gy = p.slope_y;
+    const float z = then.depth.ptr<float>(cvRound(v))[cvRound(u)];
+    if (std::abs(z - p.z) > static_cast<float>(kSameDepth) * depth_sigma(p.z)) continue;
+    const double b = p.gray - bilinear(then.gray, u, v), gx = p.slope_x, gy = p.slope_y;
     s.n += 1, s.b += b, s.bb += b * b, s.gx += gx, s.gy += gy;
     s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
   }
   return s;
 }
 
-/// Whether the patch looks as it did somewhere about its place there, for it may have gone sideways too: what
-/// is left of its differences is a small part of its texture.
-bool looks_the_same(const std::vector<Seen>& pixels, const cv::Mat& gray) {
-  double sum = 0, squares = 0;
-  for (const Seen& p : pixels) sum += p.gray, squares += double{p.gray} * p.gray;
-  const auto n = static_cast<double>(pixels.size());
-  const double texture = (squares - sum * sum / n) / n;  // variance
-  if (n < kMinPixels || texture < kMinTexture * kMinTexture) return false;
+/// Squared grey levels a pixel that a patch's brightness bends by, a ramp taken off: shading is no texture.
+double texture_of(const std::vector<Seen>& pixels) {
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  double squares = 0;
+  for (const Seen& p : pixels) {
+    const Eigen::Vector3d at(1.0, double{p.u} - pixels.front().u, double{p.v} - pixels.front().v);
+    const double gray = double{p.gray} - pixels.front().gray;
+    h += at * at.transpose();
+    g += gray * at;
+    squares += gray * gray;
+  }
+  return std::max(0.0, squares - g.dot(h.ldlt().solve(g))) / static_cast<double>(pixels.size());
+}
+
+/// Whether the patch looks as it did somewhere about where it must have been, for it may have gone sideways
+/// too: what is left of its differences is a small part of its texture.
+bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then) {
+  if (pixels.size() < kMinPixels) return false;
+  const double texture = texture_of(pixels);
+  if (texture < kMinTexture * kMinTexture) return false;
   Looks best;
   double least = std::numeric_limits<double>::max();
-  for (int dv = -kSideways; dv <= kSideways; ++dv)
-    for (int du = -kSideways; du <= kSideways; ++du) {
-      const Looks looks = compare(pixels, gray, du, dv);
-      if (looks.n < kMinPixels || 2 * looks.n < n || looks.left() / looks.n >= least) continue;
-      best = looks, least = looks.left() / looks.n;
-    }
+  for (const float share : {1.0F, 0.0F})
+    for (int dv = -kSideways; dv <= kSideways; ++dv)
+      for (int du = -kSideways; du <= kSideways; ++du) {
+        const Looks looks = compare(pixels, then, share, du, dv);
+        const bool enough = looks.n >= kMinPixels && 2 * looks.n >= static_cast<double>(pixels.size());
+        if (enough && looks.left() / looks.n < least) best = looks, least = looks.left() / looks.n;
+      }
   if (best.n < kMinPixels) return false;
   // The rest of a pixel is read off the slopes.
   Eigen::Matrix2d h;
@@ -118,22 +140,23 @@ void measure_receding(const RgbdView& current, const RgbdView& reference, const 
     const Steps& s = steps[i];
     const double sigma = depth_sigma(segments[i].depth);
     chosen[i] = chosen[i] != 0 && s.n >= kMinPixels && 2 * s.n > segments[i].pixels &&
-                -s.mean() > kLeastSigmas * sigma && s.spread() < kShape * sigma + 0.05 * -s.mean();
+                -s.mean() > kLeastSigmas * sigma && s.spread() < kShape * sigma + kLeaning * -s.mean();
   }
   if (std::none_of(chosen.begin(), chosen.end(), [](std::uint8_t c) { return c != 0; })) return;
 
   std::vector<std::vector<Seen>> seen(patches.size());
   const auto cx = static_cast<float>(current.camera.cx), cy = static_cast<float>(current.camera.cy);
-  for_pixels_of(
-      chosen, current, labels, reference_from_current,
-      [&](std::size_t patch, int x, int y, const Carrier& carried) {
-        const float z = carried.z(x), farther = z / (z + static_cast<float>(steps[patch].mean()));
-        seen[patch].push_back({current.gray.ptr<float>(y)[x], 2 * current.slope_x.ptr<float>(y)[x],
-                               2 * current.slope_y.ptr<float>(y)[x], cx + (carried.u(x) - cx) * farther,
-                               cy + (carried.v(x) - cy) * farther});
-      });
+  for_pixels_of(chosen, current, labels, reference_from_current,
+                [&](std::size_t patch, int x, int y, const Carrier& carried) {
+                  const float u = carried.u(x), v = carried.v(x),
+                              z = carried.z(x) + static_cast<float>(steps[patch].mean());
+                  const float farther = carried.z(x) / z;
+                  seen[patch].push_back({current.gray.ptr<float>(y)[x], 2 * current.slope_x.ptr<float>(y)[x],
+                                         2 * current.slope_y.ptr<float>(y)[x], u, v, cx + (u - cx) * farther,
+                                         cy + (v - cy) * farther, z});
+                });
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (chosen[i] == 0 || !looks_the_same(seen[i], reference.gray)) continue;
+    if (chosen[i] == 0 || !looks_the_same(seen[i], reference)) continue;
     const double sigma = depth_sigma(segments[i].depth), step = steps[i].mean();
     const double still = 9.0 * sigma * sigma / steps[i].n + slack * slack,
                  moved = still + kTypicalStep * kTypicalStep;

@@ -15,6 +15,7 @@ struct Contact {
   int boundary = 0;
 };
 
+/// All of them, by a, then b.
 [[nodiscard]] std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels);
 
 /// Averages each pixel's log-odds over its patch, lets patches that continue into each other on one surface

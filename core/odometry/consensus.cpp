@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 
@@ -18,8 +19,8 @@ constexpr double kRigidTolerance =
     0.01;  // m, and this share of the distance: three points of one rigid scene
 constexpr double kRigidShare = 0.02;
 
-/// The depth (m) on either side of which lies half of the image, as far as there are observations with depth:
-/// most observations may well be on one thing.
+/// The depth (m) on either side of which lies half of the votes, which the parts of the image share: most
+/// observations may well be on one thing.
 double usual_depth(const std::vector<PoseObservation>& observations, const std::vector<double>& votes) {
   std::vector<std::pair<double, double>> by_depth;  // with its vote
   by_depth.reserve(observations.size());

@@ -73,10 +73,10 @@ void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
 int Odometry::frames_wanted(const Config& config) const {
   if (compares_by_homography(config))
     return same_references(config_, config) ? 0 : config.motion.reference_gap;
-  const bool looks_back =
+  const bool compares_views =
       config.run.method == "stillpoint" &&
       !(same_past_views(config_, config) && config.colour_motion == config_.colour_motion);
-  return looks_back ? config.depth_motion.slow_reference : 0;
+  return compares_views ? config.depth_motion.slow_reference : 0;
 }
 
 std::optional<Odometry> Odometry::continued_with(const Config& config,
@@ -87,6 +87,7 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
   Odometry next = *this;
   next.config_ = config;
   next.preparer_ = FramePreparer(camera_, config);
+  if (!next.looks_back()) next.hindsight_.forget_pending();
 
   const bool keeps_references = same_references(config_, config);
   for (const auto& reference : keeps_references ? preparer_.references() : motion_frames(before, config))

@@ -118,12 +118,14 @@ bool Odometry::begin_directly(const Frame& frame, Current& current, FrameRecord&
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
   current.camera_from_world = aligned->target_from_reference;
+  current.agreed = false;
   return true;
 }
 
 PoseRefinement Odometry::search_again(Current& current, const Pose& camera_from_world,
                                       FrameRecord& record) const {
   current.camera_from_world = camera_from_world;
+  current.start_agreed = false;
   current.points.assign(current.points.size(), kNone);
   current.points_in_view.clear();
   current.points_found.clear();

@@ -19,7 +19,8 @@ struct HangingPose {
 /// Looks back at poses. When a frame is new, little is known of what it shows: its map points are as one
 /// keyframe measured them, and what has only begun to move is not known to. Some time later, when the points
 /// have been adjusted and those that moved have left the map, its pose is solved once more from the same
-/// matches. Copies share what is remembered.
+/// matches, as far as their points are still in the map (those culled or merged into others are not). Copies
+/// share what is remembered of frames not yet looked back at.
 class Hindsight {
  public:
   /// A match that a frame's pose agreed with.
@@ -40,14 +41,15 @@ class Hindsight {
   /// pose stays as it was.
   [[nodiscard]] const std::map<int, HangingPose>& revised() const { return revised_; }
 
-  /// The points of all frames not yet looked back at, a list a frame.
-  [[nodiscard]] std::vector<const std::vector<int>*> points() const;
+  /// How many frames are not yet looked back at.
+  [[nodiscard]] std::size_t pending() const { return past_.size(); }
+  /// Leaves these as they are.
+  void forget_pending() { past_.clear(); }
 
  private:
   struct Past {
     int frame_index = 0;
     HangingPose pose;
-    std::vector<int> points;  // of each sight
     std::vector<Sight> sights;
   };
   std::deque<std::shared_ptr<const Past>> past_;  // oldest first

@@ -115,12 +115,10 @@ bool Odometry::leaves_too_little(const Current& current) const {
 }
 
 void Odometry::purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world) {
-  constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves, not behind it
-  if (mask.empty() || config_.map.purge_moving == 0) return;
-  std::vector<const std::vector<int>*> seen = hindsight_.points();
-  seen.push_back(&last_->points);
-  for (const int id : each_once(seen)) {
-    if (!map_.has_point(id)) continue;
+  constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves or before it, where nothing is now
+  if (mask.empty() || config_.map.purge_moving == 0 || map_.keyframes().empty()) return;
+  // Not only what the last frame showed: what has gone on meanwhile stays behind in the map.
+  for (const int id : local_points()) {
     const Eigen::Vector3d p = camera_from_world * map_.point(id).position;
     if (p.z() < 0.05) continue;
     const Eigen::Vector2d pixel = camera_.distort(camera_.project(p));

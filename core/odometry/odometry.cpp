@@ -176,7 +176,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     bool begun = estimate(first, record);
     if (aligns_directly() && (begins_starved(first) || !begun))
       begun = begin_directly(frame, first, record) || begun;
-    agreed = begun && first.seek_consensus;
+    agreed = begun && first.agreed;
     if (begun) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
@@ -198,6 +198,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     // is remembered to move, which led here, is forgotten.
     current = remove_moving(frame, prepared, {}, velocity, record);
     current.camera_from_world = current.start = start;
+    current.start_agreed = agreed;
     why_lost = track(frame, current, record);
     result.mask.release();
     result.depth_motion.log_odds.setTo(0);
@@ -258,7 +259,9 @@ std::string Odometry::track(const Frame& frame, Current& current, FrameRecord& r
     remember(current, record);
   if (looks_back()) {
     if (!keyframe && !directly) remember_sights(current, record);
+    const Stopwatch watch;
     look_back(record.index - config_.tracking.look_back_frames);
+    record.ms.pose += watch.milliseconds();
   }
   return {};
 }

@@ -97,6 +97,7 @@ class Odometry {
     bool seek_consensus =
         false;                  // movers may be among the features: least squares alone is not to be trusted
     std::uint32_t seed = 0;     // of the samples consensus is sought with
+    bool agreed = false;        // camera_from_world is a consensus
     bool start_agreed = false;  // the start is a consensus: what is far from it is not to draw the pose away
     std::vector<int> points_in_view, points_found;  // map points that should be seen, and those that were
   };
@@ -142,8 +143,8 @@ class Odometry {
   [[nodiscard]] bool estimate_by_epnp(Current& current, FrameRecord& record) const;
   [[nodiscard]] std::vector<PoseObservation> observations_of(const Current& current,
                                                              const std::vector<Match>& matches) const;
-  [[nodiscard]] PoseRefinement refine(Current& current, const std::vector<Match>& matches,
-                                      FrameRecord& record) const;
+  [[nodiscard]] PoseRefinement refine(const Current& current, const std::vector<Match>& matches,
+                                      double start_looseness, FrameRecord& record) const;
   [[nodiscard]] PoseRefinement track_local_map(Current& current, FrameRecord& record) const;
   void count_sightings(const Current& current);
   [[nodiscard]] bool aligns_directly() const;
@@ -164,7 +165,8 @@ class Odometry {
                                                     const cv::Mat& mask) const;
   [[nodiscard]] bool is_taken_at_once(const Frame& frame) const;
   [[nodiscard]] int inliers_needed() const;
-  [[nodiscard]] std::vector<int> local_points(const Current& current) const;
+  /// Points of the keyframes about those that see the matched ones; without any, about where the camera was.
+  [[nodiscard]] std::vector<int> local_points(const std::vector<int>& matched = {}) const;
   [[nodiscard]] bool wants_keyframe(const Frame& frame, const Current& current,
                                     const FrameRecord& record) const;
   [[nodiscard]] bool is_starved_keyframe(const Frame& frame, const Current& current) const;

@@ -198,7 +198,7 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
   }
   PoseProblem problem(camera, observations, config.depth_weight);
   if (start_looseness > 0 &&
-      problem.mark_inliers(initial_camera_from_world, start_looseness, result.inlier) >= kFewestInliers)
+      problem.mark_inliers(initial_camera_from_world, start_looseness, result.inlier) >= config.min_inliers)
     problem.use(result.inlier);
   for (int round = 0; round < config.refine_rounds; ++round) {
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.

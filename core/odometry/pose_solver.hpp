@@ -44,7 +44,7 @@ struct PoseRefinement {
 /// inliers.
 /// @param start_looseness where what moves may have a large part in the observations, and the initial pose is
 /// known not to follow it: those beyond this many times their χ² bound at the start take no part in the first
-/// round; 0 = all do
+/// round, unless fewer than tracking.min_inliers are left; 0 = all do
 [[nodiscard]] PoseRefinement refine_pose(const Camera& camera,
                                          const std::vector<PoseObservation>& observations,
                                          const Pose& initial_camera_from_world, const TrackingConfig& config,

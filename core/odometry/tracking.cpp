@@ -29,12 +29,11 @@ std::vector<PoseObservation> Odometry::observations_of(const Current& current,
   return observations;
 }
 
-PoseRefinement Odometry::refine(Current& current, const std::vector<Match>& matches,
-                                FrameRecord& record) const {
+PoseRefinement Odometry::refine(const Current& current, const std::vector<Match>& matches,
+                                double start_looseness, FrameRecord& record) const {
   const Stopwatch watch;
-  PoseRefinement refined =
-      refine_pose(camera_, observations_of(current, matches), current.camera_from_world, config_.tracking,
-                  current.start_agreed ? config_.tracking.start_looseness : 0.0);
+  PoseRefinement refined = refine_pose(camera_, observations_of(current, matches), current.camera_from_world,
+                                       config_.tracking, start_looseness);
   record.refine_iterations += refined.iterations;
   const double took = watch.milliseconds();
   record.ms.refine += took;
@@ -74,7 +73,8 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
     if (record.matches < tracking.min_initial_matches) continue;
 
     current.camera_from_world = predicted;
-    PoseRefinement refined = refine(current, matches, record);
+    PoseRefinement refined =
+        refine(current, matches, current.start_agreed ? tracking.start_looseness : 0.0, record);
     if (refined.inliers < kMinModelInliers) continue;
     if (current.seek_consensus) {
       watch.lap();
@@ -83,6 +83,7 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
                          kConsensusSamples, current.seed);
       refined.camera_from_world = agreed.camera_from_world;
       refined.inlier = agreed.inlier;
+      current.agreed = true;
       const double took = watch.milliseconds();
       record.ms.consensus += took;
       record.ms.pose += took;
@@ -103,7 +104,7 @@ bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) const {
   constexpr double kRatio = 0.8;
   Stopwatch watch;
   std::vector<Candidate> candidates;
-  for (const int id : local_points(current)) {
+  for (const int id : local_points(current.points)) {
     Candidate candidate;
     candidate.point = id;
     candidate.descriptor = &map_.point(id).descriptor;
@@ -121,7 +122,8 @@ bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) const {
   std::vector<Match> agreeing;
   for (const int i : initial->inliers) agreeing.push_back(matches[static_cast<std::size_t>(i)]);
   current.camera_from_world = initial->camera_from_world;
-  const PoseRefinement refined = refine(current, agreeing, record);
+  current.start_agreed = false;
+  const PoseRefinement refined = refine(current, agreeing, 0.0, record);
   if (refined.inliers < kMinModelInliers) return false;
   current.camera_from_world = refined.camera_from_world;
   std::fill(current.points.begin(), current.points.end(), kNone);
@@ -131,8 +133,8 @@ bool Odometry::estimate_by_epnp(Current& current, FrameRecord& record) const {
   return true;
 }
 
-std::vector<int> Odometry::local_points(const Current& current) const {
-  std::vector<std::pair<int, int>> seeds = map_.observers(current.points);
+std::vector<int> Odometry::local_points(const std::vector<int>& matched) const {
+  std::vector<std::pair<int, int>> seeds = map_.observers(matched);
   if (seeds.empty()) {  // nothing matched yet: about where the camera was last
     const int reference = map_.has_keyframe(last_->reference_keyframe) ? last_->reference_keyframe
                                                                        : map_.keyframes().rbegin()->first;
@@ -168,7 +170,7 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
     }
   std::sort(matched.begin(), matched.end());
 
-  const std::vector<int> local = local_points(current);
+  const std::vector<int> local = local_points(current.points);
   std::vector<Candidate> candidates;
   candidates.reserve(local.size());
   current.points_in_view.reserve(local.size());
@@ -191,7 +193,8 @@ PoseRefinement Odometry::track_local_map(Current& current, FrameRecord& record) 
     if (current.points[static_cast<std::size_t>(match.feature)] == kNone) matches.push_back(match);
   record.ms.matching += watch.lap();
 
-  const PoseRefinement refined = refine(current, matches, record);
+  const PoseRefinement refined =
+      refine(current, matches, current.start_agreed ? config_.tracking.start_looseness : 0.0, record);
   current.camera_from_world = refined.camera_from_world;
   record.matches = static_cast<int>(matches.size());
   record.inliers = refined.inliers;

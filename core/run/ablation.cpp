@@ -53,7 +53,7 @@ const std::vector<Ingredient>& ingredients() {
        "leave for surfaces that lie beside their place",
        {"depth_motion.max_misplacement_px=0"}},
       {"patch_shifts", "slow movers by the shifts of patches", {"depth_motion.patch_share=0"}},
-      {"receding", "patches that go back along the line of sight", {"depth_motion.find_receding=0"}},
+      {"receding", "patches that go back, away from the camera", {"depth_motion.find_receding=0"}},
       {"inherit",
        "what comes into view taking over what its surface is known to do",
        {"depth_motion.inherit=0"}},
@@ -109,7 +109,7 @@ AblationChange change_of(const AblationRow& row, const AblationRow& whole) {
     const AblationCell &now = row.cells[i], &then = whole.cells[i];
     change.median_ms += now.median_ms / static_cast<double>(count);
     change.coverage = std::min(change.coverage, now.coverage);
-    if (now.hash == then.hash) ++change.unchanged;
+    if (now.hash == then.hash && now.rpe_m == then.rpe_m) ++change.unchanged;
     if (now.mask_iou && then.mask_iou) iou += *now.mask_iou - *then.mask_iou, ++masks;
     if (!now.rpe_m || !then.rpe_m || *now.rpe_m <= 0 || *then.rpe_m <= 0) continue;
     const double ratio = *now.rpe_m / *then.rpe_m;

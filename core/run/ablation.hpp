@@ -37,7 +37,7 @@ struct AblationCell {
   std::optional<double> mask_iou;  ///< 0 to 1; nothing where no mask is known or nothing moves
   double coverage = 0.0;           ///< share of frames with a pose
   double median_ms = 0.0;          ///< tracking time a frame
-  std::string hash;  ///< of the run: equal to the whole method's where leaving out changed nothing
+  std::string hash;  ///< of the run's frames: equal to the whole method's where leaving out changed none
 };
 
 [[nodiscard]] AblationCell ablation_cell(const RunReport& report);

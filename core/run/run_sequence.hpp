@@ -36,7 +36,8 @@ struct SavedKeyframe {
 /// The points that left a map because they moved, oldest first.
 [[nodiscard]] std::vector<SavedPoint> moved_points(const LocalMap& map);
 
-/// The estimated poses among `records`, hung on their reference keyframes as these stand in the map now.
+/// The estimated poses among `records`, revised where odometry has looked back at them, hung on their
+/// reference keyframes as these stand in the map now.
 [[nodiscard]] Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records);
 
 /// A whole sequence by one method.

@@ -79,8 +79,9 @@ TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
       run_cli({"generate", kind, "--frames", frames, "--seed", "3", "--out", folder.path("film")}).exit_code,
       0);
   const auto run = [&](const std::string& source, const char* threads, const std::string& out) {
-    const CliResult result = run_cli({"run", source, "--method", method, "--frames", frames, "--seed", "3",
-                                      "--threads", threads, "--out", folder.path(out)});
+    const CliResult result =
+        run_cli({"run", source, "--method", method, "--frames", frames, "--seed", "3", "--threads", threads,
+                 "--set", "tracking.look_back_frames=6", "--out", folder.path(out)});
     EXPECT_EQ(result.exit_code, 0) << result.err;
   };
   run(folder.path("film"), "1", "one");

@@ -270,6 +270,11 @@ TEST(RecedingPatches, WhatGoesBackAlongTheLineOfSightMoves) {
   ASSERT_GT(board.patches, 10);
   EXPECT_GT(board.moving, 0.8 * board.patches);
   EXPECT_NEAR(board.step, -0.15F, 0.01F);
+  // Near the rim, along the optical axis (which takes it outwards by pixels) and along its own ray.
+  const Receding axis = receding({0.0, 0.35, 1.15}, {0.0, 0.35, 1.0}),
+                 ray = receding({0.0, 0.4025, 1.15}, {0.0, 0.35, 1.0});
+  EXPECT_GT(axis.moving, 0.7 * axis.patches);
+  EXPECT_GT(ray.moving, 0.7 * ray.patches);
   const Receding sideways = receding({0.0, 0.12, 1.15}, {0.0, 0.1, 1.0});
   EXPECT_GT(sideways.moving, 0.8 * sideways.patches) << "two centimetres sideways are followed too";
 }
@@ -305,34 +310,56 @@ TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
   EXPECT_EQ(cv::countNonZero(mask(0)), 0);
 }
 
-TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
-  // The board reaches over the image's right rim, and a fifth of what is seen of it was not in view before.
-  const RgbdView view = Scene{0.0, 0.5}.view();
-  const SurfacePatches patches = segment_surfaces(view, {});
+/// A board that reaches over the image's right rim, seen by a camera that turns to it: what the frame before
+/// knew, and what lay outside it.
+struct Entered {
+  RgbdView view = Scene{0.0, 0.5}.view();
+  SurfacePatches patches = segment_surfaces(view, {});
   Pose previous_from_current = Pose::Identity();
-  previous_from_current.translation().x() = 0.06;
-  Carrier carried(view.camera, previous_from_current);
-  cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1),
-          fresh = cv::Mat::zeros(view.depth.size(), CV_8UC1);
-  for (int y = 0; y < prior.rows; ++y) {
-    carried.carry_row(y, view.depth.ptr<float>(y));
-    for (int x = 0; x < prior.cols; ++x) {
-      if (view.depth.at<float>(y, x) <= 0) continue;
-      const bool on_board = view.depth.at<float>(y, x) < 1.2F;
-      if (!carried.inside(x))
-        fresh.at<uchar>(y, x) = on_board ? 2 : 1;
-      else
-        prior.at<float>(y, x) = on_board ? 5.0F : -2.0F;
+  cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1);
+  cv::Mat fresh_board = cv::Mat::zeros(view.depth.size(), CV_8UC1), fresh_wall = fresh_board.clone();
+
+  explicit Entered(double step_m) {
+    previous_from_current.translation().x() = step_m;
+    Carrier carried(view.camera, previous_from_current);
+    for (int y = 0; y < prior.rows; ++y) {
+      carried.carry_row(y, view.depth.ptr<float>(y));
+      for (int x = 0; x < prior.cols; ++x) {
+        if (view.depth.at<float>(y, x) <= 0) continue;
+        const bool on_board = view.depth.at<float>(y, x) < 1.2F;
+        if (carried.inside(x))
+          prior.at<float>(y, x) = on_board ? 5.0F : -2.0F;
+        else
+          (on_board ? fresh_board : fresh_wall).at<uchar>(y, x) = 255;
+      }
     }
   }
-  ASSERT_GT(cv::countNonZero(fresh == 2), 100);
-  ASSERT_GT(cv::countNonZero(fresh == 1), 100);
-  inherit_memory(view, patches.labels, patches.segments.size(), previous_from_current, prior);
-  EXPECT_GT(cv::mean(prior, fresh == 2)[0], 4.0);
-  EXPECT_LT(cv::mean(prior, fresh == 1)[0], 0.1) << "of the wall beside it nothing is known yet";
-  double least = 0.0;
-  cv::minMaxLoc(prior, &least);
-  EXPECT_EQ(least, -2.0) << "what was seen before keeps what it had";
+  void inherit() {
+    inherit_memory(view, patches.labels, patches.segments.size(), previous_from_current, prior);
+  }
+};
+
+TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
+  Entered entered(0.03);
+  ASSERT_GT(cv::countNonZero(entered.fresh_board), 100);
+  ASSERT_GT(cv::countNonZero(entered.fresh_wall), 100);
+  entered.prior.setTo(-1.0F, entered.fresh_wall);  // so that it is seen whether anything is written
+  entered.inherit();
+  EXPECT_GT(cv::mean(entered.prior, entered.fresh_board)[0], 4.0);
+  EXPECT_EQ(cv::mean(entered.prior, entered.fresh_wall)[0], 0.0) << "to stand still is not inherited";
+  EXPECT_EQ(cv::countNonZero(entered.prior == -2.0F),
+            cv::countNonZero((entered.view.depth > 1.2F) & (entered.fresh_wall == 0)))
+      << "what was seen before keeps what it had";
+}
+
+TEST(Entering, NeighboursAloneMakeNothingFirm) {
+  // So much of the board is new that whole patches are.
+  Entered entered(0.2);
+  ASSERT_GT(cv::countNonZero(entered.fresh_board), 1500);
+  entered.inherit();
+  const double mean = cv::mean(entered.prior, entered.fresh_board)[0];
+  EXPECT_GT(mean, 1.0);
+  EXPECT_LT(mean, DepthMotionConfig{}.firm_log_odds);
 }
 
 TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {

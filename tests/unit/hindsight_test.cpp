@@ -77,20 +77,20 @@ TEST_F(LookingBack, PosesFollowThePointsTheyWereSolvedBy) {
 TEST_F(LookingBack, IsDoneOnceAndNotBeforeItsTime) {
   hindsight_.look_back(kFrame - 1, map_, kCamera, {});
   EXPECT_TRUE(hindsight_.revised().empty());
-  EXPECT_EQ(hindsight_.points().size(), 1U);
+  EXPECT_EQ(hindsight_.pending(), 1U);
   hindsight_.look_back(kFrame, map_, kCamera, {});
   const Pose once = hindsight_.revised().at(kFrame).camera_from_reference;
-  EXPECT_TRUE(hindsight_.points().empty());
+  EXPECT_EQ(hindsight_.pending(), 0U);
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
   hindsight_.look_back(kFrame + 100, map_, kCamera, {});
   EXPECT_EQ(hindsight_.revised().at(kFrame).camera_from_reference.matrix(), once.matrix());
 }
 
 TEST_F(LookingBack, WithTooFewPointsLeftThePoseStaysAsItWas) {
-  for (int i = TrackingConfig{}.min_inliers - 1; i < kRoom + kMover; ++i)
-    map_.remove_point(points_[static_cast<std::size_t>(i)]);
+  const int third = (kRoom + kMover) / 3;
+  for (int i = third - 1; i < kRoom + kMover; ++i) map_.remove_point(points_[static_cast<std::size_t>(i)]);
   hindsight_.look_back(kFrame, map_, kCamera, {});
-  EXPECT_TRUE(hindsight_.revised().empty());
+  EXPECT_TRUE(hindsight_.revised().empty()) << "a few are no match for what it was solved by";
 }
 
 TEST_F(LookingBack, ACopyLooksBackByItself) {
@@ -98,7 +98,7 @@ TEST_F(LookingBack, ACopyLooksBackByItself) {
   copy.look_back(kFrame, map_, kCamera, {});
   EXPECT_EQ(copy.revised().size(), 1U);
   EXPECT_TRUE(hindsight_.revised().empty());
-  EXPECT_EQ(hindsight_.points().size(), 1U);
+  EXPECT_EQ(hindsight_.pending(), 1U);
 }
 
 std::string hash_of(const RunResult& run) {
@@ -107,40 +107,58 @@ std::string hash_of(const RunResult& run) {
   return hash.hex();
 }
 
-TEST(LookingBackInARun, ChangesNoFrameOnlyTheTrajectory) {
-  const auto source = open_sequence("generated:room");
-  RunOptions options;
-  options.count = 14;
-  const auto run = [&](const char* method, int frames) {
+class LookingBackInARun : public ::testing::TestWithParam<const char*> {
+ protected:
+  static constexpr int kFrames = 16;
+  [[nodiscard]] RunResult run(int look_back_frames) const {
     Config config;
-    config.run.method = method;
-    config.tracking.look_back_frames = frames;
-    return run_sequence(*source, config, options);
-  };
-  for (const char* method : {"stillpoint", "oracle", "none"}) {
-    const RunResult never = run(method, 0), soon = run(method, 4), late = run(method, 100);
-    ASSERT_EQ(never.trajectory.size(), 14U) << method;
-    EXPECT_EQ(hash_of(never), hash_of(soon)) << method;
-    int revised = 0;
-    for (std::size_t i = 0; i < never.trajectory.size(); ++i) {
-      const Pose &before = never.trajectory[i].world_from_camera,
-                 &after = soon.trajectory[i].world_from_camera;
-      const bool moved = before.matrix() != after.matrix();
-      revised += moved;
-      EXPECT_LT(distance(before, after), 0.02) << method << ' ' << i;
-      if (never.records[i].keyframe) {
-        EXPECT_FALSE(moved) << "bundle adjustment has a keyframe's pose";
-      }
-    }
-    const bool keeps_to_the_paper = std::string_view(method) == "none";
-    EXPECT_EQ(revised > 5, !keeps_to_the_paper) << method << ' ' << revised;
-    EXPECT_EQ(late.trajectory.size(), 14U) << "what is left is looked back at when the run ends";
-    EXPECT_EQ(
-        late.trajectory[5].world_from_camera.matrix() != never.trajectory[5].world_from_camera.matrix() ||
-            never.records[5].keyframe,
-        !keeps_to_the_paper || never.records[5].keyframe)
-        << method;
+    config.run.method = GetParam();
+    config.tracking.look_back_frames = look_back_frames;
+    RunOptions options;
+    options.count = kFrames;
+    return run_sequence(*source_, config, options);
   }
+  std::shared_ptr<const FrameSource> source_ = open_sequence("generated:walking_static");
+};
+
+TEST_P(LookingBackInARun, ChangesNoFrameOnlyTheTrajectory) {
+  const RunResult never = run(0), soon = run(4), late = run(100);
+  ASSERT_EQ(never.trajectory.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(hash_of(never), hash_of(soon));
+  EXPECT_EQ(hash_of(never), hash_of(late));
+  int revised = 0, revised_at_the_end = 0;
+  for (std::size_t i = 0; i < never.trajectory.size(); ++i) {
+    const Pose& before = never.trajectory[i].world_from_camera;
+    const Pose &after = soon.trajectory[i].world_from_camera, &at_end = late.trajectory[i].world_from_camera;
+    revised += before.matrix() != after.matrix();
+    revised_at_the_end += before.matrix() != at_end.matrix();
+    EXPECT_LT(distance(before, after), 0.05) << i;
+    if (never.records[i].keyframe) {
+      EXPECT_EQ(before.matrix(), after.matrix()) << "a keyframe's pose is bundle adjustment's";
+    }
+  }
+  const bool keeps_to_the_paper = std::string_view(GetParam()) == "none";
+  EXPECT_EQ(revised > 5, !keeps_to_the_paper) << revised;
+  EXPECT_EQ(revised_at_the_end > 5, !keeps_to_the_paper) << revised_at_the_end;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, LookingBackInARun, ::testing::Values("stillpoint", "oracle", "none"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(LookingBackContinued, WithAnotherConfigThatDoesNotItLeavesPosesAsTheyAre) {
+  const auto source = open_sequence("generated:room");
+  Config config;
+  config.run.method = "oracle";
+  Odometry odometry(source->camera(), config);
+  for (int i = 0; i < 6; ++i) (void)odometry.process(source->read(i));
+  Config never = config;
+  never.tracking.look_back_frames = 0;
+  auto other = odometry.continued_with(never, {});
+  ASSERT_TRUE(other.has_value());
+  other->finish();
+  odometry.finish();
+  EXPECT_TRUE(other->revised_poses().empty());
+  EXPECT_FALSE(odometry.revised_poses().empty());
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ Config config_of(const std::string& method) {
   Config config;
   config.run.method = method;
   config.features.count = 400;
+  config.tracking.look_back_frames = 4;  // within the few frames there are
   return config;
 }
 
