@@ -97,7 +97,7 @@ class Odometry {
     bool seek_consensus =
         false;                  // movers may be among the features: least squares alone is not to be trusted
     std::uint32_t seed = 0;     // of the samples consensus is sought with
-    bool agreed = false;        // camera_from_world is a consensus
+    bool agreed = false;        // camera_from_world is a consensus of most matches
     bool start_agreed = false;  // the start is a consensus: what is far from it is not to draw the pose away
     std::vector<int> points_in_view, points_found;  // map points that should be seen, and those that were
   };

@@ -83,7 +83,8 @@ bool Odometry::estimate_from_last(Current& current, FrameRecord& record) const {
                          kConsensusSamples, current.seed);
       refined.camera_from_world = agreed.camera_from_world;
       refined.inlier = agreed.inlier;
-      current.agreed = true;
+      // Where blur moves most corners, few agree, and beside the truth.
+      current.agreed = 2 * agreed.inliers >= static_cast<int>(matches.size());
       const double took = watch.milliseconds();
       record.ms.consensus += took;
       record.ms.pose += took;
