@@ -20,7 +20,7 @@ constexpr int kFrame = 5, kRoom = 60, kMover = 40;  // points of each, the room'
 double distance(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
 
 /// A map of a room and of something in it, as one keyframe saw them; a later frame sees them from elsewhere,
-/// and by then what is in the room has gone on by two centimetres.
+/// and by then what is in the room has gone on by four millimetres.
 class LookingBack : public ::testing::Test {
  protected:
   void SetUp() override {
