@@ -1,8 +1,10 @@
 #include "core/motion/receding_patches.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "core/motion/carrier.hpp"
 
@@ -56,23 +58,109 @@ void for_pixels_of(const std::vector<std::uint8_t>& chosen, const RgbdView& curr
   }
 }
 
+/// Where between the two ways a patch may have gone it is looked for: 0 its ray, 1 the axis.
+cv::Point2f place_of(const Seen& p, float share) {
+  return {p.u + share * (p.along_u - p.u), p.v + share * (p.along_v - p.v)};
+}
+
+float depth_tolerance(const Seen& p) { return static_cast<float>(kSameDepth) * depth_sigma(p.z); }
+
+/// The reference with a rim about it, without depth: what is looked up within reach of it has its place.
+struct Rimmed {
+  explicit Rimmed(const RgbdView& view) : size(view.gray.size()) {
+    cv::copyMakeBorder(view.gray, gray, kRim, kRim, kRim, kRim, cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(view.depth, depth, kRim, kRim, kRim, kRim, cv::BORDER_CONSTANT, cv::Scalar(0));
+  }
+
+  [[nodiscard]] bool holds(const cv::Point2f& p) const {
+    return p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(size.width - 1) &&
+           p.y < static_cast<float>(size.height - 1);
+  }
+
+  static constexpr int kLanes = cv::v_float32x4::nlanes;
+  static constexpr int kShifts = 2 * kSideways + 1;                         // to one side and the other
+  static constexpr int kPadded = (kShifts + kLanes - 1) / kLanes * kLanes;  // of a row of shifts
+  static constexpr int kRim = kPadded + 1;                                  // px
+
+  cv::Size size;  // without the rim
+  cv::Mat gray, depth;
+};
+
+/// Of each shift: how many of a patch's pixels meet its surface, their differences of brightness, summed, and
+/// the squares.
+class Shifts {
+ public:
+  static constexpr auto kAll = static_cast<std::size_t>(Rimmed::kShifts * Rimmed::kPadded);
+
+  /// Lays a pixel onto all places about the one given.
+  void add(const Seen& p, const cv::Point2f& at, const Rimmed& then) {
+    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+    const float right = at.x - static_cast<float>(x), down = at.y - static_cast<float>(y);
+    const cv::v_float32x4 w00 = cv::v_setall_f32((1 - right) * (1 - down)),
+                          w01 = cv::v_setall_f32(right * (1 - down)),
+                          w10 = cv::v_setall_f32((1 - right) * down), w11 = cv::v_setall_f32(right * down);
+    const cv::v_float32x4 gray = cv::v_setall_f32(p.gray), depth = cv::v_setall_f32(p.z),
+                          tolerance = cv::v_setall_f32(depth_tolerance(p)), one = cv::v_setall_f32(1.0F);
+    constexpr int kFirst = Rimmed::kRim - kSideways;
+    const int nearest_x = cvRound(at.x) + kFirst, nearest_y = cvRound(at.y) + kFirst;
+    float* sums = sums_.data();
+    for (int row = 0; row < Rimmed::kShifts; ++row) {
+      const float *above = then.gray.ptr<float>(y + kFirst + row) + x + kFirst,
+                  *below = then.gray.ptr<float>(y + kFirst + row + 1) + x + kFirst,
+                  *z = then.depth.ptr<float>(nearest_y + row) + nearest_x;
+      for (int i = 0; i < Rimmed::kPadded; i += Rimmed::kLanes, sums += 3 * Rimmed::kLanes) {
+        const cv::v_float32x4 then_gray = w00 * cv::v_load(above + i) + w01 * cv::v_load(above + i + 1) +
+                                          w10 * cv::v_load(below + i) + w11 * cv::v_load(below + i + 1);
+        const cv::v_float32x4 meets = cv::v_abs(cv::v_load(z + i) - depth) <= tolerance;
+        const cv::v_float32x4 b = meets & (gray - then_gray);
+        cv::v_store(sums, cv::v_load(sums) + (meets & one));
+        cv::v_store(sums + Rimmed::kLanes, cv::v_load(sums + Rimmed::kLanes) + b);
+        cv::v_store(sums + 2 * Rimmed::kLanes, cv::v_load(sums + 2 * Rimmed::kLanes) + b * b);
+      }
+    }
+  }
+
+  /// The shift at which the least is left a pixel, of those at which most pixels meet the surface.
+  struct Best {
+    int du = 0, dv = 0;
+    float left = std::numeric_limits<float>::max();  // squared grey levels a pixel
+  };
+  [[nodiscard]] Best best(std::size_t pixels) const {
+    Best best;
+    const float fewest = std::max(static_cast<float>(kMinPixels), 0.5F * static_cast<float>(pixels));
+    for (int dv = -kSideways; dv <= kSideways; ++dv)
+      for (int du = -kSideways; du <= kSideways; ++du) {
+        const int column = du + kSideways, block = column / Rimmed::kLanes;
+        const std::size_t at =
+            3 * static_cast<std::size_t>((dv + kSideways) * Rimmed::kPadded + block * Rimmed::kLanes) +
+            static_cast<std::size_t>(column % Rimmed::kLanes);
+        const float n = sums_[at], b = sums_[at + Rimmed::kLanes], bb = sums_[at + 2 * Rimmed::kLanes];
+        if (n < fewest) continue;
+        const float left = (bb - b * b / n) / n;
+        if (left < best.left) best = {du, dv, left};
+      }
+    return best;
+  }
+
+ private:
+  std::array<float, 3 * kAll> sums_{};  // lanes of counts, of differences, of squares; and again
+};
+
 /// How well a patch's brightness is met, shifted: what is left of its differences, squared, and their sums.
 struct Looks {
   double n = 0, b = 0, bb = 0, gx = 0, gy = 0, gxx = 0, gxy = 0, gyy = 0, gxb = 0, gyb = 0;
   [[nodiscard]] double left() const { return bb - b * b / n; }
 };
 
-/// @param share where between the two ways a patch may have gone it is looked for: 0 its ray, 1 the axis
 Looks compare(const std::vector<Seen>& pixels, const RgbdView& then, float share, int du, int dv) {
   const auto right = static_cast<float>(then.gray.cols - 1), bottom = static_cast<float>(then.gray.rows - 1);
   Looks s;
   for (const Seen& p : pixels) {
-    const float u = p.u + share * (p.along_u - p.u) + static_cast<float>(du),
-                v = p.v + share * (p.along_v - p.v) + static_cast<float>(dv);
-    if (!(u >= 0 && v >= 0 && u < right && v < bottom)) continue;
-    const float z = then.depth.ptr<float>(cvRound(v))[cvRound(u)];
-    if (std::abs(z - p.z) > static_cast<float>(kSameDepth) * depth_sigma(p.z)) continue;
-    const double b = p.gray - bilinear(then.gray, u, v), gx = p.slope_x, gy = p.slope_y;
+    const cv::Point2f at = place_of(p, share) + cv::Point2f(static_cast<float>(du), static_cast<float>(dv));
+    if (!(at.x >= 0 && at.y >= 0 && at.x < right && at.y < bottom)) continue;
+    const float z = then.depth.ptr<float>(cvRound(at.y))[cvRound(at.x)];
+    if (std::abs(z - p.z) > depth_tolerance(p)) continue;
+    const double b = p.gray - bilinear(then.gray, at.x, at.y), gx = p.slope_x, gy = p.slope_y;
     s.n += 1, s.b += b, s.bb += b * b, s.gx += gx, s.gy += gy;
     s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
   }
@@ -96,19 +184,20 @@ double texture_of(const std::vector<Seen>& pixels) {
 
 /// Whether the patch looks as it did somewhere about where it must have been, for it may have gone sideways
 /// too: what is left of its differences is a small part of its texture.
-bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then) {
+bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then, const Rimmed& rimmed) {
   if (pixels.size() < kMinPixels) return false;
   const double texture = texture_of(pixels);
   if (texture < kMinTexture * kMinTexture) return false;
-  Looks best;
-  double least = std::numeric_limits<double>::max();
-  for (const float share : {1.0F, 0.0F})
-    for (int dv = -kSideways; dv <= kSideways; ++dv)
-      for (int du = -kSideways; du <= kSideways; ++du) {
-        const Looks looks = compare(pixels, then, share, du, dv);
-        const bool enough = looks.n >= kMinPixels && 2 * looks.n >= static_cast<double>(pixels.size());
-        if (enough && looks.left() / looks.n < least) best = looks, least = looks.left() / looks.n;
-      }
+  Shifts::Best place;
+  float best_share = 0.0F;
+  for (const float share : {1.0F, 0.0F}) {
+    Shifts shifts;
+    for (const Seen& p : pixels)
+      if (const cv::Point2f at = place_of(p, share); rimmed.holds(at)) shifts.add(p, at, rimmed);
+    const Shifts::Best found = shifts.best(pixels.size());
+    if (found.left < place.left) place = found, best_share = share;
+  }
+  const Looks best = compare(pixels, then, best_share, place.du, place.dv);
   if (best.n < kMinPixels) return false;
   // The rest of a pixel is read off the slopes.
   Eigen::Matrix2d h;
@@ -155,8 +244,9 @@ void measure_receding(const RgbdView& current, const RgbdView& reference, const 
                                          2 * current.slope_y.ptr<float>(y)[x], u, v, cx + (u - cx) * farther,
                                          cy + (v - cy) * farther, z});
                 });
+  const Rimmed rimmed(reference);
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (chosen[i] == 0 || !looks_the_same(seen[i], reference)) continue;
+    if (chosen[i] == 0 || !looks_the_same(seen[i], reference, rimmed)) continue;
     const double sigma = depth_sigma(segments[i].depth), step = steps[i].mean();
     const double still = 9.0 * sigma * sigma / steps[i].n + slack * slack,
                  moved = still + kTypicalStep * kTypicalStep;
