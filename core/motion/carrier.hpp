@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <opencv2/core.hpp>
+#include <opencv2/core/hal/intrin.hpp>
 #include <vector>
 
 #include "core/geometry/camera.hpp"
@@ -9,65 +11,97 @@
 
 namespace stillpoint {
 
-/// Carries pixels of the current view into another one by a rotation and translation, a row at a time and in
-/// single precision: the whole image passes here, and a row without branches is worked on several pixels at
-/// once.
+/// Carries pixels of the current view into another one by a rotation and translation, a row at a time, in
+/// single precision and several pixels at once: the whole image passes here, many times a frame.
 class Carrier {
  public:
   Carrier(const Camera& camera, const Pose& other_from_current)
-      : right_(static_cast<float>(camera.width - 2)),
+      : width_(camera.width),
+        right_(static_cast<float>(camera.width - 2)),
         bottom_(static_cast<float>(camera.height - 2)),
         fx_(static_cast<float>(camera.fx)),
         fy_(static_cast<float>(camera.fy)),
         cx_(static_cast<float>(camera.cx)),
         cy_(static_cast<float>(camera.cy)),
-        slope_(static_cast<std::size_t>(camera.width)),
-        u_(slope_.size()),
-        v_(slope_.size()),
-        z_(slope_.size()) {
+        sideways_(static_cast<std::size_t>((camera.width + kLanes - 1) / kLanes * kLanes)),
+        u_(sideways_.size()),
+        v_(sideways_.size()),
+        z_(sideways_.size()),
+        nearest_(sideways_.size()) {
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c)
         r_[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(other_from_current.linear()(r, c));
       t_[static_cast<std::size_t>(r)] = static_cast<float>(other_from_current.translation()(r));
     }
-    for (std::size_t x = 0; x < slope_.size(); ++x) slope_[x] = (static_cast<float>(x) - cx_) / fx_;
+    for (std::size_t x = 0; x < sideways_.size(); ++x) sideways_[x] = (static_cast<float>(x) - cx_) / fx_;
   }
 
   /// @param depth of row y, m; 0 where there is none
   void carry_row(int y, const float* depth) {
     const float down = (static_cast<float>(y) - cy_) / fy_;
-    const float a = r_[1] * down + r_[2], b = r_[4] * down + r_[5], c = r_[7] * down + r_[8];
-    for (std::size_t x = 0; x < slope_.size(); ++x) {
-      const float z = depth[x], sideways = slope_[x];
-      const float there = (r_[6] * sideways + c) * z + t_[2];
-      const float u = fx_ * ((r_[0] * sideways + a) * z + t_[0]) / there + cx_;
-      const float v = fy_ * ((r_[3] * sideways + b) * z + t_[1]) / there + cy_;
-      const bool inside =
-          (z > 0.0F) & (there >= kNearest) & (u >= 1.0F) & (v >= 1.0F) & (u < right_) & (v < bottom_);
-      u_[x] = inside ? u : -1.0F;
-      v_[x] = v;
-      z_[x] = there;
-    }
+    const Row row{r_[1] * down + r_[2], r_[4] * down + r_[5], r_[7] * down + r_[8]};
+    int x = 0;
+    for (; x + kLanes <= width_; x += kLanes) carry(static_cast<std::size_t>(x), cv::v_load(depth + x), row);
+    if (x == width_) return;
+    std::array<float, kLanes> rest{};
+    std::copy(depth + x, depth + width_, rest.begin());
+    carry(static_cast<std::size_t>(x), cv::v_load(rest.data()), row);
   }
 
   /// Of the row carried last: whether pixel x has depth and lies in the other view, a pixel from its rim.
-  [[nodiscard]] bool inside(int x) const { return u_[static_cast<std::size_t>(x)] >= 0.0F; }
+  [[nodiscard]] bool inside(int x) const { return nearest_[static_cast<std::size_t>(x)] >= 0; }
   /// Where it lies, px, and how far away it is expected there, m; if it is inside.
   [[nodiscard]] float u(int x) const { return u_[static_cast<std::size_t>(x)]; }
   [[nodiscard]] float v(int x) const { return v_[static_cast<std::size_t>(x)]; }
   [[nodiscard]] float z(int x) const { return z_[static_cast<std::size_t>(x)]; }
+  /// The pixel nearest to there; if it is inside.
+  [[nodiscard]] cv::Point nearest(int x) const {
+    const int at = nearest_[static_cast<std::size_t>(x)];
+    return {at % width_, at / width_};
+  }
+  /// The value an image of the other view's size, in one piece, has there; if it is inside.
+  template <typename T>
+  [[nodiscard]] const T& at(const T* image, int x) const {
+    return image[nearest_[static_cast<std::size_t>(x)]];
+  }
   /// z() of the whole row; of a pixel without depth it means nothing.
   [[nodiscard]] const float* expected_depth() const { return z_.data(); }
 
  private:
+  static constexpr int kLanes = cv::v_float32x4::nlanes;
   static constexpr float kNearest = 0.1F;  // m
 
+  /// What the pixels of a row share: rotation's part of where they lie, by row.
+  struct Row {
+    float x, y, z;
+  };
+
+  void carry(std::size_t x, const cv::v_float32x4& z, const Row& row) {
+    const auto all = [](float value) { return cv::v_setall_f32(value); };
+    const cv::v_float32x4 sideways = cv::v_load(&sideways_[x]);
+    const cv::v_float32x4 there = (all(r_[6]) * sideways + all(row.z)) * z + all(t_[2]);
+    const cv::v_float32x4 u =
+        all(fx_) * ((all(r_[0]) * sideways + all(row.x)) * z + all(t_[0])) / there + all(cx_);
+    const cv::v_float32x4 v =
+        all(fy_) * ((all(r_[3]) * sideways + all(row.y)) * z + all(t_[1])) / there + all(cy_);
+    const cv::v_float32x4 inside = (z > cv::v_setzero_f32()) & (there >= all(kNearest)) & (u >= all(1.0F)) &
+                                   (v >= all(1.0F)) & (u < all(right_)) & (v < all(bottom_));
+    const cv::v_int32x4 nearest =
+        cv::v_round(inside & v) * cv::v_setall_s32(width_) + cv::v_round(inside & u);
+    cv::v_store(&u_[x], u);
+    cv::v_store(&v_[x], v);
+    cv::v_store(&z_[x], there);
+    cv::v_store(&nearest_[x], cv::v_select(cv::v_reinterpret_as_s32(inside), nearest, cv::v_setall_s32(-1)));
+  }
+
+  int width_;
   float right_, bottom_;  // px: what lies beyond has not all its neighbours
   float fx_, fy_, cx_, cy_;
   std::array<float, 9> r_{};
   std::array<float, 3> t_{};
-  std::vector<float> slope_;      // of each column's ray, sideways
-  std::vector<float> u_, v_, z_;  // of the row carried last
+  std::vector<float> sideways_;   // of each column's ray
+  std::vector<float> u_, v_, z_;  // of the row carried last …
+  std::vector<int> nearest_;  // … and each pixel's nearest there, counted along the rows; -1 = not inside
 };
 
 /// A CV_32FC1 image between its pixels; u and v at least 0 and below the last column and row.

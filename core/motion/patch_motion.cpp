@@ -1,7 +1,9 @@
 #include "core/motion/patch_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "core/image_memory.hpp"
 #include "core/median.hpp"
@@ -26,12 +28,6 @@ constexpr double kDepthReach = 5.0;     // standard deviations: beyond, it is an
 struct Sums {
   double n = 0, gx = 0, gy = 0, b = 0, gxx = 0, gxy = 0, gyy = 0, gxb = 0, gyb = 0, bb = 0;
   double depth_step = 0;
-
-  void operator+=(const Sums& other) {
-    n += other.n, gx += other.gx, gy += other.gy, b += other.b, bb += other.bb;
-    gxx += other.gxx, gxy += other.gxy, gyy += other.gyy, gxb += other.gxb, gyb += other.gyb;
-    depth_step += other.depth_step;
-  }
 };
 
 /// A patch's shift and how well it is known.
@@ -43,38 +39,61 @@ struct Measured {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();           // m, in the reference's camera
 };
 
+/// The sums of the few pixels of a patch that lie side by side, in single precision and several at once.
+class RunSums {
+ public:
+  /// @param gx, gy grey levels a pixel, mean slope of both views; @param b grey levels, their difference
+  void add(float gx, float gy, float b, float depth_step) {
+    const cv::v_float32x4 all(gx, gy, b, 1.0F);
+    by_gx_ = by_gx_ + cv::v_setall_f32(gx) * all;
+    by_gy_ = by_gy_ + cv::v_setall_f32(gy) * all;
+    by_b_ = by_b_ + cv::v_setall_f32(b) * all;
+    sum_ = sum_ + all;
+    step_ += depth_step;
+  }
+
+  void give_to(Sums& sums) {
+    std::array<float, cv::v_float32x4::nlanes> gx, gy, b, one;
+    cv::v_store(gx.data(), by_gx_), cv::v_store(gy.data(), by_gy_), cv::v_store(b.data(), by_b_);
+    cv::v_store(one.data(), sum_);
+    sums.gxx += gx[0], sums.gxy += gx[1], sums.gxb += gx[2];
+    sums.gyy += gy[1], sums.gyb += gy[2], sums.bb += b[2];
+    sums.gx += one[0], sums.gy += one[1], sums.b += one[2], sums.n += one[3];
+    sums.depth_step += step_;
+    *this = {};
+  }
+
+ private:
+  cv::v_float32x4 by_gx_ = cv::v_setzero_f32(), by_gy_ = by_gx_, by_b_ = by_gx_, sum_ = by_gx_;
+  float step_ = 0.0F;
+};
+
 /// Sums over the pixels of each patch that lie within their surface here and in the reference. Across an
 /// outline the gradient is of two things that parallax parts.
 std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Carrier& carried,
                          const cv::Mat& labels, std::size_t patches) {
   std::vector<Sums> sums(patches);
+  const auto* seen = reference.surface.ptr<cv::Vec4f>();
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
-    const auto* within = current.within_surface.ptr<uchar>(y);
-    const auto *slope_x = current.slope_x.ptr<float>(y), *slope_y = current.slope_y.ptr<float>(y),
-               *gray = current.gray.ptr<float>(y);
+    const auto* here = current.surface.ptr<cv::Vec4f>(y);
     carried.carry_row(y, current.depth.ptr<float>(y));
-    Sums s;  // of the patch the row passes through
+    RunSums run;  // of the patch the row passes through
     int of = -1;
     for (int x = 1; x + 1 < labels.cols; ++x) {
-      if (within[x] == 0 || label[x] < 0 || !carried.inside(x)) continue;
+      if (here[x][3] <= 0 || label[x] < 0 || !carried.inside(x)) continue;
       const float expected = carried.z(x);
-      const int u = cvRound(carried.u(x)), v = cvRound(carried.v(x));
-      if (reference.within_surface.ptr<uchar>(v)[u] == 0) continue;
-      const float step = reference.depth.ptr<float>(v)[u] - expected;
+      const cv::Vec4f& there = carried.at(seen, x);
+      const float step = there[3] - expected;
       if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(expected)) continue;
-      const double gx = slope_x[x] + reference.slope_x.ptr<float>(v)[u];
-      const double gy = slope_y[x] + reference.slope_y.ptr<float>(v)[u];
-      const double b = gray[x] - bilinear(reference.gray, carried.u(x), carried.v(x));
       if (label[x] != of) {
-        if (of >= 0) sums[static_cast<std::size_t>(of)] += s;
-        s = {}, of = label[x];
+        if (of >= 0) run.give_to(sums[static_cast<std::size_t>(of)]);
+        of = label[x];
       }
-      s.n += 1, s.gx += gx, s.gy += gy, s.b += b, s.bb += b * b;
-      s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
-      s.depth_step += step;
+      run.add(here[x][0] + there[0], here[x][1] + there[1],
+              here[x][2] - bilinear(reference.gray, carried.u(x), carried.v(x)), step);
     }
-    if (of >= 0) sums[static_cast<std::size_t>(of)] += s;
+    if (of >= 0) run.give_to(sums[static_cast<std::size_t>(of)]);
   }
   return sums;
 }

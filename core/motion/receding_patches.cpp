@@ -45,14 +45,14 @@ void for_pixels_of(const std::vector<std::uint8_t>& chosen, const RgbdView& curr
   Carrier carried(current.camera, reference_from_current);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
-    const auto* within = current.within_surface.ptr<uchar>(y);
+    const auto* surface = current.surface.ptr<cv::Vec4f>(y);
     bool any = false;
     for (int x = 1; x + 1 < labels.cols && !any; ++x)
       any = label[x] >= 0 && chosen[static_cast<std::size_t>(label[x])] != 0;
     if (!any) continue;
     carried.carry_row(y, current.depth.ptr<float>(y));
     for (int x = 1; x + 1 < labels.cols; ++x)
-      if (label[x] >= 0 && chosen[static_cast<std::size_t>(label[x])] != 0 && within[x] != 0 &&
+      if (label[x] >= 0 && chosen[static_cast<std::size_t>(label[x])] != 0 && surface[x][3] > 0 &&
           carried.inside(x))
         visit(static_cast<std::size_t>(label[x]), x, y, carried);
   }
@@ -240,8 +240,8 @@ void measure_receding(const RgbdView& current, const RgbdView& reference, const 
                   const float u = carried.u(x), v = carried.v(x),
                               z = carried.z(x) + static_cast<float>(steps[patch].mean());
                   const float farther = carried.z(x) / z;
-                  seen[patch].push_back({current.gray.ptr<float>(y)[x], 2 * current.slope_x.ptr<float>(y)[x],
-                                         2 * current.slope_y.ptr<float>(y)[x], u, v, cx + (u - cx) * farther,
+                  const cv::Vec4f& here = current.surface.ptr<cv::Vec4f>(y)[x];
+                  seen[patch].push_back({here[2], 2 * here[0], 2 * here[1], u, v, cx + (u - cx) * farther,
                                          cy + (v - cy) * farther, z});
                 });
   const Rimmed rimmed(reference);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace stillpoint {
 namespace {
@@ -27,20 +28,6 @@ cv::Mat steepest_neighbour(const cv::Mat& gray) {
   return range;
 }
 
-/// A quarter of the difference of both neighbours: two images' slopes are averaged by adding theirs.
-void slopes(const cv::Mat& gray, cv::Mat& slope_x, cv::Mat& slope_y) {
-  slope_x = cv::Mat::zeros(gray.size(), CV_32FC1);
-  slope_y = cv::Mat::zeros(gray.size(), CV_32FC1);
-  for (int y = 1; y + 1 < gray.rows; ++y) {
-    const auto *above = gray.ptr<float>(y - 1), *row = gray.ptr<float>(y), *below = gray.ptr<float>(y + 1);
-    auto *sideways = slope_x.ptr<float>(y), *down = slope_y.ptr<float>(y);
-    for (int x = 1; x + 1 < gray.cols; ++x) {
-      sideways[x] = 0.25F * (row[x + 1] - row[x - 1]);
-      down[x] = 0.25F * (below[x] - above[x]);
-    }
-  }
-}
-
 constexpr int kLanes = cv::v_float32x4::nlanes;
 
 /// same_surface() of four pixels at once.
@@ -49,40 +36,38 @@ cv::v_float32x4 same_surface(const cv::v_float32x4& a, const cv::v_float32x4& b)
   return cv::v_abs(a - b) < cv::v_setall_f32(0.02F) + cv::v_setall_f32(0.012F) * nearer * nearer;
 }
 
-/// Which pixels lie within their surface, and how steep it is there.
-void describe_surface(const cv::Mat& depth, cv::Mat& within, cv::Mat& slope) {
-  within = cv::Mat::zeros(depth.size(), CV_8UC1);
-  slope = cv::Mat::zeros(depth.size(), CV_32FC1);
+/// RgbdView's `surface` and `depth_slope`.
+void describe_surface(RgbdView& view) {
+  const cv::Mat &gray = view.gray, &depth = view.depth;
+  view.surface = cv::Mat::zeros(depth.size(), CV_32FC4);
+  view.depth_slope = cv::Mat::zeros(depth.size(), CV_32FC1);
+  if (depth.cols < 3) return;
+  const cv::v_float32x4 zero = cv::v_setzero_f32(), quarter = cv::v_setall_f32(0.25F);
+  const auto width = static_cast<std::size_t>(depth.cols);
+  // A row as it is worked on, with lanes to spare.
+  std::vector<float> above(width + kLanes), here(above), below(above), bright_above(above), bright(above),
+      bright_below(above), steepest(above), texels(4 * (width + kLanes));
+  const auto fill = [width](const cv::Mat& image, int y, std::vector<float>& row) {
+    std::copy_n(image.ptr<float>(y), width, row.begin());
+  };
   for (int y = 1; y + 1 < depth.rows; ++y) {
-    const auto *above = depth.ptr<float>(y - 1), *row = depth.ptr<float>(y), *below = depth.ptr<float>(y + 1);
-    auto* inner = within.ptr<uchar>(y);
-    auto* steepest = slope.ptr<float>(y);
-    int x = 1;
-    for (; x + kLanes < depth.cols; x += kLanes) {
-      const cv::v_float32x4 z = cv::v_load(row + x), zero = cv::v_setzero_f32();
+    fill(depth, y - 1, above), fill(depth, y, here), fill(depth, y + 1, below);
+    fill(gray, y - 1, bright_above), fill(gray, y, bright), fill(gray, y + 1, bright_below);
+    for (std::size_t x = 1; x + 1 < width; x += kLanes) {
+      const cv::v_float32x4 z = cv::v_load(&here[x]);
       cv::v_float32x4 all = z > zero, step = zero;
-      for (const float* beside : {row + x - 1, row + x + 1, above + x, below + x}) {
+      for (const float* beside : {&here[x - 1], &here[x + 1], &above[x], &below[x]}) {
         const cv::v_float32x4 other = cv::v_load(beside), same = (other > zero) & same_surface(z, other);
         all = all & same;
         step = cv::v_max(step, same & cv::v_abs(other - z));
       }
-      const int within_all = cv::v_signmask(all);
-      for (int k = 0; k < kLanes; ++k) inner[x + k] = (within_all >> k & 1) != 0 ? 255 : 0;
-      cv::v_store(steepest + x, (z > zero) & step);
+      cv::v_store(&steepest[x], (z > zero) & step);
+      const cv::v_float32x4 sideways = quarter * (cv::v_load(&bright[x + 1]) - cv::v_load(&bright[x - 1])),
+                            down = quarter * (cv::v_load(&bright_below[x]) - cv::v_load(&bright_above[x]));
+      cv::v_store_interleave(&texels[4 * x], sideways, down, cv::v_load(&bright[x]), all & z);
     }
-    for (; x + 1 < depth.cols; ++x) {
-      const float z = row[x];
-      if (z <= 0) continue;
-      bool all = true;
-      float step = 0.0F;
-      for (const float other : {row[x - 1], row[x + 1], above[x], below[x]}) {
-        const bool same = (other > 0) & stillpoint::same_surface(z, other);
-        all &= same;
-        step = std::max(step, same ? std::abs(other - z) : 0.0F);
-      }
-      inner[x] = all ? 255 : 0;
-      steepest[x] = step;
-    }
+    std::copy_n(&steepest[1], width - 2, view.depth_slope.ptr<float>(y) + 1);
+    std::copy_n(&texels[4], 4 * (width - 2), view.surface.ptr<float>(y) + 4);
   }
 }
 
@@ -107,8 +92,7 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
       out[x] = centre > 0 ? centre : any_depth(depth, x * factor, y * factor, factor);
     }
   }
-  slopes(view.gray, view.slope_x, view.slope_y);
-  describe_surface(view.depth, view.within_surface, view.depth_slope);
+  describe_surface(view);
   view.camera = camera.scaled_to(gray.cols, gray.rows);
   view.camera.fx /= factor, view.camera.fy /= factor;
   view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5,

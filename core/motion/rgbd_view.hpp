@@ -10,10 +10,10 @@ namespace stillpoint {
 struct RgbdView {
   cv::Mat gray;      ///< CV_32FC1, grey levels, averaged over each block
   cv::Mat gradient;  ///< CV_32FC1, largest difference to a neighbour, grey levels a pixel
-  cv::Mat depth;  ///< CV_32FC1, m, one measured value of each block (never a mean across an edge); 0 = none
-  cv::Mat slope_x, slope_y;  ///< CV_32FC1, half the slope of gray, grey levels a pixel: two views' halves add
-                             ///< up to their mean
-  cv::Mat within_surface;    ///< CV_8UC1, 255 where the four neighbours are measured on the same surface
+  cv::Mat depth;    ///< CV_32FC1, m, one measured value of each block (never a mean across an edge); 0 = none
+  cv::Mat surface;  ///< CV_32FC4, what of a pixel is compared with another view's: half the slope of gray
+                    ///< sideways and down, grey levels a pixel (two views' halves add up to their mean);
+                    ///< gray; and depth, m, 0 unless the four neighbours are measured on the same surface
   cv::Mat
       depth_slope;  ///< CV_32FC1, m a pixel: largest step to one of the four neighbours on the same surface
   Camera camera;    ///< of the small images, without distortion: pixels are near enough
