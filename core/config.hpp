@@ -38,8 +38,8 @@ struct DepthMotionConfig {
   int use_depth = 1;          ///< 1: depth residuals are evidence
   int use_brightness = 1;     ///< 1: brightness residuals are evidence
   int near_reference = 2;     ///< frames back to the nearer reference
-  int far_reference = 10;     ///< frames back to the farther one
-  int slow_reference = 24;    ///< frames back to the farthest one: for slow movers
+  int far_reference = 10;     ///< frames back to an old one …
+  int slow_reference = 24;    ///< … and to another, older one: they take turns
   double depth_sigmas = 4.0;  ///< depth residual beyond which a pixel counts as moved, standard deviations
   double intensity_sigmas = 4.0;  ///< the same of brightness
   double gradient_share =
@@ -52,7 +52,7 @@ struct DepthMotionConfig {
   double release = 0.015;      ///< … and takes this share of what speaks for standing still
   int find_receding = 1;       ///< 1: patches that go back, away from the camera, are looked for
   int inherit = 1;             ///< 1: what comes into view takes over what its surface is known to do
-  double patch_share = 0.15;   ///< of the log-odds by a patch's shift that counts in one frame
+  double patch_share = 0.3;    ///< of the log-odds by a patch's shift that counts in one frame
   int segment_px = 10;         ///< side of a surface patch, small pixels
   double smoothing = 0.6;      ///< weight of neighbours on the same surface against a patch's own evidence
   double moving_log_odds = 0.35;   ///< above it a patch moves

@@ -25,10 +25,10 @@ constexpr float kStepBackLimit = 0.15F;  // m: a surface farther off than this w
 
 /// Of the nine measurements about a pixel, the one nearest to what is expected; 0 when there is none. Edges
 /// lie a pixel off easily, and then the neighbour still has the surface.
-float nearest_depth(const cv::Mat& depth, int x, int y, float expected) {
+float nearest_depth(const cv::Mat& depth, const cv::Point& at, float expected) {
   float best = 0.0F, best_difference = std::numeric_limits<float>::max();
   for (int dy = -1; dy <= 1; ++dy) {
-    const float* row = depth.ptr<float>(y + dy) + x;
+    const float* row = depth.ptr<float>(at.y + dy) + at.x;
     for (int dx = -1; dx <= 1; ++dx) {
       const float difference = std::abs(row[dx] - expected);
       const bool better = (row[dx] > 0) & (difference < best_difference);
@@ -81,7 +81,7 @@ float misplacement(const RgbdView& current, const ReferenceView& reference, cons
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
   Carrier carried(current.camera, reference.reference_from_current);
-  const cv::Mat& then = reference.view->depth;
+  const auto* then = reference.view->depth.ptr<float>();
   std::vector<float> squares;  // px²
   for (int y = kEvery / 2; y < current.depth.rows; y += kEvery) {
     const auto *depth = current.depth.ptr<float>(y), *slope = current.depth_slope.ptr<float>(y),
@@ -89,7 +89,7 @@ float misplacement(const RgbdView& current, const ReferenceView& reference, cons
     carried.carry_row(y, depth);
     for (int x = 0; x < current.depth.cols; ++x) {
       if (!carried.inside(x) || remembered[x] > static_cast<float>(config.moving_log_odds)) continue;
-      const float measured = then.ptr<float>(cvRound(carried.v(x)))[cvRound(carried.u(x))];
+      const float measured = carried.at(then, x);
       if (measured <= 0) continue;
       const float a = depth_sigma(depth[x]), b = depth_sigma(measured), noise = a * a + b * b;
       const float step = measured - carried.z(x), steep = slope[x] * slope[x];
@@ -112,6 +112,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
   Carrier carried(current.camera, reference.reference_from_current);
   const auto limit = static_cast<float>(config.depth_sigmas);
   const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
+  const auto* depth_then = then.ptr<float>();
   std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is carried to
   for (int y = 0; y < size.height; ++y) {
     const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
@@ -121,15 +122,13 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
     const Expected there{carried.expected_depth(), depth, current.depth_slope.ptr<float>(y),
                          static_cast<float>(evidence.misplacement_px)};
     for (int x = 0; x < size.width; ++x)
-      measured[static_cast<std::size_t>(x)] =
-          carried.inside(x) ? then.ptr<float>(cvRound(carried.v(x)))[cvRound(carried.u(x))] : 0.0F;
+      measured[static_cast<std::size_t>(x)] = carried.inside(x) ? carried.at(depth_then, x) : 0.0F;
     depth_residuals(measured.data(), there, size.width, residuals);
     for (int x = 0; x < size.width; ++x) {
       if (!carried.inside(x)) continue;
-      const float u = carried.u(x), v = carried.v(x), expected = carried.z(x);
       // Only what does not fit at its own pixel is sought beside it.
       if (!(std::abs(residuals[x]) <= limit)) {
-        const float beside = nearest_depth(then, cvRound(u), cvRound(v), expected);
+        const float expected = carried.z(x), beside = nearest_depth(then, carried.nearest(x), expected);
         residuals[x] = depth_residual(beside, there, x);
         if (beside <= 0) continue;
         if (residuals[x] > limit) {
@@ -142,7 +141,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
         }
       }
       log_odds[x] = kSameDepth;
-      differences[x] = gray[x] - bilinear(gray_then, u, v);
+      differences[x] = gray[x] - bilinear(gray_then, carried.u(x), carried.v(x));
     }
   }
   return brightness;
@@ -189,38 +188,46 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   return evidence;
 }
 
-cv::Mat carry_memory(const RgbdView& current, const MotionMemory& memory, const Pose& previous_from_current,
-                     const DepthMotionConfig& config) {
+CarriedMemory carry_memory(const RgbdView& current, const MotionMemory& memory,
+                           const Pose& previous_from_current, const DepthMotionConfig& config) {
   constexpr int kReach = 3;            // small px a mover may have gone in a frame
   constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
   constexpr float kDepthShare = 0.02F;
   constexpr float kArrived = 1.5F;  // log-odds that a mover's step carries at most
-  cv::Mat prior = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  const cv::Size size = current.depth.size();
+  CarriedMemory result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
+  cv::Mat& prior = result.log_odds;
   cv::Mat most_near;  // of what is remembered within reach: mostly nothing, and then nothing need be sought
   const int side = 2 * kReach + 1;
   cv::dilate(memory.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   Carrier carried(current.camera, previous_from_current);
   const auto keep = static_cast<float>(config.memory), firm = static_cast<float>(config.firm_log_odds);
   const cv::Mat& depth_then = memory.view->depth;
+  const auto *there = depth_then.ptr<float>(), *known = memory.log_odds.ptr<float>(),
+             *about = most_near.ptr<float>();
   for (int y = 0; y < prior.rows; ++y) {
     const auto* depth = current.depth.ptr<float>(y);
     auto* out = prior.ptr<float>(y);
+    auto* entered = result.entered.ptr<uchar>(y);
     carried.carry_row(y, depth);
     for (int x = 0; x < prior.cols; ++x) {
-      if (!carried.inside(x)) continue;
-      const int u = cvRound(carried.u(x)), v = cvRound(carried.v(x));
+      if (!carried.inside(x)) {
+        if (depth[x] > 0) entered[x] = 255;
+        continue;
+      }
       const float expected = carried.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
-      if (std::abs(depth_then.ptr<float>(v)[u] - expected) < tolerance) {
-        const float odds = memory.log_odds.ptr<float>(v)[u];
+      if (std::abs(carried.at(there, x) - expected) < tolerance) {
+        const float odds = carried.at(known, x);
         out[x] = odds > firm ? odds : keep * odds;
         continue;
       }
-      if (most_near.ptr<float>(v)[u] <= 0) continue;
+      if (carried.at(about, x) <= 0) continue;
       // A surface that was not here before came from beside, most likely: it is taken to move if what is
       // there does, but not firmly.
+      const cv::Point at = carried.nearest(x);
       float odds = 0.0F;
-      for (int py = std::max(0, v - kReach); py <= std::min(prior.rows - 1, v + kReach); ++py)
-        for (int px = std::max(0, u - kReach); px <= std::min(prior.cols - 1, u + kReach); ++px) {
+      for (int py = std::max(0, at.y - kReach); py <= std::min(prior.rows - 1, at.y + kReach); ++py)
+        for (int px = std::max(0, at.x - kReach); px <= std::min(prior.cols - 1, at.x + kReach); ++px) {
           const float near = memory.log_odds.ptr<float>(py)[px];
           if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < 0.5F * tolerance)
             odds = near;
@@ -228,7 +235,7 @@ cv::Mat carry_memory(const RgbdView& current, const MotionMemory& memory, const 
       out[x] = std::min(keep * odds, kArrived);
     }
   }
-  return prior;
+  return result;
 }
 
 }  // namespace stillpoint

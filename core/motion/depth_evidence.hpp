@@ -13,9 +13,15 @@ namespace stillpoint {
                                                        const ReferenceView& reference, const cv::Mat& prior,
                                                        const DepthMotionConfig& config);
 
+/// What is remembered, at a later frame's pixels.
+struct CarriedMemory {
+  cv::Mat log_odds;  ///< CV_32FC1, of moving; 0 = nothing is known
+  cv::Mat entered;   ///< CV_8UC1, 255: measured now, and outside the view of the frame before
+};
+
 /// The log-odds of the frame before, brought to where they belong now: by the camera's motion for what stands
 /// still, and within reach of a mover's step for what does not, onto pixels at a like depth.
-[[nodiscard]] cv::Mat carry_memory(const RgbdView& current, const MotionMemory& memory,
-                                   const Pose& previous_from_current, const DepthMotionConfig& config);
+[[nodiscard]] CarriedMemory carry_memory(const RgbdView& current, const MotionMemory& memory,
+                                         const Pose& previous_from_current, const DepthMotionConfig& config);
 
 }  // namespace stillpoint

@@ -17,7 +17,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kMostStill = 0.4F, kMostMoved = 0.8F;  // log-odds a patch's shift may give in one frame
+constexpr float kMostStill = 0.8F, kMostMoved = 1.6F;  // log-odds a patch's shift may give in one frame
 constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
 constexpr int kHole = 4;                               // small px: half of what a mover may have unmeasured
 constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
@@ -183,7 +183,7 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   cv::erode(small_mask, low, cv::Mat());
   cv::dilate(small_mask, high, cv::Mat());
   const cv::Mat edge = low != high;
-  cv::resize(small_mask, mask, full_depth.size(), 0, 0, cv::INTER_NEAREST);
+  mask = enlarged(small_mask, view.factor, full_depth.size());
   const int f = view.factor;
   std::vector<cv::Point, KeptMemory<cv::Point>> unmeasured, inside;
   for (int sy = 0; sy < edge.rows; ++sy)
@@ -245,13 +245,16 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
                                      const MotionMemory* memory, const Pose& previous_from_current,
                                      const DepthMotionConfig& config, int threads) {
   DepthMotionTrace trace;
+  Stopwatch watch;
+  if (memory) {
+    const CarriedMemory carried = carry_memory(current, *memory, previous_from_current, config);
+    trace.prior = carried.log_odds;
+    if (config.inherit != 0) inherit_memory(carried.entered, patches, trace.prior);
+  } else {
+    trace.prior = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  }
   trace.labels = std::move(patches.labels);
   trace.segments = std::move(patches.segments);
-  Stopwatch watch;
-  trace.prior = memory ? carry_memory(current, *memory, previous_from_current, config)
-                       : cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  if (memory && config.inherit != 0)
-    inherit_memory(current, trace.labels, trace.segments.size(), previous_from_current, trace.prior);
   trace.ms.memory = watch.lap();
   // References know nothing of each other: all but the last are compared with beside it.
   std::vector<std::future<ReferenceEvidence>> compared;
@@ -270,7 +273,7 @@ DepthMotionTrace detect_depth_motion(const RgbdView& current, SurfacePatches pat
   evidence += trace.slow;
   trace.log_odds = with_memory(trace.prior, evidence, config);
 
-  judge_segments(current, trace.log_odds, trace.labels, config, trace.segments);
+  judge_segments(trace.log_odds, trace.labels, patches.contacts, config, trace.segments);
   trace.ms.segments = watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.segments);
   drop_small_regions(trace.small_mask, config.min_area_share);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
@@ -22,7 +23,14 @@ struct ReferenceView {
   std::shared_ptr<const RgbdView> view;
   Pose reference_from_current = Pose::Identity();
   bool old = false;  ///< far enough back for slow movers to have gone somewhere
+  int frames_back = 0;
 };
+
+/// How many frames back the references of a frame shall lie, at the least: a near one, and one of the two old
+/// ones by turns, as from frame to frame those have hardly anything new to say.
+[[nodiscard]] inline std::array<int, 2> reference_gaps(const DepthMotionConfig& config, int frame_index) {
+  return {config.near_reference, frame_index % 2 == 0 ? config.far_reference : config.slow_reference};
+}
 
 /// How far a patch of surface lies from where the camera's motion alone would have it.
 struct PatchMotion {
@@ -54,10 +62,18 @@ struct Segment {
   bool moving = false;
 };
 
+/// Two patches that touch on one surface, and how many pixels of boundary they share: the weight of their
+/// agreement.
+struct Contact {
+  int a = 0, b = 0;
+  int boundary = 0;
+};
+
 /// The patches of one view.
 struct SurfacePatches {
   cv::Mat labels;  ///< CV_32SC1: the patch of each pixel, -1 where there is no depth
   std::vector<Segment> segments;
+  std::vector<Contact> contacts;  ///< all of them, by a, then b; a < b
 };
 
 /// What each step took, ms of wall time. For reading only: no result depends on it.

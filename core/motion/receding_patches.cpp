@@ -217,10 +217,10 @@ void measure_receding(const RgbdView& current, const RgbdView& reference, const 
   std::vector<std::uint8_t> chosen(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) chosen[i] = patches[i].log_odds == 0.0F;
   std::vector<Steps> steps(patches.size());
+  const auto* then = reference.depth.ptr<float>();
   for_pixels_of(chosen, current, labels, reference_from_current,
                 [&](std::size_t patch, int x, int, const Carrier& carried) {
-                  const int u = cvRound(carried.u(x)), v = cvRound(carried.v(x));
-                  const float there = reference.depth.ptr<float>(v)[u], step = there - carried.z(x);
+                  const float there = carried.at(then, x), step = there - carried.z(x);
                   if (there <= 0 || step > 0 || step < -kFarthest) return;
                   Steps& s = steps[patch];
                   s.n += 1, s.sum += step, s.squares += step * step;

@@ -101,4 +101,19 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
   return view;
 }
 
+cv::Mat enlarged(const cv::Mat& small_mask, int factor, const cv::Size& size) {
+  cv::Mat mask(size, CV_8UC1);
+  for (int y = 0; y < size.height; ++y) {
+    auto* out = mask.ptr<uchar>(y);
+    if (y % factor != 0 && y / factor < small_mask.rows) {
+      std::copy_n(mask.ptr<uchar>(y - 1), size.width, out);
+      continue;
+    }
+    const auto* row = small_mask.ptr<uchar>(std::min(y / factor, small_mask.rows - 1));
+    for (int sx = 0; sx < small_mask.cols; ++sx) std::fill_n(out + sx * factor, factor, row[sx]);
+    std::fill(out + small_mask.cols * factor, out + size.width, row[small_mask.cols - 1]);
+  }
+  return mask;
+}
+
 }  // namespace stillpoint

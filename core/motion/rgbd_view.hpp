@@ -24,6 +24,9 @@ struct RgbdView {
 [[nodiscard]] RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera,
                                       int factor);
 
+/// A small mask (CV_8UC1) at full size, by blocks; what no block covers takes after the nearest.
+[[nodiscard]] cv::Mat enlarged(const cv::Mat& small_mask, int factor, const cv::Size& size);
+
 /// Whether two depths (m) that lie side by side belong to one surface.
 [[nodiscard]] inline bool same_surface(float a, float b) {
   const float nearer = a < b ? a : b;

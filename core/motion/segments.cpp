@@ -175,14 +175,17 @@ class Neighbours {
   std::vector<Neighbour> all_;
 };
 
-}  // namespace
-
-std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
-  std::vector<std::pair<int, int>> touching;
-  touching.reserve(labels.total() / 4);
+/// Counts who touches whom. Patches lie in a grid of `columns`, and no pixel belongs to one farther than the
+/// next cell.
+std::vector<Contact> find_contacts(const RgbdView& view, const cv::Mat& labels, std::size_t patches,
+                                   int columns) {
+  constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;  // cells between two that touch
+  std::vector<int> counts(patches * kPlaces, 0);
   const auto look = [&](int a, int b, float za, float zb) {
     if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
-    touching.emplace_back(std::min(a, b), std::max(a, b));
+    const int first = std::min(a, b), second = std::max(a, b);
+    const int down = second / columns - first / columns, right = second % columns - first % columns;
+    ++counts[static_cast<std::size_t>(first * kPlaces + down * kWide + right + kFar)];
   };
   for (int y = 0; y < labels.rows; ++y) {
     const bool last = y + 1 == labels.rows;
@@ -193,19 +196,20 @@ std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels) {
       look(label[x], label_below[x], z[x], z_below[x]);
     }
   }
-  std::sort(touching.begin(), touching.end());
   std::vector<Contact> result;
-  for (const auto& [a, b] : touching) {
-    if (result.empty() || result.back().a != a || result.back().b != b) result.push_back({a, b, 0});
-    ++result.back().boundary;
-  }
+  for (int a = 0; a < static_cast<int>(patches); ++a)
+    for (int place = 0; place < kPlaces; ++place)
+      if (const int count = counts[static_cast<std::size_t>(a * kPlaces + place)]; count > 0)
+        result.push_back({a, a + place / kWide * columns + place % kWide - kFar, count});
   return result;
 }
 
+}  // namespace
+
 SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& config) {
-  SurfacePatches patches{cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)),
-                         seeds(view, config.segment_px)};
-  auto& [labels, segments] = patches;
+  SurfacePatches patches{
+      cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)), seeds(view, config.segment_px), {}};
+  auto& [labels, segments, contacts] = patches;
   Workspace work(view.depth.cols, segments.size(), config.segment_px);
   std::vector<Sum>& sums = work.sums;
   for (int round = 0; round < kRounds; ++round) {
@@ -228,10 +232,11 @@ SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& c
       segments[i].depth = static_cast<float>(sums[i].z / n);
     }
   }
+  contacts = find_contacts(view, labels, segments.size(), work.columns);
   return patches;
 }
 
-void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat& labels,
+void judge_segments(const cv::Mat& log_odds, const cv::Mat& labels, const std::vector<Contact>& contacts,
                     const DepthMotionConfig& config, std::vector<Segment>& segments) {
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
@@ -245,7 +250,7 @@ void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat
     segment.log_odds = segment.evidence;
   }
 
-  const Neighbours neighbours(contacts(view, labels), segments.size(), config);
+  const Neighbours neighbours(contacts, segments.size(), config);
   for (int i = 0; i < kRelaxations; ++i)
     for (std::size_t s = 0; s < segments.size(); ++s) {
       float sum = segments[s].evidence, weights = 1.0F;

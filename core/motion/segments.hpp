@@ -8,19 +8,9 @@ namespace stillpoint {
 /// et al. 2012, with depth for colour).
 [[nodiscard]] SurfacePatches segment_surfaces(const RgbdView& view, const DepthMotionConfig& config);
 
-/// Two patches that touch on one surface, and how many pixels of boundary they share: the weight of their
-/// agreement.
-struct Contact {
-  int a = 0, b = 0;
-  int boundary = 0;
-};
-
-/// All of them, by a, then b.
-[[nodiscard]] std::vector<Contact> contacts(const RgbdView& view, const cv::Mat& labels);
-
 /// Averages each pixel's log-odds over its patch, lets patches that continue into each other on one surface
 /// agree, and decides which move.
-void judge_segments(const RgbdView& view, const cv::Mat& log_odds, const cv::Mat& labels,
+void judge_segments(const cv::Mat& log_odds, const cv::Mat& labels, const std::vector<Contact>& contacts,
                     const DepthMotionConfig& config, std::vector<Segment>& segments);
 
 }  // namespace stillpoint

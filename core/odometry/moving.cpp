@@ -28,9 +28,10 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
   cv::Mat mask;
   if (memory_ && !past_views_.empty() && remembers_motion(*memory_, config_.depth_motion)) {
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
-    const cv::Mat prior = carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion);
-    cv::resize(prior > config_.depth_motion.moving_log_odds, mask, frame.gray.size(), 0, 0,
-               cv::INTER_NEAREST);
+    const cv::Mat prior =
+        carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion).log_odds;
+    mask = enlarged(prior > config_.depth_motion.moving_log_odds, config_.depth_motion.factor,
+                    frame.gray.size());
   }
   record.ms.motion += watch.milliseconds();
   return mask;
@@ -81,8 +82,7 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
   std::vector<ReferenceView> references;
   const PastView* taken = nullptr;
   constexpr int kOld = 8;  // frames: from here on slow movers have gone somewhere
-  for (const int gap : {config_.depth_motion.near_reference, config_.depth_motion.far_reference,
-                        config_.depth_motion.slow_reference}) {
+  for (const int gap : reference_gaps(config_.depth_motion, frame_index)) {
     // The youngest that is old enough, else the oldest there is.
     const auto it = std::find_if(past_views_.rbegin(), past_views_.rend(),
                                  [&](const PastView& past) { return past.frame_index <= frame_index - gap; });
@@ -90,8 +90,9 @@ std::vector<ReferenceView> Odometry::reference_views(int frame_index, const Pose
     const PastView& past = it != past_views_.rend() ? *it : past_views_.front();
     if (&past == taken) continue;
     taken = &past;
-    references.push_back({past.view, past.camera_from_world * camera_from_world.inverse(),
-                          frame_index - past.frame_index >= kOld});
+    const int back = frame_index - past.frame_index;
+    references.push_back(
+        {past.view, past.camera_from_world * camera_from_world.inverse(), back >= kOld, back});
   }
   return references;
 }

@@ -57,7 +57,7 @@ const std::vector<Ingredient>& ingredients() {
       {"inherit",
        "what comes into view taking over what its surface is known to do",
        {"depth_motion.inherit=0"}},
-      {"slow_reference", "the farthest of the three references", {"depth_motion.slow_reference=10"}},
+      {"slow_reference", "the older of the two old references", {"depth_motion.slow_reference=10"}},
       {"neighbours", "patches of one surface agreeing", {"depth_motion.smoothing=0"}},
       {"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=0"}},
       {"held_start", "a second pose held to the first one's consensus", {"tracking.start_looseness=0"}},

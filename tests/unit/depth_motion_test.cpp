@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/carrier.hpp"
@@ -314,11 +315,12 @@ TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
 struct Entered {
   RgbdView view = Scene{0.0, 0.5}.view();
   SurfacePatches patches = segment_surfaces(view, {});
-  Pose previous_from_current = Pose::Identity();
   cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1);
+  cv::Mat entered = cv::Mat::zeros(view.depth.size(), CV_8UC1);
   cv::Mat fresh_board = cv::Mat::zeros(view.depth.size(), CV_8UC1), fresh_wall = fresh_board.clone();
 
   explicit Entered(double step_m) {
+    Pose previous_from_current = Pose::Identity();
     previous_from_current.translation().x() = step_m;
     Carrier carried(view.camera, previous_from_current);
     for (int y = 0; y < prior.rows; ++y) {
@@ -326,16 +328,16 @@ struct Entered {
       for (int x = 0; x < prior.cols; ++x) {
         if (view.depth.at<float>(y, x) <= 0) continue;
         const bool on_board = view.depth.at<float>(y, x) < 1.2F;
-        if (carried.inside(x))
+        if (carried.inside(x)) {
           prior.at<float>(y, x) = on_board ? 5.0F : -2.0F;
-        else
+        } else {
           (on_board ? fresh_board : fresh_wall).at<uchar>(y, x) = 255;
+          entered.at<uchar>(y, x) = 255;
+        }
       }
     }
   }
-  void inherit() {
-    inherit_memory(view, patches.labels, patches.segments.size(), previous_from_current, prior);
-  }
+  void inherit() { inherit_memory(entered, patches, prior); }
 };
 
 TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
@@ -374,7 +376,7 @@ TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
 
 TEST(Segments, NeverCrossADepthEdge) {
   const RgbdView view = Scene{}.view();
-  const auto [labels, segments] = segment_surfaces(view, {});
+  const auto [labels, segments, contacts] = segment_surfaces(view, {});
   std::vector<std::pair<float, float>> range(segments.size(), {1e9F, 0.0F});
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
@@ -387,6 +389,39 @@ TEST(Segments, NeverCrossADepthEdge) {
     if (r.second > 0) {
       EXPECT_LT(r.second - r.first, 0.5F);
     }
+}
+
+TEST(Segments, ContactsAreAllPairsThatTouchOnASurface) {
+  const RgbdView view = Scene{}.view();
+  const auto [labels, segments, contacts] = segment_surfaces(view, {});
+  std::map<std::pair<int, int>, int> expected;
+  const auto look = [&, &image = labels](const cv::Point& p, const cv::Point& q) {
+    const int a = image.at<int>(p), b = image.at<int>(q);
+    const bool touch =
+        a >= 0 && b >= 0 && a != b && same_surface(view.depth.at<float>(p), view.depth.at<float>(q));
+    if (touch) ++expected[std::minmax(a, b)];
+  };
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      if (x + 1 < labels.cols) look({x, y}, {x + 1, y});
+      if (y + 1 < labels.rows) look({x, y}, {x, y + 1});
+    }
+  ASSERT_GT(expected.size(), segments.size());
+  ASSERT_EQ(contacts.size(), expected.size());
+  auto contact = contacts.begin();
+  for (const auto& [pair, boundary] : expected) {
+    EXPECT_EQ(std::make_pair(contact->a, contact->b), pair);
+    EXPECT_EQ(contact->boundary, boundary);
+    ++contact;
+  }
+}
+
+TEST(RgbdView, ASmallMaskIsEnlargedByBlocks) {
+  const cv::Mat small = (cv::Mat_<uchar>(2, 3) << 255, 0, 255, 0, 255, 0);
+  const cv::Mat full = enlarged(small, 4, {14, 9});  // 2 columns and a row that no block covers
+  for (int y = 0; y < full.rows; ++y)
+    for (int x = 0; x < full.cols; ++x)
+      EXPECT_EQ(full.at<uchar>(y, x), small.at<uchar>(std::min(y / 4, 1), std::min(x / 4, 2)));
 }
 
 }  // namespace

@@ -39,9 +39,7 @@ class DepthMotionPanel final : public FramePanel {
     const int references = static_cast<int>(trace.references.size());
     reference_ = std::clamp(reference_, 0, references - 1);
     if (references > 1) {
-      std::vector<std::string> names{"Near reference", "Far reference", "Farthest reference"};
-      names.resize(static_cast<std::size_t>(std::min(references, 3)));
-      controls.choice("reference", names, reference_);
+      controls.choice("reference", {"Near reference", "Old reference"}, reference_);
     }
 
     const Footer footer = footer_of(frame, session, trace);
@@ -225,10 +223,11 @@ class DepthMotionPanel final : public FramePanel {
     const auto moving = std::count_if(trace.segments.begin(), trace.segments.end(),
                                       [](const Segment& segment) { return segment.moving; });
     const ReferenceEvidence& reference = trace.references[static_cast<std::size_t>(reference_)];
-    footer.caption =
-        fmt::format("{}: brightness noise {:.1f} grey levels; {} of {} patches move, {:.1f} % of the pixels.",
-                    frame_text(session, session.current->frame), reference.intensity_sigma, moving,
-                    trace.segments.size(), 100.0 * trace.mask_share);
+    footer.caption = fmt::format(
+        "{}, against {} frames back: brightness noise {:.1f} grey levels; {} of {} patches move, "
+        "{:.1f} % of the pixels.",
+        frame_text(session, session.current->frame), reference.reference.frames_back,
+        reference.intensity_sigma, moving, trace.segments.size(), 100.0 * trace.mask_share);
     if (!trace.note.empty()) footer.caption += " " + trace.note;
     return footer;
   }

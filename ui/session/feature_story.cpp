@@ -9,6 +9,7 @@
 #include "core/motion/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "ui/session/feature_trail.hpp"
+#include "ui/session/reference_word.hpp"
 
 namespace stillpoint {
 namespace {
@@ -108,7 +109,7 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
   }
   for (std::size_t i = 0; i < trace.references.size(); ++i) {
     const ReferenceEvidence& reference = trace.references[i];
-    const char* which = i == 0 ? "near" : i == 1 ? "far" : "farthest";
+    const char* which = reference_word(i);
     if (const auto residual = value_at<float>(reference.depth_residual, small))
       story.margins.push_back(
           {fmt::format("Depth, {} reference", which), *residual, limits.depth_sigmas, "σ"});

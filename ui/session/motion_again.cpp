@@ -11,8 +11,7 @@ int RunTrack::memory_before(int index) const {
 
 void RunTrack::add_references(int index, int memory, std::set<int>& frames) const {
   const auto has_view = [this](int i) { return has_view_[static_cast<std::size_t>(i)] != 0; };
-  const DepthMotionConfig& motion = config().depth_motion;
-  for (const int gap : {motion.near_reference, motion.far_reference, motion.slow_reference}) {
+  for (const int gap : reference_gaps(config().depth_motion, index)) {
     // The youngest that is old enough, else the oldest there is: as Odometry chooses.
     int chosen = index - gap;
     while (chosen >= 0 && !has_view(chosen)) --chosen;
@@ -27,7 +26,7 @@ std::optional<std::set<int>> RunTrack::frames_to_repeat(int index) const {
   if (config().run.method != "stillpoint" || !record.motion_pose || index >= seen_) return std::nullopt;
   const int memory = memory_before(index);
   // Of a branch's first frames, what came before it was made otherwise.
-  if (begins_at_ > 0 && memory - frames_looked_back(config()) < begins_at_) return std::nullopt;
+  if (begins_at_ > 0 && memory - frames_compared_back(config()) < begins_at_) return std::nullopt;
   std::set<int> frames;
   if (memory != kNone) frames.insert(memory);
   for (int i = memory + 1; i <= index; ++i) {

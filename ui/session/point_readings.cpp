@@ -6,6 +6,7 @@
 
 #include "core/motion/homography.hpp"
 #include "ui/session/feature_story.hpp"
+#include "ui/session/reference_word.hpp"
 
 namespace stillpoint {
 namespace {
@@ -161,8 +162,8 @@ void read_patch(const DepthMotionTrace& trace, const DepthMotionConfig& config, 
 }
 
 /// How far the point's patch lies from where the camera's motion would have it.
-Reading read_shift(const DepthMotionTrace& trace, const ReferenceEvidence& reference, const char* which,
-                   const Point& small) {
+Reading read_shift(const DepthMotionTrace& trace, const ReferenceEvidence& reference,
+                   const std::string& which, const Point& small) {
   std::string name = fmt::format("Patch's shift{}", which);
   const auto label = at<int>(trace.labels, small);
   if (!label || *label < 0 || static_cast<std::size_t>(*label) >= reference.patches.size())
@@ -181,10 +182,7 @@ ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionC
   auto& readings = group.readings;
   for (std::size_t i = 0; i < trace.references.size(); ++i) {
     const ReferenceEvidence& reference = trace.references[i];
-    const char* which = trace.references.size() == 1 ? ""
-                        : i == 0                     ? ", near"
-                        : i == 1                     ? ", far"
-                                                     : ", farthest";
+    const std::string which = trace.references.size() == 1 ? "" : fmt::format(", {}", reference_word(i));
     readings.push_back(signed_value(fmt::format("Depth residual{}", which), reference.depth_residual, small,
                                     "σ", config.depth_sigmas));
     readings.push_back(signed_value(fmt::format("Brightness residual{}", which), reference.intensity_residual,

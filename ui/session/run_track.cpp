@@ -8,7 +8,7 @@
 
 namespace stillpoint {
 
-int frames_looked_back(const Config& config) {
+int frames_compared_back(const Config& config) {
   if (config.run.method == "none") return 0;
   const int directly = config.direct.below_inliers > 0 ? config.direct.max_age : 0;
   if (config.run.method == "oracle") return directly;
@@ -110,7 +110,7 @@ std::set<int> RunTrack::frames_to_restore(int index) const {
   std::set<int> frames;
   if (after == checkpoints_.begin()) return frames;
   const int first = std::prev(after)->first;
-  for (int i = std::max(0, first - frames_looked_back(config())); i < first; ++i) frames.insert(i);
+  for (int i = std::max(0, first - frames_compared_back(config())); i < first; ++i) frames.insert(i);
   return frames;
 }
 
@@ -152,8 +152,7 @@ RunView RunTrack::view() const {
   view.name = config().run.method;
   view.records = records_;
   view.scores = scores_;
-  view.trajectory =
-      is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);
+  view.trajectory = is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

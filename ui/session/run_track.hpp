@@ -17,8 +17,8 @@
 
 namespace stillpoint {
 
-/// How many frames back a method looks.
-[[nodiscard]] int frames_looked_back(const Config& config);
+/// How many frames back the frames lie, at most, that a method compares one with.
+[[nodiscard]] int frames_compared_back(const Config& config);
 
 /// How much a RunTrack keeps.
 struct RunTrackOptions {

@@ -183,10 +183,7 @@ void add_patch_figures(const ReferenceEvidence& evidence, StageInfo& stage) {
 
 void add_reference_stages(const ReferenceEvidence& evidence, int index, std::size_t count,
                           const DepthMotionConfig& config, std::vector<StageInfo>& stages) {
-  const std::string group = count == 1   ? "Reference"
-                            : index == 0 ? "Near reference"
-                            : index == 1 ? "Far reference"
-                                         : "Farthest reference";
+  const std::string group = count == 1 ? "Reference" : index == 0 ? "Near reference" : "Old reference";
   const auto add = [&](StageKind kind, const char* name, const char* what) -> StageInfo& {
     StageInfo& stage = add_stage(stages, kind, group, name, what);
     stage.reference = index;
@@ -198,6 +195,7 @@ void add_reference_stages(const ReferenceEvidence& evidence, int index, std::siz
                         "Carries every pixel with depth into an earlier frame by the camera's own motion.");
   warp.ms = evidence.ms;
   warp.timed = true;
+  add_figure(warp, "Frames back", evidence.reference.frames_back);
   add_figure(warp, "Camera moved", 1000.0 * motion.translation().norm(), "mm", 1);
   add_figure(warp, "Camera turned", rotation_angle(motion.linear()) * 180.0 / CV_PI, "°", 2);
   add_figure(warp, "Comparable", share_known(evidence.depth_residual), "%", 1);
