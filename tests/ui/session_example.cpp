@@ -216,6 +216,7 @@ DepthMotionTrace handmade_depth_motion() {
     evidence.intensity_residual = disc * 6.0;
     evidence.log_odds = disc * 0.8;
     evidence.intensity_sigma = 4.0;
+    evidence.reference.frames_back = i == 0 ? 2 : 10;
     trace.references.push_back(evidence);
   }
   trace.prior = disc * 0.5;
