@@ -244,34 +244,34 @@ void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& r
   }
 }
 
-ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional<double> timestamp) {
-  if (image.empty() || (image.type() != CV_8UC3 && image.type() != CV_8UC1))
-    throw InputError("colour motion needs an 8-bit image of one or three channels");
-  ColourMotionTrace trace;
-  if (image.size() != size_) {
-    tracks_.clear();
-    rates_.clear();
-    timestamp_.reset();
-    size_ = image.size();
-    small_ = camera_.scaled_to(size_.width / kSmallerBy, size_.height / kSmallerBy);
-  }
-  if (std::min(size_.width, size_.height) < kMinSide) {
-    trace.note = fmt::format("frames of {}x{} are too small to follow points in", size_.width, size_.height);
-    return trace;
-  }
+void ColourMotionDetector::begin_anew(const cv::Size& size) {
+  tracks_.clear();
+  rates_.clear();
+  timestamp_.reset();
+  size_ = size;
+  small_ = camera_.scaled_to(small_size().width, small_size().height);
+}
+
+cv::Size ColourMotionDetector::small_size() const { return size_ / kSmallerBy; }
+
+void ColourMotionDetector::follow_points(const cv::Mat& image, std::optional<double> timestamp,
+                                         ColourMotionTimes& ms) {
   Stopwatch watch;
   cv::Mat gray = image, small;
   if (image.channels() == 3) cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-  cv::resize(gray, small, {size_.width / kSmallerBy, size_.height / kSmallerBy}, 0, 0, cv::INTER_AREA);
+  cv::resize(gray, small, small_size(), 0, 0, cv::INTER_AREA);
   tracks_.advance(small, config_);
-  trace.ms.points = watch.lap();
-
+  ms.points = watch.lap();
   if (small_.readout_s != 0.0 && timestamp && timestamp_ && *timestamp > *timestamp_)
     measure_turn(*timestamp - *timestamp_);
   else
     rates_.clear();
   timestamp_ = timestamp;
+}
 
+std::vector<ColourReference> ColourMotionDetector::compare() {
+  std::vector<ColourReference> references;
+  Stopwatch watch;
   int last_gap = 0;
   for (const int wanted : {config_.near_reference, config_.far_reference / 2, config_.far_reference}) {
     const int gap = std::min(wanted, tracks_.frames() - 1);
@@ -281,14 +281,16 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional
     reference.gap = gap;
     judge(reference);
     reference.ms = watch.lap();
-    if (!reference.residuals.empty()) trace.references.push_back(std::move(reference));
+    if (!reference.residuals.empty()) references.push_back(std::move(reference));
   }
-  gather_evidence(trace.references);
-  const std::vector<float> shared = share_evidence(tracks_.all(), small.size(), config_);
-  trace.ms.evidence = watch.lap();
+  return references;
+}
 
+void ColourMotionDetector::paint_mask(const cv::Mat& image, const std::vector<float>& shared,
+                                      ColourMotionTrace& trace) const {
+  Stopwatch watch;
   cv::Mat smaller;
-  cv::resize(image, smaller, small.size() / 2, 0, 0, cv::INTER_AREA);
+  cv::resize(image, smaller, small_size() / 2, 0, 0, cv::INTER_AREA);
   cv::GaussianBlur(smaller, smaller, {3, 3}, 0);
   const SpreadEvidence spread = spread_evidence(smaller, tracks_.all(), shared, config_);
   trace.evidence = spread.evidence.clone();
@@ -298,15 +300,32 @@ ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional
       moving_regions(moving_pixels(smaller, spread, config_), tracks_.all(), shared, config_);
   cv::resize(small_mask, trace.mask, size_, 0, 0, cv::INTER_LINEAR);
   trace.mask = trace.mask > 127;
-
-  for (std::size_t i = 0; i < shared.size(); ++i) {
-    const PointTrack& track = tracks_.all()[i];
-    trace.points.push_back({track.path.back() * kSmallerBy, track.age, track.evidence, shared[i]});
-  }
   LabelledRegions found = find_regions(trace.mask);
   trace.regions = std::move(found.regions);
   trace.mask_share = static_cast<double>(found.area) / static_cast<double>(trace.mask.total());
   trace.ms.mask = watch.lap();
+}
+
+ColourMotionTrace ColourMotionDetector::next(const cv::Mat& image, std::optional<double> timestamp) {
+  if (image.empty() || (image.type() != CV_8UC3 && image.type() != CV_8UC1))
+    throw InputError("colour motion needs an 8-bit image of one or three channels");
+  ColourMotionTrace trace;
+  if (image.size() != size_) begin_anew(image.size());
+  if (std::min(size_.width, size_.height) < kMinSide) {
+    trace.note = fmt::format("frames of {}x{} are too small to follow points in", size_.width, size_.height);
+    return trace;
+  }
+  follow_points(image, timestamp, trace.ms);
+  trace.references = compare();
+  Stopwatch watch;
+  gather_evidence(trace.references);
+  const std::vector<float> shared = share_evidence(tracks_.all(), small_size(), config_);
+  trace.ms.evidence = watch.lap();
+  paint_mask(image, shared, trace);
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    const PointTrack& track = tracks_.all()[i];
+    trace.points.push_back({track.path.back() * kSmallerBy, track.age, track.evidence, shared[i]});
+  }
   if (trace.references.empty())
     trace.note = tracks_.frames() < 2 ? "the first frame has none before it to be compared with"
                                       : "too few points could be followed";

@@ -74,6 +74,11 @@ class ColourMotionDetector {
   [[nodiscard]] ColourMotionTrace next(const cv::Mat& image, std::optional<double> timestamp = std::nullopt);
 
  private:
+  [[nodiscard]] cv::Size small_size() const;
+  void begin_anew(const cv::Size& size);
+  void follow_points(const cv::Mat& image, std::optional<double> timestamp, ColourMotionTimes& ms);
+  [[nodiscard]] std::vector<ColourReference> compare();
+  void paint_mask(const cv::Mat& image, const std::vector<float>& shared, ColourMotionTrace& trace) const;
   [[nodiscard]] std::vector<BearingPair> pairs_with(int gap, bool level, std::vector<int>& points) const;
   void measure_turn(double seconds);
   void judge(ColourReference& reference);

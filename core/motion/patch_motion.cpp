@@ -246,11 +246,7 @@ double log_odds_of(const Measured& m, const Eigen::Vector3d& r, const Slack& sla
   const Eigen::Vector2d shift = r.head<2>();
   const double by_shift = 0.5 * (shift.dot(still.inverse() * shift) - shift.dot(moved.inverse() * shift)) -
                           0.5 * std::log(moved.determinant() / still.determinant());
-  const double still_z = m.step_variance + slack.step * slack.step,
-               moved_z = still_z + kTypicalStep * kTypicalStep;
-  const double by_step =
-      0.5 * r.z() * r.z() * (1.0 / still_z - 1.0 / moved_z) - 0.5 * std::log(moved_z / still_z);
-  return by_shift + by_step;
+  return by_shift + step_log_odds(r.z(), m.step_variance + slack.step * slack.step, kTypicalStep);
 }
 
 /// Returns what registration leaves.

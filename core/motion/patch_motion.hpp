@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/motion/depth_motion.hpp"
 
 namespace stillpoint {
@@ -10,6 +12,14 @@ struct PatchMotions {
   Pose reference_from_current = Pose::Identity();  ///< as most patches have it
   int measured = 0;                                ///< patches that said something
 };
+
+/// log p(step | moves) - log p(step | stands still): Gaussians about 0, the one wider by what movers
+/// typically go.
+/// @param step m; @param still m², variance of what stands still; @param typical m
+[[nodiscard]] inline double step_log_odds(double step, double still, double typical) {
+  const double moved = still + typical * typical;
+  return 0.5 * step * step * (1.0 / still - 1.0 / moved) - 0.5 * std::log(moved / still);
+}
 
 /// Finds slow movers. Every patch of surface is laid onto the reference by the camera's motion and shifted to
 /// where brightness fits best (one Lucas-Kanade step, centred, so that shading says nothing); the camera's

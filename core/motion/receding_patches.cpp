@@ -7,6 +7,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "core/motion/carrier.hpp"
+#include "core/motion/patch_motion.hpp"
 
 namespace stillpoint {
 namespace {
@@ -248,12 +249,10 @@ void measure_receding(const RgbdView& current, const RgbdView& reference, const 
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (chosen[i] == 0 || !looks_the_same(seen[i], reference, rimmed)) continue;
     const double sigma = depth_sigma(segments[i].depth), step = steps[i].mean();
-    const double still = 9.0 * sigma * sigma / steps[i].n + slack * slack,
-                 moved = still + kTypicalStep * kTypicalStep;
+    const double still = 9.0 * sigma * sigma / steps[i].n + slack * slack;
     patches[i] = {{0.0F, 0.0F},
                   static_cast<float>(step),
-                  static_cast<float>(std::min(kSurest, 0.5 * step * step * (1.0 / still - 1.0 / moved) -
-                                                           0.5 * std::log(moved / still)))};
+                  static_cast<float>(std::min(kSurest, step_log_odds(step, still, kTypicalStep)))};
   }
 }
 

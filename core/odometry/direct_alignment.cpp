@@ -149,7 +149,6 @@ DirectAlignment align_directly(const DirectReference& reference, const DirectTar
   record.seen = std::make_shared<const std::vector<DirectPatch>>(finest.seen(last));
   record.believed = record.patches >= direct.min_patches && record.correlation >= direct.min_correlation &&
                     record.agreement >= direct.min_agreement && result.information.allFinite();
-  result.believed = record.believed;
   return result;
 }
 

@@ -19,14 +19,13 @@ struct DirectTarget {
 };
 
 struct DirectAlignment {
-  bool believed = false;  ///< the checks are passed
   Pose target_from_reference = Pose::Identity();
   /// JᵀWJ over the squared noise, of a perturbation from the left, translation first; a patch's pixels, which
   /// tell nearly the same, weighted by direct.pixel_share.
   Matrix6d information = Matrix6d::Zero();
   double gain = 1.0, bias = 0.0;  ///< of the target's grey levels against the reference's
   double noise = 0.0;             ///< grey levels, standard deviation of residuals at the finest level
-  DirectRecord record;            ///< without reference_frame and share
+  DirectRecord record;            ///< without reference_frame and share; says whether the checks are passed
 };
 
 /// Sparse direct alignment: the pose under which small patches about places with known depth look alike in

@@ -50,15 +50,16 @@ void Odometry::remember_reference(const Frame& frame, const FrameResult& result)
   last_reference_ = std::move(reference);
 }
 
-std::optional<DirectAlignment> Odometry::align(const Frame& frame, const Current& current,
-                                               FrameRecord& record) const {
+std::optional<Odometry::DirectPose> Odometry::align(const Frame& frame, const Current& current,
+                                                    FrameRecord& record) const {
   const Stopwatch watch;
-  std::optional<DirectAlignment> result;
+  std::optional<DirectPose> result;
+  int tried = kNone;
   const cv::Mat moving = small_mask(current.mask);
   const Pose last_from_world = last_camera_from_world();
   for (const auto* reference : {&sharp_reference_, &last_reference_}) {
     if (!*reference || frame.index - (*reference)->frame_index > config_.direct.max_age) continue;
-    if (result && (*reference)->frame_index == record.direct.reference_frame) continue;
+    if ((*reference)->frame_index == tried) continue;
     const Pose world_from_reference =
         ((*reference)->camera_from_keyframe * map_.pose_of((*reference)->reference_keyframe)).inverse();
     DirectTarget target{frame.gray, frame.depth, moving, {}};
@@ -67,22 +68,20 @@ std::optional<DirectAlignment> Odometry::align(const Frame& frame, const Current
         return se3_log(target_from_reference * world_from_reference.inverse() * last_from_world.inverse()) /
                elapsed();
       };
-    DirectAlignment aligned =
+    const DirectAlignment aligned =
         align_directly(**reference, target,
                        {current.camera_from_world * world_from_reference,
                         current.start * world_from_reference, last_from_world * world_from_reference},
                        camera_, config_);
     record.direct = aligned.record;
-    record.direct.reference_frame = (*reference)->frame_index;
-    // From here on it is where the camera stands in the world.
-    aligned.target_from_reference = aligned.target_from_reference * world_from_reference.inverse();
-    result = std::move(aligned);
-    if (result->believed) break;
+    record.direct.reference_frame = tried = (*reference)->frame_index;
+    if (!aligned.record.believed) continue;
+    result = {aligned.target_from_reference * world_from_reference.inverse(), aligned.information};
+    break;
   }
   const double took = watch.milliseconds();
   record.ms.direct += took;
   record.ms.pose += took;
-  if (!result || !result->believed) return std::nullopt;
   return result;
 }
 
@@ -117,7 +116,7 @@ double Odometry::noise_of_corners(const Current& current, const Pose& camera_fro
 bool Odometry::begin_directly(const Frame& frame, Current& current, FrameRecord& record) const {
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
-  current.camera_from_world = aligned->target_from_reference;
+  current.camera_from_world = aligned->camera_from_world;
   current.agreed = false;
   return true;
 }
@@ -148,7 +147,7 @@ bool Odometry::refine_directly(const Frame& frame, Current& current, PoseRefinem
     return false;
   const auto aligned = align(frame, current, record);
   if (!aligned) return false;
-  const Pose& directly = aligned->target_from_reference;
+  const Pose& directly = aligned->camera_from_world;
   const int needed = inliers_needed();
   if (refined.inliers < needed) {
     // Searched from where patches say the camera stands, corners may be found after all.

@@ -41,7 +41,10 @@ struct FeatureRecord {
   float trust = 1.0F;  ///< 0 to 1, of standing still: its weight in the pose
 };
 
-/// How many inliers count less than half in the pose.
+/// A feature trusted less than this weighs little: it is told where its weight is told.
+inline constexpr float kLittleTrust = 0.5F;
+
+/// How many inliers weigh little in the pose.
 [[nodiscard]] int weighing_little(const std::vector<FeatureRecord>& features);
 
 /// How the pose in a record was first come by.

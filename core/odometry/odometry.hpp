@@ -114,6 +114,11 @@ class Odometry {
     std::shared_ptr<const RgbdView> view;
     Pose camera_from_world = Pose::Identity();
   };
+  /// Where patches say the camera stands, and how well they know (DirectAlignment::information).
+  struct DirectPose {
+    Pose camera_from_world = Pose::Identity();
+    Matrix6d information = Matrix6d::Zero();
+  };
   struct PendingBundle {
     std::shared_future<BundleSolution> solution;
     int keyframe = kNone;
@@ -149,8 +154,8 @@ class Odometry {
   void count_sightings(const Current& current);
   [[nodiscard]] bool aligns_directly() const;
   [[nodiscard]] bool starves(int inliers) const;
-  [[nodiscard]] std::optional<DirectAlignment> align(const Frame& frame, const Current& current,
-                                                     FrameRecord& record) const;
+  [[nodiscard]] std::optional<DirectPose> align(const Frame& frame, const Current& current,
+                                                FrameRecord& record) const;
   [[nodiscard]] bool begins_starved(const Current& current);
   [[nodiscard]] double noise_of_corners(const Current& current, const Pose& camera_from_world) const;
   [[nodiscard]] bool begin_directly(const Frame& frame, Current& current, FrameRecord& record) const;

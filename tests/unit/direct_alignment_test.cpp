@@ -50,7 +50,7 @@ TEST(DirectAlignment, IsExactToAFractionOfAPixel) {
   const FramePair pair("room", 4, 10);
   ASSERT_GT(pair.error_px(Pose::Identity()), 10.0);  // there is something to find
   const DirectAlignment aligned = pair.align();
-  EXPECT_TRUE(aligned.believed);
+  EXPECT_TRUE(aligned.record.believed);
   EXPECT_LT(pair.error_px(aligned.target_from_reference), 0.5);
   EXPECT_GT(aligned.record.patches, 300);
   EXPECT_GT(aligned.record.correlation, 0.9);
@@ -62,7 +62,7 @@ TEST(DirectAlignment, FindsGainAndBiasOfBrightness) {
   FramePair pair("room", 4, 6);
   pair.target.gray.convertTo(pair.target.gray, CV_8U, 0.8, 12.0);
   const DirectAlignment aligned = pair.align();
-  EXPECT_TRUE(aligned.believed);
+  EXPECT_TRUE(aligned.record.believed);
   EXPECT_NEAR(aligned.gain, 0.8, 0.03);
   EXPECT_NEAR(aligned.bias, 12.0, 4.0);
   EXPECT_LT(pair.error_px(aligned.target_from_reference), 0.5);
@@ -75,7 +75,7 @@ TEST(DirectAlignment, HoldsWhereAJerkBlursTheFrame) {
   kernel.row(20).setTo(1.0 / 41.0);
   cv::filter2D(blurred.target.gray, blurred.target.gray, -1, kernel);
   const DirectAlignment aligned = blurred.align();
-  EXPECT_TRUE(aligned.believed);
+  EXPECT_TRUE(aligned.record.believed);
   EXPECT_LT(blurred.error_px(aligned.target_from_reference), 2.0);
 }
 
@@ -93,7 +93,7 @@ TEST(DirectAlignment, FindsATurnThatNoPredictionKnewOf) {
   pair.truth.prerotate(turn);
   ASSERT_GT(pair.error_px(Pose::Identity()), 45.0);
   const DirectAlignment aligned = pair.align();
-  EXPECT_TRUE(aligned.believed);
+  EXPECT_TRUE(aligned.record.believed);
   EXPECT_LT(pair.error_px(aligned.target_from_reference), 1.0);
 }
 
@@ -109,7 +109,7 @@ TEST(DirectAlignment, LeavesOutWhatMovesInEitherFrame) {
   mask(now).setTo(255);
   pair.target.moving = small_mask(mask);
   const DirectAlignment aligned = pair.align();
-  EXPECT_TRUE(aligned.believed);
+  EXPECT_TRUE(aligned.record.believed);
   for (const DirectPatch& patch : *aligned.record.seen)
     EXPECT_FALSE(cv::Rect2f(now).contains(patch.pixel)) << patch.pixel;
   // What the masks hide has no say: another picture there changes nothing.
@@ -125,20 +125,20 @@ TEST(DirectAlignment, DoesNotBelieveWhatIsNotAlike) {
   FramePair pair("room", 4, 6);
   cv::flip(pair.target.gray, pair.target.gray, 0);
   cv::flip(pair.target.depth, pair.target.depth, 0);
-  EXPECT_FALSE(pair.align().believed);
+  EXPECT_FALSE(pair.align().record.believed);
   pair.target.gray.setTo(90);
-  EXPECT_FALSE(pair.align().believed);
+  EXPECT_FALSE(pair.align().record.believed);
   pair.reference.gray.setTo(90);  // nothing to lay anywhere
   const DirectAlignment aligned = pair.align();
-  EXPECT_FALSE(aligned.believed);
+  EXPECT_FALSE(aligned.record.believed);
   EXPECT_EQ(aligned.record.patches, 0);
 }
 
 TEST(DirectAlignment, DoesNotBelieveAViewAtOtherDepths) {
   FramePair pair("room", 4, 6);
-  ASSERT_TRUE(pair.align().believed);
+  ASSERT_TRUE(pair.align().record.believed);
   pair.target.depth *= 1.3;
-  EXPECT_FALSE(pair.align().believed);
+  EXPECT_FALSE(pair.align().record.believed);
 }
 
 TEST(DirectAlignment, ASmallMaskCoversWhateverTheMaskDoes) {

@@ -188,8 +188,6 @@ void tell_colour_motion(const FrameView& view, const Config& config, FeatureStor
                     : "is not held to move: evidence spread here from others, over like colours"));
 }
 
-constexpr float kFullTrust = 0.5F;  // below it a weight is worth telling
-
 std::string verdict_of(const FeatureStory& story, const std::string& method) {
   const FeatureRecord& feature = story.feature;
   switch (feature.fate) {
@@ -202,7 +200,7 @@ std::string verdict_of(const FeatureStory& story, const std::string& method) {
     case FeatureFate::inlier:
       return fmt::format("Kept and used: it agrees with the pose, {:.2f} px off{}.",
                          static_cast<double>(feature.residual_px),
-                         feature.trust < kFullTrust
+                         feature.trust < kLittleTrust
                              ? fmt::format(", and weighs {:.0f} %, for it may move", 100.0 * feature.trust)
                              : "");
     case FeatureFate::outlier:
