@@ -129,9 +129,9 @@ std::vector<Parameter> parameters(Config& c) {
   number("depth_motion.near_reference", &d.near_reference, 1, 30, "frames",
          "how far back the nearer reference lies");
   number("depth_motion.far_reference", &d.far_reference, 1, 100, "frames",
-         "how far back the younger of two old references lies, which take turns");
+         "how far back the far reference lies, of frames with an even index");
   number("depth_motion.slow_reference", &d.slow_reference, 1, 100, "frames",
-         "how far back the older of them lies: for slow movers");
+         "how far back the far reference lies, of frames with an odd index: for slow movers");
   number("depth_motion.depth_sigmas", &d.depth_sigmas, 1, 50, "sigma",
          "depth residual beyond which a pixel counts as moved");
   number("depth_motion.intensity_sigmas", &d.intensity_sigmas, 1, 50, "sigma",

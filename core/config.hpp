@@ -38,8 +38,8 @@ struct DepthMotionConfig {
   int use_depth = 1;          ///< 1: depth residuals are evidence
   int use_brightness = 1;     ///< 1: brightness residuals are evidence
   int near_reference = 2;     ///< frames back to the nearer reference
-  int far_reference = 10;     ///< frames back to an old one …
-  int slow_reference = 24;    ///< … and to another, older one: they take turns
+  int far_reference = 10;     ///< frames back to the far one of frames with an even index …
+  int slow_reference = 24;    ///< … and with an odd one: for slow movers
   double depth_sigmas = 4.0;  ///< depth residual beyond which a pixel counts as moved, standard deviations
   double intensity_sigmas = 4.0;  ///< the same of brightness
   double gradient_share =

@@ -59,7 +59,7 @@ class Carrier {
     const int at = nearest_[static_cast<std::size_t>(x)];
     return {at % width_, at / width_};
   }
-  /// The value an image of the other view's size, in one piece, has there; if it is inside.
+  /// The value the other view's image has there, of the current one's size and in one piece; if it is inside.
   template <typename T>
   [[nodiscard]] const T& at(const T* image, int x) const {
     return image[nearest_[static_cast<std::size_t>(x)]];

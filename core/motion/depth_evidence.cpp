@@ -106,7 +106,7 @@ float misplacement(const RgbdView& current, const ReferenceView& reference, cons
 cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference,
                       const DepthMotionConfig& config, ReferenceEvidence& evidence) {
   const cv::Size size = current.depth.size();
-  evidence.depth_residual = cv::Mat(size, CV_32FC1, cv::Scalar(kUnknown));
+  evidence.depth_residual = cv::Mat(size, CV_32FC1);
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
   cv::Mat brightness(size, CV_32FC1, cv::Scalar(kUnknown));
   Carrier carried(current.camera, reference.reference_from_current);
@@ -159,9 +159,10 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   // Exposure may have changed between the two: the median difference is taken off; what spreads about it is
   // noise.
   std::vector<float> values;
-  values.reserve(brightness.total() / 3 + 1);
+  constexpr std::size_t kEvery = 7;  // pixels: some thousands tell a median to a few hundredths
+  values.reserve(brightness.total() / kEvery + 1);
   const auto* differences = brightness.ptr<float>();
-  for (std::size_t i = 0; i < brightness.total(); i += 3)
+  for (std::size_t i = 0; i < brightness.total(); i += kEvery)
     if (!std::isnan(differences[i])) values.push_back(differences[i]);
   const float shift = median_of(values);
   for (float& value : values) value = std::abs(value - shift);
@@ -170,15 +171,15 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
 
   const auto limit = static_cast<float>(config.intensity_sigmas) * sigma;
   const auto share = static_cast<float>(config.gradient_share);
-  evidence.intensity_residual = cv::Mat(brightness.size(), CV_32FC1, cv::Scalar(kUnknown));
+  evidence.intensity_residual = cv::Mat(brightness.size(), CV_32FC1);
   for (int y = 0; y < brightness.rows; ++y) {
     const auto *difference = brightness.ptr<float>(y), *gradient = current.gradient.ptr<float>(y);
     auto *residuals = evidence.intensity_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y);
     for (int x = 0; x < brightness.cols; ++x) {
-      if (std::isnan(difference[x])) continue;
+      const bool known = !std::isnan(difference[x]);
       const float residual = std::max(0.0F, std::abs(difference[x] - shift) - share * gradient[x]);
-      residuals[x] = residual;
-      if (config.use_brightness == 0) continue;
+      residuals[x] = known ? residual : kUnknown;
+      if (!known || config.use_brightness == 0) continue;
       if (residual > limit)
         log_odds[x] += kOtherBrightness * std::min(2.0F, residual / limit);
       else if (gradient[x] > 3.0F * sigma && residual < sigma)

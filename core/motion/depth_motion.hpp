@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -22,14 +23,19 @@ namespace stillpoint {
 struct ReferenceView {
   std::shared_ptr<const RgbdView> view;
   Pose reference_from_current = Pose::Identity();
-  bool old = false;  ///< far enough back for slow movers to have gone somewhere
-  int frames_back = 0;
+  bool old = false;     ///< far enough back for slow movers to have gone somewhere
+  int frames_back = 0;  ///< for display
 };
 
-/// How many frames back the references of a frame shall lie, at the least: a near one, and one of the two old
-/// ones by turns, as from frame to frame those have hardly anything new to say.
+/// Least gaps, in frames, to the references of the frame with this index: the near one, and a far one. Two
+/// far ones take turns, the older at odd indices: consecutive frames would learn little from both.
 [[nodiscard]] inline std::array<int, 2> reference_gaps(const DepthMotionConfig& config, int frame_index) {
   return {config.near_reference, frame_index % 2 == 0 ? config.far_reference : config.slow_reference};
+}
+
+/// The largest of these gaps at any frame.
+[[nodiscard]] inline int farthest_reference(const DepthMotionConfig& config) {
+  return std::max({config.near_reference, config.far_reference, config.slow_reference});
 }
 
 /// How far a patch of surface lies from where the camera's motion alone would have it.

@@ -64,7 +64,8 @@ void inherit_memory(const cv::Mat& entered, const SurfacePatches& patches, cv::M
     const auto* new_here = entered.ptr<uchar>(y);
     auto* out = prior.ptr<float>(y);
     for (int x = 0; x < labels.cols; ++x)
-      if (new_here[x] != 0) out[x] = std::max(0.0F, value[static_cast<std::size_t>(label[x])]);
+      if (new_here[x] != 0 && label[x] >= 0)
+        out[x] = std::max(0.0F, value[static_cast<std::size_t>(label[x])]);
   }
 }
 

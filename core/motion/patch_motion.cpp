@@ -85,7 +85,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Car
       const float expected = carried.z(x);
       const cv::Vec4f& there = carried.at(seen, x);
       const float step = there[3] - expected;
-      if (std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(expected)) continue;
+      if (there[3] <= 0 || std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(expected)) continue;
       if (label[x] != of) {
         if (of >= 0) run.give_to(sums[static_cast<std::size_t>(of)]);
         of = label[x];

@@ -66,22 +66,24 @@ cv::Point2f place_of(const Seen& p, float share) {
 
 float depth_tolerance(const Seen& p) { return static_cast<float>(kSameDepth) * depth_sigma(p.z); }
 
-/// The reference with a rim about it, without depth: what is looked up within reach of it has its place.
+/// The reference, padded so that every shift of a pixel within reach reads valid memory; the rim has no
+/// depth, so that what lies in it never meets a surface.
 struct Rimmed {
   explicit Rimmed(const RgbdView& view) : size(view.gray.size()) {
     cv::copyMakeBorder(view.gray, gray, kRim, kRim, kRim, kRim, cv::BORDER_REPLICATE);
     cv::copyMakeBorder(view.depth, depth, kRim, kRim, kRim, kRim, cv::BORDER_CONSTANT, cv::Scalar(0));
   }
 
-  [[nodiscard]] bool holds(const cv::Point2f& p) const {
-    return p.x >= 0 && p.y >= 0 && p.x < static_cast<float>(size.width - 1) &&
-           p.y < static_cast<float>(size.height - 1);
+  /// Whether any shift of a pixel at p lies in the reference.
+  [[nodiscard]] bool reaches(const cv::Point2f& p) const {
+    return p.x >= -kSideways && p.y >= -kSideways && p.x < static_cast<float>(size.width + kSideways) &&
+           p.y < static_cast<float>(size.height + kSideways);
   }
 
   static constexpr int kLanes = cv::v_float32x4::nlanes;
   static constexpr int kShifts = 2 * kSideways + 1;                         // to one side and the other
   static constexpr int kPadded = (kShifts + kLanes - 1) / kLanes * kLanes;  // of a row of shifts
-  static constexpr int kRim = kPadded + 1;                                  // px
+  static constexpr int kRim = kPadded + kSideways + 1;                      // px
 
   cv::Size size;  // without the rim
   cv::Mat gray, depth;
@@ -95,13 +97,14 @@ class Shifts {
 
   /// Lays a pixel onto all places about the one given.
   void add(const Seen& p, const cv::Point2f& at, const Rimmed& then) {
-    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+    const int x = cvFloor(at.x), y = cvFloor(at.y);
     const float right = at.x - static_cast<float>(x), down = at.y - static_cast<float>(y);
     const cv::v_float32x4 w00 = cv::v_setall_f32((1 - right) * (1 - down)),
                           w01 = cv::v_setall_f32(right * (1 - down)),
                           w10 = cv::v_setall_f32((1 - right) * down), w11 = cv::v_setall_f32(right * down);
     const cv::v_float32x4 gray = cv::v_setall_f32(p.gray), depth = cv::v_setall_f32(p.z),
-                          tolerance = cv::v_setall_f32(depth_tolerance(p)), one = cv::v_setall_f32(1.0F);
+                          tolerance = cv::v_setall_f32(depth_tolerance(p)), one = cv::v_setall_f32(1.0F),
+                          none = cv::v_setzero_f32();
     constexpr int kFirst = Rimmed::kRim - kSideways;
     const int nearest_x = cvRound(at.x) + kFirst, nearest_y = cvRound(at.y) + kFirst;
     float* sums = sums_.data();
@@ -112,7 +115,8 @@ class Shifts {
       for (int i = 0; i < Rimmed::kPadded; i += Rimmed::kLanes, sums += 3 * Rimmed::kLanes) {
         const cv::v_float32x4 then_gray = w00 * cv::v_load(above + i) + w01 * cv::v_load(above + i + 1) +
                                           w10 * cv::v_load(below + i) + w11 * cv::v_load(below + i + 1);
-        const cv::v_float32x4 meets = cv::v_abs(cv::v_load(z + i) - depth) <= tolerance;
+        const cv::v_float32x4 there = cv::v_load(z + i);
+        const cv::v_float32x4 meets = (there > none) & (cv::v_abs(there - depth) <= tolerance);
         const cv::v_float32x4 b = meets & (gray - then_gray);
         cv::v_store(sums, cv::v_load(sums) + (meets & one));
         cv::v_store(sums + Rimmed::kLanes, cv::v_load(sums + Rimmed::kLanes) + b);
@@ -144,7 +148,7 @@ class Shifts {
   }
 
  private:
-  std::array<float, 3 * kAll> sums_{};  // lanes of counts, of differences, of squares; and again
+  std::array<float, 3 * kAll> sums_{};  // by row of shifts, block of lanes, count/difference/square, lane
 };
 
 /// How well a patch's brightness is met, shifted: what is left of its differences, squared, and their sums.
@@ -160,7 +164,7 @@ Looks compare(const std::vector<Seen>& pixels, const RgbdView& then, float share
     const cv::Point2f at = place_of(p, share) + cv::Point2f(static_cast<float>(du), static_cast<float>(dv));
     if (!(at.x >= 0 && at.y >= 0 && at.x < right && at.y < bottom)) continue;
     const float z = then.depth.ptr<float>(cvRound(at.y))[cvRound(at.x)];
-    if (std::abs(z - p.z) > depth_tolerance(p)) continue;
+    if (z <= 0 || std::abs(z - p.z) > depth_tolerance(p)) continue;
     const double b = p.gray - bilinear(then.gray, at.x, at.y), gx = p.slope_x, gy = p.slope_y;
     s.n += 1, s.b += b, s.bb += b * b, s.gx += gx, s.gy += gy;
     s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
@@ -194,12 +198,13 @@ bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then, const
   for (const float share : {1.0F, 0.0F}) {
     Shifts shifts;
     for (const Seen& p : pixels)
-      if (const cv::Point2f at = place_of(p, share); rimmed.holds(at)) shifts.add(p, at, rimmed);
+      if (const cv::Point2f at = place_of(p, share); rimmed.reaches(at)) shifts.add(p, at, rimmed);
     const Shifts::Best found = shifts.best(pixels.size());
     if (found.left < place.left) place = found, best_share = share;
   }
+  if (place.left == std::numeric_limits<float>::max()) return false;
   const Looks best = compare(pixels, then, best_share, place.du, place.dv);
-  if (best.n < kMinPixels) return false;
+  if (best.n < kMinPixels || 2 * best.n < static_cast<double>(pixels.size())) return false;
   // The rest of a pixel is read off the slopes.
   Eigen::Matrix2d h;
   h << best.gxx - best.gx * best.gx / best.n, best.gxy - best.gx * best.gy / best.n, 0,

@@ -1,7 +1,6 @@
 #include "core/motion/rgbd_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -11,8 +10,8 @@ namespace {
 
 /// The first measurement of a block that has none in its middle.
 float any_depth(const cv::Mat& depth, int x0, int y0, int factor) {
-  for (int y = y0; y < y0 + factor; ++y)
-    for (int x = x0; x < x0 + factor; ++x)
+  for (int y = y0; y < std::min(y0 + factor, depth.rows); ++y)
+    for (int x = x0; x < std::min(x0 + factor, depth.cols); ++x)
       if (const float z = depth.at<float>(y, x); z > 0) return z;
   return 0.0F;
 }
@@ -76,19 +75,20 @@ void describe_surface(RgbdView& view) {
 RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera, int factor) {
   RgbdView view;
   view.factor = factor;
-  const cv::Size size(gray.cols / factor, gray.rows / factor);
+  const cv::Size size(std::max(1, gray.cols / factor), std::max(1, gray.rows / factor));
   cv::Mat small;
-  cv::resize(gray(cv::Rect(0, 0, size.width * factor, size.height * factor)), small, size, 0, 0,
-             cv::INTER_AREA);
+  cv::resize(gray(cv::Rect(0, 0, std::min(size.width * factor, gray.cols),
+                           std::min(size.height * factor, gray.rows))),
+             small, size, 0, 0, cv::INTER_AREA);
   small.convertTo(view.gray, CV_32F);
   view.gradient = steepest_neighbour(view.gray);
   view.depth = cv::Mat::zeros(size, CV_32FC1);
   const int middle = factor / 2;
   for (int y = 0; y < size.height && !depth.empty(); ++y) {
-    const auto* row = depth.ptr<float>(y * factor + middle);
+    const auto* row = depth.ptr<float>(std::min(y * factor + middle, depth.rows - 1));
     auto* out = view.depth.ptr<float>(y);
     for (int x = 0; x < size.width; ++x) {
-      const float centre = row[x * factor + middle];
+      const float centre = row[std::min(x * factor + middle, depth.cols - 1)];
       out[x] = centre > 0 ? centre : any_depth(depth, x * factor, y * factor, factor);
     }
   }
@@ -110,8 +110,8 @@ cv::Mat enlarged(const cv::Mat& small_mask, int factor, const cv::Size& size) {
       continue;
     }
     const auto* row = small_mask.ptr<uchar>(std::min(y / factor, small_mask.rows - 1));
-    for (int sx = 0; sx < small_mask.cols; ++sx) std::fill_n(out + sx * factor, factor, row[sx]);
-    std::fill(out + small_mask.cols * factor, out + size.width, row[small_mask.cols - 1]);
+    for (int x = 0; x < size.width; x += factor)
+      std::fill_n(out + x, std::min(factor, size.width - x), row[std::min(x / factor, small_mask.cols - 1)]);
   }
   return mask;
 }

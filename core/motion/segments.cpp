@@ -21,10 +21,15 @@ struct Sum {
   int count = 0;
 };
 
+/// How many patches lie along so many pixels: one at the least.
+int patches_along(int length, int side) { return std::max(1, (length + side - 1 - side / 2) / side); }
+
 std::vector<Segment> seeds(const RgbdView& view, int side) {
   std::vector<Segment> segments;
-  for (int y = side / 2; y < view.depth.rows; y += side)
-    for (int x = side / 2; x < view.depth.cols; x += side) {
+  for (int row = 0; row < patches_along(view.depth.rows, side); ++row)
+    for (int column = 0; column < patches_along(view.depth.cols, side); ++column) {
+      const int x = std::min(side / 2 + column * side, view.depth.cols - 1),
+                y = std::min(side / 2 + row * side, view.depth.rows - 1);
       Segment segment;
       segment.centre = {static_cast<float>(x), static_cast<float>(y)};
       segment.depth = view.depth.at<float>(y, x);
@@ -104,8 +109,8 @@ void offer(const Candidate& candidate, float y, float side, Row& row) {
 /// What giving pixels to patches is done in, round after round.
 struct Workspace {
   Workspace(int width, std::size_t segments, int side)
-      : columns((width + side - 1 - side / 2) / side),
-        rows(static_cast<int>(segments) / std::max(1, columns)),
+      : columns(patches_along(width, side)),
+        rows(static_cast<int>(segments) / columns),
         padded(static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes)),
         candidates(static_cast<int>(padded), side, columns, rows),
         row{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded),
@@ -175,11 +180,11 @@ class Neighbours {
   std::vector<Neighbour> all_;
 };
 
-/// Counts who touches whom. Patches lie in a grid of `columns`, and no pixel belongs to one farther than the
-/// next cell.
+/// Counts who touches whom. Patches lie in a grid of `columns`; a pixel's patch is at most one cell off its
+/// own, and neighbours' cells are at most one apart: patches that touch lie within three cells.
 std::vector<Contact> find_contacts(const RgbdView& view, const cv::Mat& labels, std::size_t patches,
                                    int columns) {
-  constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;  // cells between two that touch
+  constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;
   std::vector<int> counts(patches * kPlaces, 0);
   const auto look = [&](int a, int b, float za, float zb) {
     if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;

@@ -7,7 +7,7 @@ namespace {
 /// Whether views and memory made under `before` serve under `after`.
 bool same_past_views(const Config& before, const Config& after) {
   return before.run.method == "stillpoint" && before.depth_motion.factor == after.depth_motion.factor &&
-         before.depth_motion.slow_reference >= after.depth_motion.slow_reference;
+         farthest_reference(before.depth_motion) >= farthest_reference(after.depth_motion);
 }
 
 bool compares_by_homography(const Config& config) {
@@ -76,7 +76,7 @@ int Odometry::frames_wanted(const Config& config) const {
   const bool compares_views =
       config.run.method == "stillpoint" &&
       !(same_past_views(config_, config) && config.colour_motion == config_.colour_motion);
-  return compares_views ? config.depth_motion.slow_reference : 0;
+  return compares_views ? farthest_reference(config.depth_motion) : 0;
 }
 
 std::optional<Odometry> Odometry::continued_with(const Config& config,

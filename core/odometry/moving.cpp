@@ -2,7 +2,6 @@
 // the next frame is to know of it.
 #include <algorithm>
 #include <array>
-#include <opencv2/imgproc.hpp>
 
 #include "core/motion/depth_evidence.hpp"
 #include "core/motion/regions.hpp"
@@ -30,8 +29,7 @@ cv::Mat Odometry::remembered_mask(const Frame& frame, const Pose& predicted, Fra
     const Pose previous_from_current = past_views_.back().camera_from_world * predicted.inverse();
     const cv::Mat prior =
         carry_memory(*view_, *memory_, previous_from_current, config_.depth_motion).log_odds;
-    mask = enlarged(prior > config_.depth_motion.moving_log_odds, config_.depth_motion.factor,
-                    frame.gray.size());
+    mask = enlarged(prior > config_.depth_motion.moving_log_odds, view_->factor, frame.gray.size());
   }
   record.ms.motion += watch.milliseconds();
   return mask;
@@ -72,7 +70,7 @@ void Odometry::remember_view(const Frame& frame, const FrameResult& result) {
   memory_ = MotionMemory{view_, log_odds.empty() ? cv::Mat::zeros(view_->depth.size(), CV_32FC1) : log_odds};
   past_views_.push_back({frame.index, view_, result.record.world_from_camera.inverse()});
   while (past_views_.size() > 1 &&
-         past_views_[1].frame_index <= frame.index - config_.depth_motion.slow_reference)
+         past_views_[1].frame_index <= frame.index - farthest_reference(config_.depth_motion))
     past_views_.pop_front();
   view_.reset();
   patches_ = {};

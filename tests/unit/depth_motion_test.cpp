@@ -2,73 +2,28 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "core/motion/carrier.hpp"
+#include "core/motion/depth_evidence.hpp"
 #include "core/motion/entering.hpp"
 #include "core/motion/patch_motion.hpp"
 #include "core/motion/segments.hpp"
+#include "tests/support/board_scene.hpp"
 
 namespace stillpoint {
 namespace {
 
-const Camera kCamera = camera_by_name("generated");
-
-/// A textured wall two metres off, seen by a camera that slides along x; before it a board one metre off.
-struct Scene {
-  double camera_x = 0.0;  // m
-  double board_x = 0.0;   // m, of the board's middle in the world
-  double board_z = 1.0;   // m
-  bool board = true;
-  double brightness = 0.0;  // grey levels added to all
-  bool relief = false;  // the wall is hilly: before a flat one a board's slide looks like a turn and a step
-  double board_pitch = 1.0;  // another one is another picture on the board
-
-  static float texture(double x, double y, int salt) {
-    // Smooth bumps of some centimetres, so that small errors of place stay small in brightness.
-    return static_cast<float>(128 + 45 * std::sin(x * 37 + salt) * std::cos(y * 29 + salt) +
-                              30 * std::sin(x * 61 - y * 53));
-  }
-
-  void render(cv::Mat& gray, cv::Mat& depth, cv::Mat* truth = nullptr) const {
-    gray.create(480, 640, CV_8UC1);
-    depth.create(480, 640, CV_32FC1);
-    if (truth) truth->create(480, 640, CV_8UC1);
-    cv::RNG noise(static_cast<std::uint64_t>(1000 + 1e4 * (camera_x + board_x + board_z)));
-    for (int v = 0; v < 480; ++v)
-      for (int u = 0; u < 640; ++u) {
-        const double rx = (u - kCamera.cx) / kCamera.fx, ry = (v - kCamera.cy) / kCamera.fy;
-        const double bx = rx * board_z + camera_x - board_x, by = ry * board_z;
-        const bool on_board = board && std::abs(bx) < 0.2 && std::abs(by) < 0.25;
-        const double hills = relief ? 0.5 * std::sin(7 * rx) + 0.4 * std::sin(9 * ry) : 0.0;
-        const double z = on_board ? board_z : 2.0 + hills;
-        const float value =
-            on_board ? texture(bx * board_pitch, by * board_pitch, 3) : texture(rx * z + camera_x, ry * z, 0);
-        gray.at<uchar>(v, u) = cv::saturate_cast<uchar>(value + brightness + noise.gaussian(2.0));
-        depth.at<float>(v, u) = static_cast<float>(z + noise.gaussian(0.0012 + 0.0019 * z * z));
-        if (truth) truth->at<uchar>(v, u) = on_board ? 255 : 0;
-      }
-  }
-
-  [[nodiscard]] RgbdView view() const {
-    cv::Mat gray, depth;
-    render(gray, depth);
-    return make_rgbd_view(gray, depth, kCamera, DepthMotionConfig{}.factor);
-  }
-};
-
-ReferenceView reference(const Scene& then, const Scene& now) {
+ReferenceView reference(const BoardScene& then, const BoardScene& now) {
   Pose reference_from_current = Pose::Identity();
   reference_from_current.translation().x() = now.camera_x - then.camera_x;
   return {std::make_shared<const RgbdView>(then.view()), reference_from_current};
 }
 
-DepthMotionTrace detect(const Scene& now, const std::vector<ReferenceView>& references,
+DepthMotionTrace detect(const BoardScene& now, const std::vector<ReferenceView>& references,
                         const MotionMemory* memory = nullptr) {
   cv::Mat gray, depth;
   now.render(gray, depth);
-  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   return detect_depth_motion(view, segment_surfaces(view, {}), depth, references, memory, Pose::Identity(),
                              {});
 }
@@ -79,14 +34,14 @@ double overlap(const cv::Mat& mask, const cv::Mat& truth) {
 
 TEST(DepthMotion, NothingMovesUnderAMovingCamera) {
   // Parallax, and an exposure that changed: neither is motion.
-  const Scene now{0.15, 0.0, 1.0, true, 12.0};
+  const BoardScene now{0.15, 0.0, 1.0, true, 12.0};
   const DepthMotionTrace trace = detect(now, {reference({0.10}, now), reference({0.0}, now)});
   EXPECT_EQ(cv::countNonZero(trace.mask), 0) << "a frame in which nothing moves has an empty mask";
   EXPECT_EQ(trace.references.size(), 2u);
 }
 
 TEST(DepthMotion, AMoverIsCoveredToItsOutline) {
-  const Scene now{0.06, 0.30};
+  const BoardScene now{0.06, 0.30};
   const DepthMotionTrace trace = detect(now, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)});
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
@@ -94,7 +49,7 @@ TEST(DepthMotion, AMoverIsCoveredToItsOutline) {
 }
 
 TEST(DepthMotion, MotionAlongTheOpticalAxisIsSeen) {
-  Scene now;
+  BoardScene now;
   now.board_z = 0.9;
   const DepthMotionTrace trace = detect(now, {reference({}, now)});
   cv::Mat gray, depth, truth;
@@ -104,14 +59,14 @@ TEST(DepthMotion, MotionAlongTheOpticalAxisIsSeen) {
 
 TEST(DepthMotion, WhatLeavesRevealsBackgroundThatIsTrusted) {
   // The board was here a moment ago and is gone: what is seen now is the wall, and the wall stands still.
-  Scene now;
+  BoardScene now;
   now.board = false;
   const DepthMotionTrace trace = detect(now, {reference({}, now)});
   EXPECT_EQ(cv::countNonZero(trace.mask), 0);
 }
 
 TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
-  const Scene now{0.0, 0.30}, before{0.0, 0.30};
+  const BoardScene now{0.0, 0.30}, before{0.0, 0.30};
   const DepthMotionTrace moving =
       detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
   ASSERT_GT(cv::countNonZero(moving.mask), 0);
@@ -132,7 +87,7 @@ TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
 
 TEST(DepthMotion, ASlowMoverIsSeenOverTime) {
   // Five millimetres in some tenths of a second: too little for any pixel, not for patches.
-  const Scene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
+  const BoardScene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
   ReferenceView then = reference(before, now);
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
@@ -153,14 +108,15 @@ TEST(DepthMotion, ASlowMoverIsSeenOverTime) {
 }
 
 TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
-  const Scene now{0.06, 0.30};
+  const BoardScene now{0.06, 0.30};
   cv::Mat gray, depth;
   now.render(gray, depth);
   // The board's middle as the camera sees it, without depth as hair would be.
-  const cv::Point middle(cvRound(kCamera.cx + kCamera.fx * (0.30 - 0.06)), cvRound(kCamera.cy));
+  const cv::Point middle(cvRound(board_camera().cx + board_camera().fx * (0.30 - 0.06)),
+                         cvRound(board_camera().cy));
   const cv::Rect hole(middle.x - 10, middle.y - 10, 20, 20);
   depth(hole).setTo(0);
-  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   const DepthMotionTrace trace = detect_depth_motion(
       view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
@@ -168,14 +124,14 @@ TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
 }
 
 TEST(DepthMotion, AGapOpenToOneSideIsNoPartOfTheMover) {
-  const Scene now{0.06, 0.30};
+  const BoardScene now{0.06, 0.30};
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
   // A strip without depth along the board's right side, as wide as the sensor's shadow.
   const cv::Rect board = cv::boundingRect(truth);
   const cv::Rect shadow(board.br().x, board.y, 12, board.height);
   depth(shadow).setTo(0);
-  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   const DepthMotionTrace trace = detect_depth_motion(
       view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
@@ -184,9 +140,10 @@ TEST(DepthMotion, AGapOpenToOneSideIsNoPartOfTheMover) {
 }
 
 TEST(DepthMotion, ASlantedSurfaceSeenAPixelOffIsNoMover) {
-  const Scene now{0.0, 0.0, 1.0, false, 0.0, true}, then{0.0, 0.0, 1.1, false, 0.0, true};  // hills alone
+  const BoardScene now{0.0, 0.0, 1.0, false, 0.0, true},
+      then{0.0, 0.0, 1.1, false, 0.0, true};  // hills alone
   ReferenceView exact = reference(then, now), off = exact;
-  off.reference_from_current.translation().x() += 2.0 * 4.0 * 2.0 / kCamera.fx;  // 2 small px at 2 m
+  off.reference_from_current.translation().x() += 2.0 * 4.0 * 2.0 / board_camera().fx;  // 2 small px at 2 m
   const ReferenceEvidence known = detect(now, {exact}).references.front();
   EXPECT_LT(known.misplacement_px, 0.2);
   const DepthMotionTrace trace = detect(now, {off});
@@ -195,7 +152,7 @@ TEST(DepthMotion, ASlantedSurfaceSeenAPixelOffIsNoMover) {
 }
 
 /// The patches of a scene against an earlier one, from a pose that is off by `error`.
-PatchMotions patches_of(const Scene& now, const Scene& before, const Pose& error,
+PatchMotions patches_of(const BoardScene& now, const BoardScene& before, const Pose& error,
                         std::vector<Segment>& segments) {
   const RgbdView view = now.view();
   const SurfacePatches patches = segment_surfaces(view, {});
@@ -207,10 +164,10 @@ PatchMotions patches_of(const Scene& now, const Scene& before, const Pose& error
 }
 
 TEST(PatchMotion, ShiftsAreMeasuredAndWeighed) {
-  const Scene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
+  const BoardScene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
   std::vector<Segment> segments;
   const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
-  const double expected = -kCamera.fx / 4 * 0.005 / 1.0;  // px: the board was farther left
+  const double expected = -board_camera().fx / 4 * 0.005 / 1.0;  // px: the board was farther left
   int board = 0, wall = 0, board_moves = 0, wall_moves = 0;
   double shift = 0.0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -231,14 +188,15 @@ TEST(PatchMotion, ShiftsAreMeasuredAndWeighed) {
 TEST(PatchMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
   Pose error = Pose::Identity();
   error.translation() = Eigen::Vector3d(0.008, -0.004, 0.0);
-  const Scene now{0.02, 0.105}, before{0.0, 0.100};
+  const BoardScene now{0.02, 0.105}, before{0.0, 0.100};
   std::vector<Segment> segments;
   const PatchMotions motions = patches_of(now, before, error, segments);
   // A sideways slide and a turn look alike on a wall: what counts is where the wall's points come to lie.
   for (const double x : {-0.6, 0.0, 0.6}) {
     const Eigen::Vector3d p(x, 0.3, 2.0), there = motions.reference_from_current * p;
     const Eigen::Vector3d truth = p + Eigen::Vector3d(0.02, 0, 0);
-    EXPECT_LT((kCamera.project(there) - kCamera.project(truth)).norm(), 0.5) << "px, of 2.3 put in";
+    EXPECT_LT((board_camera().project(there) - board_camera().project(truth)).norm(), 0.5)
+        << "px, of 2.3 put in";
   }
 }
 
@@ -248,7 +206,7 @@ struct Receding {
   float step = 0.0F;  // m, mean of the moving ones
 };
 
-Receding receding(const Scene& now, const Scene& before) {
+Receding receding(const BoardScene& now, const BoardScene& before) {
   std::vector<Segment> segments;
   const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
   Receding result;
@@ -280,7 +238,7 @@ TEST(RecedingPatches, WhatGoesBackAlongTheLineOfSightMoves) {
 }
 
 TEST(RecedingPatches, WhatAnotherThingStoodBeforeDoesNotMove) {
-  Scene before{0.0, 0.1, 1.0};
+  BoardScene before{0.0, 0.1, 1.0};
   before.board_pitch = 1.9;
   const Receding revealed = receding({0.0, 0.1, 1.15}, before);
   ASSERT_GT(revealed.patches, 10);
@@ -288,10 +246,10 @@ TEST(RecedingPatches, WhatAnotherThingStoodBeforeDoesNotMove) {
 }
 
 TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
-  const Scene now{0.0, 0.1, 1.15}, before{0.0, 0.1, 1.0};
+  const BoardScene now{0.0, 0.1, 1.15}, before{0.0, 0.1, 1.0};
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
-  const RgbdView view = make_rgbd_view(gray, depth, kCamera, 4);
+  const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   ReferenceView then = reference(before, now);
   then.old = true;
   const auto mask = [&](int find_receding) {
@@ -313,32 +271,50 @@ TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
 /// A board that reaches over the image's right rim, seen by a camera that slides to it: what the frame before
 /// knew, and what lay outside it.
 struct Entered {
-  RgbdView view = Scene{0.0, 0.5}.view();
+  RgbdView view = BoardScene{0.0, 0.5}.view();
   SurfacePatches patches = segment_surfaces(view, {});
   cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1);
-  cv::Mat entered = cv::Mat::zeros(view.depth.size(), CV_8UC1);
-  cv::Mat fresh_board = cv::Mat::zeros(view.depth.size(), CV_8UC1), fresh_wall = fresh_board.clone();
+  cv::Mat entered;
+  cv::Mat fresh_board, fresh_wall;
 
   explicit Entered(double step_m) {
     Pose previous_from_current = Pose::Identity();
     previous_from_current.translation().x() = step_m;
-    Carrier carried(view.camera, previous_from_current);
-    for (int y = 0; y < prior.rows; ++y) {
-      carried.carry_row(y, view.depth.ptr<float>(y));
-      for (int x = 0; x < prior.cols; ++x) {
-        if (view.depth.at<float>(y, x) <= 0) continue;
-        const bool on_board = view.depth.at<float>(y, x) < 1.2F;
-        if (carried.inside(x)) {
-          prior.at<float>(y, x) = on_board ? 5.0F : -2.0F;
-        } else {
-          (on_board ? fresh_board : fresh_wall).at<uchar>(y, x) = 255;
-          entered.at<uchar>(y, x) = 255;
-        }
-      }
-    }
+    const MotionMemory nothing{std::make_shared<const RgbdView>(view),
+                               cv::Mat::zeros(view.depth.size(), CV_32FC1)};
+    entered = carry_memory(view, nothing, previous_from_current, {}).entered;
+    const cv::Mat board = (view.depth > 0) & (view.depth < 1.2F), wall = view.depth >= 1.2F;
+    prior.setTo(5.0F, board & ~entered);
+    prior.setTo(-2.0F, wall & ~entered);
+    fresh_board = board & entered;
+    fresh_wall = wall & entered;
   }
   void inherit() { inherit_memory(entered, patches, prior); }
 };
+
+TEST(CarryMemory, TellsWhatLayOutsideTheFrameBefore) {
+  const Entered entered(0.03);
+  // Slid by 3 cm, a surface at z metres has entered by fx * 0.03 / z small pixels at the right.
+  const double fx = board_camera().fx / 4;
+  const cv::Rect rim(160 - static_cast<int>(fx * 0.03 / 2.0) - 1, 10, 1, 5);
+  EXPECT_EQ(cv::countNonZero(entered.entered(rim)), 5) << "the wall's, two metres off";
+  EXPECT_EQ(cv::countNonZero(entered.entered(cv::Rect(2, 2, 140, 116))), 0);
+  RgbdView unmeasured = entered.view;
+  unmeasured.depth = cv::Mat::zeros(unmeasured.depth.size(), CV_32FC1);
+  const MotionMemory nothing{std::make_shared<const RgbdView>(entered.view),
+                             cv::Mat::zeros(unmeasured.depth.size(), CV_32FC1)};
+  EXPECT_EQ(cv::countNonZero(carry_memory(unmeasured, nothing, Pose::Identity(), {}).entered), 0);
+}
+
+TEST(References, FarOnesTakeTurns) {
+  DepthMotionConfig config;
+  config.near_reference = 2, config.far_reference = 10, config.slow_reference = 24;
+  EXPECT_EQ(reference_gaps(config, 6), (std::array<int, 2>{2, 10}));
+  EXPECT_EQ(reference_gaps(config, 7), (std::array<int, 2>{2, 24}));
+  EXPECT_EQ(farthest_reference(config), 24);
+  config.slow_reference = 3;
+  EXPECT_EQ(farthest_reference(config), 10);
+}
 
 TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
   Entered entered(0.03);
@@ -368,60 +344,10 @@ TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
   EXPECT_EQ(cv::countNonZero(alone.mask), 0);
   EXPECT_FALSE(alone.note.empty());
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
-  const RgbdView view = make_rgbd_view(gray, none, kCamera, 4);
+  const RgbdView view = make_rgbd_view(gray, none, board_camera(), 4);
   const DepthMotionTrace blind = detect_depth_motion(view, segment_surfaces(view, {}), none,
                                                      {reference({}, {})}, nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(blind.mask), 0);
-}
-
-TEST(Segments, NeverCrossADepthEdge) {
-  const RgbdView view = Scene{}.view();
-  const auto [labels, segments, contacts] = segment_surfaces(view, {});
-  std::vector<std::pair<float, float>> range(segments.size(), {1e9F, 0.0F});
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (const int l = labels.at<int>(y, x); l >= 0) {
-        auto& r = range[static_cast<std::size_t>(l)];
-        r.first = std::min(r.first, view.depth.at<float>(y, x));
-        r.second = std::max(r.second, view.depth.at<float>(y, x));
-      }
-  for (const auto& r : range)
-    if (r.second > 0) {
-      EXPECT_LT(r.second - r.first, 0.5F);
-    }
-}
-
-TEST(Segments, ContactsAreAllPairsThatTouchOnASurface) {
-  const RgbdView view = Scene{}.view();
-  const auto [labels, segments, contacts] = segment_surfaces(view, {});
-  std::map<std::pair<int, int>, int> expected;
-  const auto look = [&, &image = labels](const cv::Point& p, const cv::Point& q) {
-    const int a = image.at<int>(p), b = image.at<int>(q);
-    const bool touch =
-        a >= 0 && b >= 0 && a != b && same_surface(view.depth.at<float>(p), view.depth.at<float>(q));
-    if (touch) ++expected[std::minmax(a, b)];
-  };
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x) {
-      if (x + 1 < labels.cols) look({x, y}, {x + 1, y});
-      if (y + 1 < labels.rows) look({x, y}, {x, y + 1});
-    }
-  ASSERT_GT(expected.size(), segments.size());
-  ASSERT_EQ(contacts.size(), expected.size());
-  auto contact = contacts.begin();
-  for (const auto& [pair, boundary] : expected) {
-    EXPECT_EQ(std::make_pair(contact->a, contact->b), pair);
-    EXPECT_EQ(contact->boundary, boundary);
-    ++contact;
-  }
-}
-
-TEST(RgbdView, ASmallMaskIsEnlargedByBlocks) {
-  const cv::Mat small = (cv::Mat_<uchar>(2, 3) << 255, 0, 255, 0, 255, 0);
-  const cv::Mat full = enlarged(small, 4, {14, 9});  // 2 columns and a row that no block covers
-  for (int y = 0; y < full.rows; ++y)
-    for (int x = 0; x < full.cols; ++x)
-      EXPECT_EQ(full.at<uchar>(y, x), small.at<uchar>(std::min(y / 4, 1), std::min(x / 4, 2)));
 }
 
 }  // namespace

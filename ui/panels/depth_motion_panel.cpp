@@ -39,7 +39,7 @@ class DepthMotionPanel final : public FramePanel {
     const int references = static_cast<int>(trace.references.size());
     reference_ = std::clamp(reference_, 0, references - 1);
     if (references > 1) {
-      controls.choice("reference", {"Near reference", "Old reference"}, reference_);
+      controls.choice("reference", {"Near reference", "Far reference"}, reference_);
     }
 
     const Footer footer = footer_of(frame, session, trace);

@@ -13,8 +13,7 @@ int frames_compared_back(const Config& config) {
   const int directly = config.direct.below_inliers > 0 ? config.direct.max_age : 0;
   if (config.run.method == "oracle") return directly;
   if (config.run.method != "stillpoint") return config.motion.reference_gap;
-  const DepthMotionConfig& motion = config.depth_motion;
-  return std::max({motion.near_reference, motion.far_reference, motion.slow_reference, directly});
+  return std::max(farthest_reference(config.depth_motion), directly);
 }
 
 RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTrackOptions& options)

@@ -117,6 +117,16 @@ std::optional<StageChange> against_stage_before(const StagePictures& pictures, S
   return change;
 }
 
+/// Whether a stage's reference lies about as far back in both frames: far ones take turns, and what changes
+/// from one to the other would be the reference.
+bool same_reference(const FrameView& view, const FrameView& other, const StageInfo& stage) {
+  constexpr int kFrames = 2;  // as many may be missing
+  const auto at = static_cast<std::size_t>(std::max(0, stage.reference));
+  const auto &now = view.depth_motion.references, &then = other.depth_motion.references;
+  if (stage.reference < 0 || at >= now.size() || at >= then.size()) return true;
+  return std::abs(now[at].reference.frames_back - then[at].reference.frames_back) <= kFrames;
+}
+
 }  // namespace
 
 std::optional<StageChange> stage_change(const FrameView& view, const Camera& camera, const Config& config,
@@ -146,6 +156,7 @@ std::optional<StageChange> stage_change(const FrameView& view, const Camera& cam
         place.reference >= static_cast<int>(std::max(other.depth_motion.references.size(),
                                                      other.colour_motion.references.size())))
       return std::nullopt;
+    if (!rounds && !same_reference(view, other, stage)) return std::nullopt;
     StagePicture before = stage_pictures(other, camera, config, place, backward).output;
     if (before.image.empty() || now.output.image.empty() || before.image.size() != now.output.image.size() ||
         before.image.type() != now.output.image.type())

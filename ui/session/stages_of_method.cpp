@@ -183,7 +183,7 @@ void add_patch_figures(const ReferenceEvidence& evidence, StageInfo& stage) {
 
 void add_reference_stages(const ReferenceEvidence& evidence, int index, std::size_t count,
                           const DepthMotionConfig& config, std::vector<StageInfo>& stages) {
-  const std::string group = count == 1 ? "Reference" : index == 0 ? "Near reference" : "Old reference";
+  const std::string group = count == 1 ? "Reference" : index == 0 ? "Near reference" : "Far reference";
   const auto add = [&](StageKind kind, const char* name, const char* what) -> StageInfo& {
     StageInfo& stage = add_stage(stages, kind, group, name, what);
     stage.reference = index;

@@ -92,8 +92,8 @@ TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
 
 TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
   config_.run.method = "stillpoint";
-  config_.depth_motion.far_reference = 3;
-  config_.depth_motion.slow_reference = 5;
+  config_.depth_motion.far_reference = 9;  // old enough for patches' shifts
+  config_.depth_motion.slow_reference = 4;
   RunTrack track(*source_, config_);
   const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
@@ -114,6 +114,9 @@ TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
     EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
     EXPECT_EQ(cv::norm(again.depth_motion.prior, first.depth_motion.prior, cv::NORM_INF), 0.0) << index;
     ASSERT_EQ(again.depth_motion.references.size(), first.depth_motion.references.size()) << index;
+    for (std::size_t i = 0; i < first.depth_motion.references.size(); ++i)
+      EXPECT_EQ(again.depth_motion.references[i].reference.frames_back,
+                first.depth_motion.references[i].reference.frames_back);
   }
 }
 
