@@ -117,7 +117,7 @@ cv::Mat moving_pixels(const cv::Mat& image, const SpreadEvidence& spread, const 
 }
 
 /// Regions large enough and with enough points that move, their holes filled.
-cv::Mat moving_regions(cv::Mat mask, const std::vector<PointTrack>& tracks, const std::vector<float>& shared,
+cv::Mat moving_regions(const cv::Mat& mask, const std::vector<PointTrack>& tracks, const std::vector<float>& shared,
                        const ColourMotionConfig& config) {
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
@@ -197,8 +197,7 @@ void ColourMotionDetector::judge(ColourReference& reference) {
   reference.motion = estimate_camera_turn(pairs, options);
   const bool sided = lies_before_camera(pairs, reference.motion, options.sigma);
   std::vector<std::pair<double, double>> noise;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const BearingPair& pair = pairs[k];
+  for (const BearingPair& pair : pairs) {
     double unsure = 0.0;
     (void)nearness(reference.motion, pair, unsure);
     const double tolerance = sided ? kSure * unsure : kNowhere;

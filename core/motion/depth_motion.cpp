@@ -38,6 +38,7 @@ cv::Mat paint_patches(const cv::Mat& labels, const std::vector<T>& of_patch, T n
 /// The pixels of moving patches.
 cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
   std::vector<uchar> of_patch;
+  of_patch.reserve(segments.size());
   for (const Segment& segment : segments) of_patch.push_back(segment.moving ? 255 : 0);
   return paint_patches<uchar>(labels, of_patch, 0);
 }
@@ -46,6 +47,7 @@ cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments
 /// same says nothing more: a slow mover's pixels hardly change.
 void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
   std::vector<std::uint8_t> measured_whole;
+  measured_whole.reserve(reference.patches.size());
   for (const PatchMotion& patch : reference.patches) measured_whole.push_back(patch.log_odds != 0.0F);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
