@@ -125,7 +125,8 @@ class Shifts {
     }
   }
 
-  /// The shift at which the least is left a pixel, of those at which most pixels meet the surface.
+  /// The shift at which the least is left a pixel, of those at which at least half of the pixels meet the
+  /// surface.
   struct Best {
     int du = 0, dv = 0;
     float left = std::numeric_limits<float>::max();  // squared grey levels a pixel
