@@ -9,7 +9,7 @@ std::filesystem::path assets_folder() {
   std::error_code none;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
   if (!none) {
-    const auto installed = program.parent_path().parent_path() / "share" / "stillpoint";
+    auto installed = program.parent_path().parent_path() / "share" / "stillpoint";
     if (std::filesystem::is_directory(installed, none)) return installed;
   }
   return STILLPOINT_SOURCE_ASSETS;
