@@ -117,8 +117,8 @@ cv::Mat moving_pixels(const cv::Mat& image, const SpreadEvidence& spread, const 
 }
 
 /// Regions large enough and with enough points that move, their holes filled.
-cv::Mat moving_regions(const cv::Mat& mask, const std::vector<PointTrack>& tracks, const std::vector<float>& shared,
-                       const ColourMotionConfig& config) {
+cv::Mat moving_regions(const cv::Mat& mask, const std::vector<PointTrack>& tracks,
+                       const std::vector<float>& shared, const ColourMotionConfig& config) {
   cv::Mat labels, stats, centroids;
   const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
   std::vector<int> moving_points(static_cast<std::size_t>(count), 0);
