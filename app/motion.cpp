@@ -19,8 +19,8 @@
 #include "app/progress.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
-#include "core/motion/colour_motion.hpp"
-#include "core/motion/detect_motion.hpp"
+#include "core/motion/epipolar/colour_motion.hpp"
+#include "core/motion/paper/detect_motion.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/source.hpp"
@@ -114,7 +114,7 @@ class MotionOutput {
 
   /// @param subfolder of the pair's pictures; empty = the out folder itself
   void add(const std::string& subfolder, const std::string& reference_name, const std::string& target_name,
-           const MotionTrace& trace, const cv::Mat& reference, const cv::Mat& target) {
+           const PaperTrace& trace, const cv::Mat& reference, const cv::Mat& target) {
     const fs::path folder = folder_ / subfolder;
     prepare_out_folder(folder, {}, true);
     if (all_rounds_) {
@@ -131,7 +131,7 @@ class MotionOutput {
 
   /// A pair's figures alone.
   void add_figures(const std::string& reference_name, const std::string& target_name,
-                   const MotionTrace& trace) {
+                   const PaperTrace& trace) {
     csv_ << motion_csv_row(reference_name, target_name, trace) << '\n' << std::flush;
     if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder_ / "motion.csv").string()));
     pairs_.push_back(motion_json(reference_name, target_name, trace));
@@ -150,7 +150,7 @@ class MotionOutput {
   nlohmann::json pairs_;
 };
 
-void print_pair(const std::string& reference, const std::string& target, const MotionTrace& trace) {
+void print_pair(const std::string& reference, const std::string& target, const PaperTrace& trace) {
   std::string line = fmt::format("{} -> {}: ", reference, target);
   if (!trace.mask().empty())
     line += fmt::format("{:.1f} % moves, {} regions, {} rounds", 100.0 * trace.rounds.back().mask_share,
@@ -180,7 +180,7 @@ void run_pair(const MotionOptions& options, const Config& config) {
     throw InputError(fmt::format("{} is {}x{} and {} is {}x{}: the two images must be of one size",
                                  options.first, reference.cols, reference.rows, options.second, target.cols,
                                  target.rows));
-  const MotionTrace trace =
+  const PaperTrace trace =
       detect_motion(to_gray(reference), to_gray(target), config.motion, config.run.threads);
   MotionOutput output(options.out, options.force, options.all_rounds);
   output.add("", options.first, options.second, trace, to_colour(reference), to_colour(target));
@@ -217,7 +217,7 @@ void run_sequence(const MotionOptions& options, const Config& config) {
   for (int index = range.begin; index < range.end && !stop_requested(); index += range.step) {
     const Frame reference = source->read(index - gap), target = source->read(index);
     const std::string reference_name = std::to_string(index - gap), target_name = std::to_string(index);
-    MotionTrace trace;
+    PaperTrace trace;
     trace.note = problem_of(reference, target);
     if (trace.note.empty()) {
       trace = detect_motion(reference.gray, target.gray, config.motion, config.run.threads);
@@ -251,7 +251,7 @@ void run_colour_sequence(const MotionOptions& options, const Config& config) {
   ColourMotionDetector detector(source->camera(), config.colour_motion);
   for (int index = 0; index < range.end && !stop_requested(); ++index) {
     const Frame frame = source->read(index);
-    ColourMotionTrace trace;
+    EpipolarTrace trace;
     if (frame.readable())
       trace = detector.next(frame.colour.empty() ? frame.gray : frame.colour, frame.timestamp);
     else

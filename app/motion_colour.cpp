@@ -27,14 +27,14 @@ void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   if (!written) throw InputError(fmt::format("{}: cannot be written", path.string()));
 }
 
-int moving_points(const ColourMotionTrace& trace, const ColourMotionConfig& config) {
+int moving_points(const EpipolarTrace& trace, const EpipolarConfig& config) {
   return static_cast<int>(
       std::count_if(trace.points.begin(), trace.points.end(), [&config](const ColourPoint& point) {
         return point.age >= config.min_age && point.shared > static_cast<float>(config.moving_evidence);
       }));
 }
 
-cv::Mat draw_points(const cv::Mat& frame, const ColourMotionTrace& trace, const ColourMotionConfig& config) {
+cv::Mat draw_points(const cv::Mat& frame, const EpipolarTrace& trace, const EpipolarConfig& config) {
   cv::Mat picture = frame * 0.5;
   for (const ColourPoint& point : trace.points) {
     if (point.age < config.min_age) continue;
@@ -47,7 +47,7 @@ cv::Mat draw_points(const cv::Mat& frame, const ColourMotionTrace& trace, const 
   return picture;
 }
 
-cv::Mat draw_overlay(const cv::Mat& frame, const ColourMotionTrace& trace) {
+cv::Mat draw_overlay(const cv::Mat& frame, const EpipolarTrace& trace) {
   cv::Mat picture = frame.clone(), mixed;
   cv::addWeighted(picture, 0.45, cv::Mat(picture.size(), picture.type(), kVermilion), 0.55, 0.0, mixed);
   mixed.copyTo(picture, trace.mask);
@@ -65,8 +65,7 @@ std::string colour_motion_csv_heading() {
          "largest_region_px,note";
 }
 
-std::string colour_motion_csv_row(int index, const ColourMotionTrace& trace,
-                                  const ColourMotionConfig& config) {
+std::string colour_motion_csv_row(int index, const EpipolarTrace& trace, const EpipolarConfig& config) {
   std::string row = fmt::format("{},{},{},{}", index, trace.points.size(), moving_points(trace, config),
                                 trace.references.size());
   if (trace.references.empty()) {
@@ -83,8 +82,7 @@ std::string colour_motion_csv_row(int index, const ColourMotionTrace& trace,
   return row + fmt::format(",\"{}\"", trace.note);
 }
 
-nlohmann::json colour_motion_json(int index, const ColourMotionTrace& trace,
-                                  const ColourMotionConfig& config) {
+nlohmann::json colour_motion_json(int index, const EpipolarTrace& trace, const EpipolarConfig& config) {
   nlohmann::json references = nlohmann::json::array(), regions = nlohmann::json::array();
   for (const ColourReference& reference : trace.references)
     references.push_back({{"gap", reference.gap},
@@ -107,8 +105,8 @@ nlohmann::json colour_motion_json(int index, const ColourMotionTrace& trace,
           {"note", trace.note}};
 }
 
-void write_colour_motion_pictures(const std::filesystem::path& folder, const ColourMotionTrace& trace,
-                                  const cv::Mat& frame, const ColourMotionConfig& config) {
+void write_colour_motion_pictures(const std::filesystem::path& folder, const EpipolarTrace& trace,
+                                  const cv::Mat& frame, const EpipolarConfig& config) {
   write_picture(folder / "points.png", draw_points(frame, trace, config));
   if (trace.mask.empty()) return;
   write_picture(folder / "mask.png", trace.mask);

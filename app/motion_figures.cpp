@@ -91,8 +91,7 @@ std::string motion_csv_heading() {
   return heading + ",note";
 }
 
-std::string motion_csv_row(const std::string& reference, const std::string& target,
-                           const MotionTrace& trace) {
+std::string motion_csv_row(const std::string& reference, const std::string& target, const PaperTrace& trace) {
   const MotionRound round = trace.rounds.empty() ? MotionRound{} : trace.rounds.back();
   int largest = 0;
   for (const MotionRegion& region : round.regions) largest = std::max(largest, region.area);
@@ -104,8 +103,7 @@ std::string motion_csv_row(const std::string& reference, const std::string& targ
                      direction_columns(round.backward), in_quotes(trace.note));
 }
 
-nlohmann::json motion_json(const std::string& reference, const std::string& target,
-                           const MotionTrace& trace) {
+nlohmann::json motion_json(const std::string& reference, const std::string& target, const PaperTrace& trace) {
   nlohmann::json rounds = nlohmann::json::array();
   for (const MotionRound& round : trace.rounds) rounds.push_back(round_json(round));
   return {{"reference", reference},

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/motion/motion_trace.hpp"
+#include "core/motion/paper/paper_trace.hpp"
 
 namespace stillpoint {
 
@@ -14,10 +14,10 @@ namespace stillpoint {
 /// empty.
 /// @param reference,target how the frames are called: an index or a file name
 [[nodiscard]] std::string motion_csv_row(const std::string& reference, const std::string& target,
-                                         const MotionTrace& trace);
+                                         const PaperTrace& trace);
 
 /// A pair's figures, every round's, with homographies and regions.
 [[nodiscard]] nlohmann::json motion_json(const std::string& reference, const std::string& target,
-                                         const MotionTrace& trace);
+                                         const PaperTrace& trace);
 
 }  // namespace stillpoint

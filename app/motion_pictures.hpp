@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 
-#include "core/motion/motion_trace.hpp"
+#include "core/motion/paper/paper_trace.hpp"
 
 namespace stillpoint {
 

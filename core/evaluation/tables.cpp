@@ -50,11 +50,12 @@ const BenchmarkCell* find_cell(const BenchmarkRow& row, const std::string& metho
   return it == row.cells.end() ? nullptr : &*it;
 }
 
-std::optional<double> gain_over_none(const BenchmarkRow& row, const std::string& method) {
-  const BenchmarkCell *none = find_cell(row, "none"), *other = find_cell(row, method);
-  if (none == nullptr || other == nullptr || !none->rpe_m || !other->rpe_m || *none->rpe_m <= 0)
+std::optional<double> gain_over(const BenchmarkRow& row, const std::string& baseline,
+                                const std::string& method) {
+  const BenchmarkCell *base = find_cell(row, baseline), *other = find_cell(row, method);
+  if (base == nullptr || other == nullptr || !base->rpe_m || !other->rpe_m || *base->rpe_m <= 0)
     return std::nullopt;
-  return 1.0 - *other->rpe_m / *none->rpe_m;
+  return 1.0 - *other->rpe_m / *base->rpe_m;
 }
 
 /// Gains of one column, which are averaged in the last row.
@@ -146,13 +147,14 @@ std::optional<PublishedRow> published_row(std::string_view sequence) {
   return std::nullopt;
 }
 
-Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::string>& methods) {
+Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::string>& methods,
+                const std::string& baseline) {
   Table table;
   table.header = {"RPE 1 s, RMSE [m]", "ORB-SLAM2 VO", "paper, published", "ref 7", "ref 12",
                   "published gain"};
   for (const std::string& method : methods) table.header.push_back("ours: " + method);
   for (const std::string& method : methods)
-    if (method != "none") table.header.push_back("gain: " + method);
+    if (method != baseline) table.header.push_back("gain: " + method);
 
   GainColumn published_gain;
   std::vector<GainColumn> gains(methods.size());
@@ -167,14 +169,14 @@ Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::st
     }
     for (const std::string& method : methods) cells.push_back(cell_text(find_cell(row, method)));
     for (std::size_t i = 0; i < methods.size(); ++i)
-      if (methods[i] != "none") cells.push_back(gains[i].add(gain_over_none(row, methods[i])));
+      if (methods[i] != baseline) cells.push_back(gains[i].add(gain_over(row, baseline, methods[i])));
     table.rows.push_back(std::move(cells));
   }
 
   std::vector<std::string> last = {"mean gain", "", "", "", "", published_gain.mean()};
   last.insert(last.end(), methods.size(), "");
   for (std::size_t i = 0; i < methods.size(); ++i)
-    if (methods[i] != "none") last.push_back(gains[i].mean());
+    if (methods[i] != baseline) last.push_back(gains[i].mean());
   table.rows.push_back(std::move(last));
   return table;
 }

@@ -3,9 +3,14 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/motion/motion_trace.hpp"
-
 namespace stillpoint {
+
+/// A connected region of a mask.
+struct MotionRegion {
+  cv::Rect box;          ///< px
+  cv::Point2d centroid;  ///< px
+  int area = 0;          ///< px
+};
 
 /// The connected regions of a mask and where each lies.
 struct LabelledRegions {

@@ -100,9 +100,8 @@ DirectAlignment align_directly(const DirectReference& reference, const DirectTar
   const DirectConfig& direct = config.direct;
   DirectAlignment result;
   DirectRecord& record = result.record;
-  const auto patches =
-      choose_patches(reference, camera,
-                     camera.readout_s != 0.0 && config.tracking.correct_rolling_shutter != 0, direct.cell_px);
+  const auto patches = choose_patches(
+      reference, camera, camera.readout_s != 0.0 && config.tracking.correct_rolling_shutter, direct.cell_px);
   record.patches = static_cast<int>(patches.size());
   if (record.patches < direct.min_patches || target.gray.size() != reference.gray.size()) return result;
   const GreyPyramid before = grey_pyramid(reference.gray, direct.coarsest_level);

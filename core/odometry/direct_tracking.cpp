@@ -1,7 +1,6 @@
 // Tracking without corners: the part of Odometry that aligns a frame directly where matches starve.
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "core/odometry/odometry.hpp"
 #include "core/stopwatch.hpp"
@@ -25,8 +24,7 @@ Pose fused(const Pose& one, const Matrix6d& one_information, const Pose& other,
 }  // namespace
 
 bool Odometry::aligns_directly() const {
-  const std::string_view method = config_.run.method;
-  return config_.direct.below_inliers > 0 && (method == "stillpoint" || method == "oracle");
+  return config_.direct.below_inliers > 0 && motion_.info().extends_odometry;
 }
 
 bool Odometry::starves(int inliers) const {
@@ -63,7 +61,7 @@ std::optional<Odometry::DirectPose> Odometry::align(const Frame& frame, const Cu
     const Pose world_from_reference =
         ((*reference)->camera_from_keyframe * map_.pose_of((*reference)->reference_keyframe)).inverse();
     DirectTarget target{frame.gray, frame.depth, moving, {}};
-    if (camera_.readout_s != 0.0 && config_.tracking.correct_rolling_shutter != 0)
+    if (camera_.readout_s != 0.0 && config_.tracking.correct_rolling_shutter)
       target.velocity = [&](const Pose& target_from_reference) -> Vector6d {
         return se3_log(target_from_reference * world_from_reference.inverse() * last_from_world.inverse()) /
                elapsed();
@@ -92,10 +90,8 @@ bool Odometry::begins_starved(const Current& current) {
   const bool starved = found < kHardly * config_.direct.below_share * usual_first_inliers_;
   // Before what moves has had time to be found, patches on it would take the camera along: consensus does
   // not.
-  const bool knows_movers = config_.run.method != "stillpoint" ||
-                            static_cast<int>(past_views_.size()) > config_.depth_motion.far_reference;
   usual_first_inliers_ = std::max(kUsualFades * usual_first_inliers_, found);
-  return starved && knows_movers;
+  return starved && motion_.settled();
 }
 
 double Odometry::noise_of_corners(const Current& current, const Pose& camera_from_world) const {

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
-#include "core/motion/depth_motion.hpp"
-#include "core/motion/detect_motion.hpp"
+#include "core/motion/motion_stage.hpp"
 #include "core/odometry/orb_extractor.hpp"
 #include "core/sequence/frame.hpp"
 
@@ -20,10 +18,7 @@ struct PreparedFrame {
   OrbFeatures found;
   std::vector<cv::Point2f> pixels;                  ///< of the features, in the image as it is
   std::vector<cv::Point2f> undistorted;             ///< the same as a pinhole would see them
-  std::shared_ptr<const MotionFrame> motion_frame;  ///< method `paper`: what later frames are compared with
-  MotionTrace motion;                               ///< method `paper`: what moves
-  std::shared_ptr<const RgbdView> view;             ///< method `stillpoint`: the frame made small
-  SurfacePatches patches;                           ///< … and its surfaces in patches
+  std::shared_ptr<const MotionPreparation> motion;  ///< what the motion method made of it
   double features_ms = 0.0, motion_ms = 0.0;        ///< wall time each took; for reading only
 };
 
@@ -37,23 +32,16 @@ class FramePreparer {
   /// @param beside_tracking another frame is tracked meanwhile: no more threads are taken than that leaves
   [[nodiscard]] PreparedFrame prepare(const Frame& frame, bool beside_tracking = false);
 
-  /// Takes note of a frame that another preparer prepared; null where the method compares no frames.
-  void pass(const std::shared_ptr<const MotionFrame>& motion_frame);
-
-  /// Lets go of all frames taken note of.
-  void forget() { references_.clear(); }
-
-  /// The frames the next one can be compared with, newest last.
-  [[nodiscard]] const std::deque<std::shared_ptr<const MotionFrame>>& references() const {
-    return references_;
-  }
+  /// The motion method's preparations, for those that another preparer made.
+  [[nodiscard]] MotionPreparer& motion() { return motion_; }
+  [[nodiscard]] const MotionPreparer& motion() const { return motion_; }
 
  private:
   Camera camera_;
-  Config config_;
   OrbExtractor extractor_;
-  std::deque<std::shared_ptr<const MotionFrame>>
-      references_;  // newest last, as far back as motion detection looks
+  MotionPreparer motion_;
+  int threads_;
+  bool judged_by_pose_;  // the method works while a frame is tracked, not before
 };
 
 }  // namespace stillpoint

@@ -91,6 +91,12 @@ struct StageTimes {
   double direct = 0.0;     ///< direct alignment
 };
 
+/// A figure of the motion method, by its name in MethodInfo::figures.
+struct MotionFigure {
+  std::string name;
+  double value = 0.0;
+};
+
 /// The frame's pose as it would have been with other features taken out, solved from the same map and the
 /// same prediction (run.check_removal). Nothing else depends on it.
 struct RemovalCheck {
@@ -111,10 +117,9 @@ struct FrameRecord {
   PoseStart pose_start = PoseStart::none;
 
   int features_found = 0, features_removed = 0, features_kept = 0;
-  double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
-  int motion_rounds = 0;
-  int static_tracks = 0;  ///< flow tracks that agree with the forward homography
-  double homography_rms_px = 0.0;
+  double mask_share = 0.0;                   ///< of the frame's pixels, 0 to 1
+  int motion_rounds = 0;                     ///< of an iterative motion method; 0 for others
+  std::vector<MotionFigure> motion_figures;  ///< what the method measured (MethodInfo::figures)
 
   int matches = 0;      ///< features matched to map points
   int inliers = 0;      ///< … that agree with the pose
@@ -128,8 +133,7 @@ struct FrameRecord {
          bundle_rms_px = 0.0;  ///< of the adjustment applied in this frame; 0 when none was
   int bundle_iterations = 0;
 
-  std::optional<Pose>
-      prior_pose;  ///< camera_from_world under which method `stillpoint` remembered what moves
+  std::optional<Pose> prior_pose;   ///< camera_from_world under which the motion method applied its prior
   std::optional<Pose> motion_pose;  ///< … and under which it then found it
   RemovalCheck removal_check;
   DirectRecord direct;

@@ -1,7 +1,6 @@
 // What becomes of a frame when it has been tracked: the part of Odometry that keeps the map, and poses by it.
 #include <algorithm>
 #include <limits>
-#include <string_view>
 
 #include "core/odometry/mapping.hpp"
 #include "core/odometry/odometry.hpp"
@@ -101,8 +100,7 @@ void Odometry::add_keyframe(const Frame& frame, Current& current, FrameRecord& r
 }
 
 bool Odometry::looks_back() const {
-  const std::string_view method = config_.run.method;
-  return config_.tracking.look_back_frames > 0 && (method == "stillpoint" || method == "oracle");
+  return config_.tracking.look_back_frames > 0 && motion_.info().extends_odometry;
 }
 
 void Odometry::remember_sights(const Current& current, const FrameRecord& record) {

@@ -16,7 +16,11 @@ constexpr int kMinFeaturesToBegin = 100;  // with depth: fewer make no map to tr
 }  // namespace
 
 Odometry::Odometry(const Camera& camera, const Config& config)
-    : camera_(camera), config_(config), preparer_(camera, config), scales_(octave_scales(config.features)) {}
+    : camera_(camera),
+      config_(config),
+      preparer_(camera, config),
+      motion_(camera, config),
+      scales_(octave_scales(config.features)) {}
 
 FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   const Stopwatch watch;
@@ -30,7 +34,7 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
 
 FrameResult Odometry::process_prepared(const Frame& frame, PreparedFrame prepared,
                                        const cv::Mat& known_mask) {
-  preparer_.pass(prepared.motion_frame);
+  preparer_.motion().pass(prepared.motion);
   return run_frame(frame, prepared, known_mask);
 }
 
@@ -50,17 +54,19 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
   } else {
     record.ms.features = prepared.features_ms;
     record.ms.motion = prepared.motion_ms;
-    view_ = prepared.view;
-    patches_ = std::move(prepared.patches);
-    take_mask(frame, prepared, known_mask, result);
-    if (config_.run.check_removal != 0 && last_) {
+    MotionInput input{frame, prepared.motion};
+    input.threads = config_.run.threads;
+    const MotionNeeds& needs = motion_.info_for(frame).needs;
+    if (needs.true_mask) input.true_mask = known_mask;
+    if (!needs.first_pose) judge(input, result);
+    if (config_.run.check_removal && last_) {
       const Stopwatch beside;
       record.removal_check = check_removal(frame, prepared, known_mask);
       check_ms = beside.milliseconds();
     }
-    Current current = last_ ? track_frame(frame, prepared, result) : initialise(frame, prepared, result);
+    Current current = last_ ? track_frame(input, prepared, result) : initialise(frame, prepared, result);
     record.features = std::move(current.records);
-    if (config_.run.method == "stillpoint") remember_view(frame, result);
+    motion_.commit(input, result.motion, {record.estimated, record.world_from_camera.inverse()});
     if (aligns_directly()) remember_reference(frame, result);
   }
   record.map_points = static_cast<int>(map_.point_count());
@@ -69,34 +75,49 @@ FrameResult Odometry::run_frame(const Frame& frame, PreparedFrame& prepared, con
   return result;
 }
 
-void Odometry::take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask,
-                         FrameResult& result) {
-  if (config_.run.method == "stillpoint") {
-    detect_in_colour(frame, result);
-    return;
+/// METHOD.md §1, or what stands in its place: the method's judgement of the frame.
+void Odometry::judge(const MotionInput& input, FrameResult& result) const {
+  const Stopwatch watch;
+  result.motion = motion_.detect(input);
+  result.mask = result.motion.mask;
+  FrameRecord& record = result.record;
+  record.mask_share = result.motion.mask_share;
+  record.motion_rounds = result.motion.rounds;
+  const std::vector<FigureInfo>& infos = motion_.info_for(input.frame).figures;
+  record.motion_figures.clear();
+  for (std::size_t i = 0; i < result.motion.figures.size() && i < infos.size(); ++i)
+    record.motion_figures.push_back({infos[i].name, result.motion.figures[i]});
+  if (input.camera_from_world) record.motion_pose = input.camera_from_world;
+  record.ms.motion += watch.milliseconds();
+}
+
+cv::Mat Odometry::prior_mask(const MotionInput& input, FrameRecord& record) const {
+  const Stopwatch watch;
+  record.prior_pose = input.camera_from_world;
+  cv::Mat mask = motion_.prior_mask(input);
+  record.ms.motion += watch.milliseconds();
+  return mask;
+}
+
+std::vector<MotionFeature> Odometry::motion_features(const PreparedFrame& prepared,
+                                                     const Current& first) const {
+  std::vector<MotionFeature> features(prepared.pixels.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    features[i].pixel = prepared.pixels[i];
+    features[i].depth = first.records[i].depth;
   }
-  if (config_.run.method == "oracle") {
-    if (known_mask.size() != frame.gray.size()) return;
-    result.mask = known_mask;
-    result.record.mask_share =
-        static_cast<double>(cv::countNonZero(known_mask)) / static_cast<double>(known_mask.total());
-  } else if (!prepared.motion.rounds.empty()) {
-    result.motion = std::move(prepared.motion);
-    const MotionRound& round = result.motion.rounds.back();
-    result.record.mask_share = round.mask_share;
-    result.record.motion_rounds = static_cast<int>(result.motion.rounds.size());
-    result.record.homography_rms_px = round.forward.homography.refined_error_px;
-    result.record.static_tracks = static_cast<int>(std::count_if(
-        round.forward.tracks.begin(), round.forward.tracks.end(), [](const Track& t) { return t.inlier; }));
-    result.mask = result.motion.mask();
-  } else {
-    result.motion = std::move(prepared.motion);
+  for (std::size_t f = 0; f < first.points.size(); ++f) {
+    if (first.points[f] == kNone) continue;
+    MotionFeature& feature = features[static_cast<std::size_t>(first.record_of[f])];
+    feature.map_point = first.points[f];
+    feature.world = map_.point(first.points[f]).position;
   }
+  return features;
 }
 
 Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFrame& prepared,
                                           const cv::Mat& mask, const Vector6d& velocity, FrameRecord& record,
-                                          const cv::Mat& log_odds) const {
+                                          const MotionResult& motion) const {
   const OrbFeatures& found = prepared.found;
   const std::vector<cv::Point2f>& pixels = prepared.pixels;
   Current current;
@@ -107,7 +128,7 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
   const double lag = depth_lag(frame);
   all.depth = lag == 0.0 ? depth_at(pixels, frame.depth)
                          : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity * lag));
-  if (config_.tracking.correct_rolling_shutter != 0)
+  if (config_.tracking.correct_rolling_shutter)
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   current.mask = mask;
@@ -115,8 +136,13 @@ Odometry::Current Odometry::remove_moving(const Frame& frame, const PreparedFram
   if (!mask.empty())
     for (std::size_t i = 0; i < keep.size(); ++i)
       keep[i] = mask.at<uchar>(cvRound(pixels[i].y), cvRound(pixels[i].x)) == 0;
-  all.trust = trust_at(pixels, config_.tracking.soft_weights != 0 ? log_odds : cv::Mat(), frame.gray.size(),
+  all.trust = trust_at(pixels, config_.tracking.soft_weights ? motion.log_odds : cv::Mat(), frame.gray.size(),
                        config_.tracking.half_trust_log_odds);
+  if (motion.weight_of_feature.size() == keep.size())
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+      if (motion.weight_of_feature[i] <= 0.0F) keep[i] = 0;
+      all.trust[i] *= motion.weight_of_feature[i];
+    }
   raise_least_trust(keep, all.trust);
 
   current.records.resize(keep.size());
@@ -158,20 +184,25 @@ Odometry::Current Odometry::initialise(const Frame& frame, const PreparedFrame& 
   return current;
 }
 
-Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame& prepared,
+Odometry::Current Odometry::track_frame(MotionInput input, const PreparedFrame& prepared,
                                         FrameResult& result) {
+  const Frame& frame = input.frame;
   FrameRecord& record = result.record;
-  const bool finds_movers_by_pose = config_.run.method == "stillpoint";
+  const MotionNeeds& needs = motion_.info_for(frame).needs;
+  const bool judged_by_pose = motion_.info().needs.first_pose;
   Pose start = predicted_camera_from_world();
   Vector6d velocity = velocity_;
   bool agreed = false;
-  if (finds_movers_by_pose || !is_taken_at_once(frame)) {
+  if (judged_by_pose || !is_taken_at_once(frame)) {
     // A first pose: what moves under it, and how fast the camera goes in this very frame, are known only
     // then.
-    if (finds_movers_by_pose) result.mask = remembered_mask(frame, start, record);
+    if (needs.first_pose) {
+      input.camera_from_world = start;
+      result.mask = prior_mask(input, record);
+    }
     Current first = remove_moving(frame, prepared, result.mask, velocity_, record);
     first.camera_from_world = first.start = start;
-    first.seek_consensus = finds_movers_by_pose && config_.tracking.seek_consensus != 0;
+    first.seek_consensus = judged_by_pose && config_.tracking.seek_consensus;
     first.seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(frame.index);
     bool begun = estimate(first, record);
     if (aligns_directly() && (begins_starved(first) || !begun))
@@ -180,28 +211,37 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
     if (begun) {
       start = first.camera_from_world;
       velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
-      if (finds_movers_by_pose) detect_by_pose(frame, start, result);
+      if (needs.first_pose) {
+        input.camera_from_world = start;
+        const std::vector<MotionFeature> features =
+            needs.matches ? motion_features(prepared, first) : std::vector<MotionFeature>();
+        input.features = features;
+        judge(input, result);
+        purge_moving_points(frame, result.mask, start);
+      }
     }
   }
-  Current current =
-      remove_moving(frame, prepared, result.mask, velocity, record, result.depth_motion.log_odds);
+  Current current = remove_moving(frame, prepared, result.mask, velocity, record, result.motion);
   current.camera_from_world = current.start = start;
   current.start_agreed = agreed;
   std::string why_lost;
-  bool harms = finds_movers_by_pose && leaves_too_little(current);
+  bool harms = judged_by_pose && leaves_too_little(current);
   if (!harms) {
     why_lost = track(frame, current, record);
-    harms = finds_movers_by_pose && !why_lost.empty() && record.features_removed > 0;
+    harms = judged_by_pose && !why_lost.empty() && record.features_removed > 0;
   }
   if (harms) {
-    // Better a pose disturbed by what moves than none: the frame is tracked by all of its features, and what
-    // is remembered to move, which led here, is forgotten.
+    // Better a pose disturbed by what moves than none: the frame is tracked by all of its features, and the
+    // judgement, which led here, is withdrawn.
     current = remove_moving(frame, prepared, {}, velocity, record);
     current.camera_from_world = current.start = start;
     current.start_agreed = agreed;
     why_lost = track(frame, current, record);
     result.mask.release();
-    result.depth_motion.log_odds.setTo(0);
+    result.motion.mask.release();
+    result.motion.weight_of_feature.clear();
+    if (!result.motion.log_odds.empty())
+      result.motion.log_odds = cv::Mat::zeros(result.motion.log_odds.size(), CV_32FC1);
     record.mask_share = 0.0;
     record.note += (record.note.empty() ? "" : "; ") +
                    std::string("too little is left without what moves, so nothing was removed");
@@ -211,8 +251,7 @@ Odometry::Current Odometry::track_frame(const Frame& frame, const PreparedFrame&
 }
 
 bool Odometry::is_taken_at_once(const Frame& frame) const {
-  return (camera_.readout_s == 0.0 || config_.tracking.correct_rolling_shutter == 0) &&
-         depth_lag(frame) == 0.0;
+  return (camera_.readout_s == 0.0 || !config_.tracking.correct_rolling_shutter) && depth_lag(frame) == 0.0;
 }
 
 int Odometry::inliers_needed() const {
@@ -302,9 +341,8 @@ Pose Odometry::last_camera_from_world() const {
 }
 
 double Odometry::depth_lag(const Frame& frame) const {
-  return config_.tracking.correct_depth_lag != 0 && frame.has_depth()
-             ? frame.depth_timestamp - frame.timestamp
-             : 0.0;
+  return config_.tracking.correct_depth_lag && frame.has_depth() ? frame.depth_timestamp - frame.timestamp
+                                                                 : 0.0;
 }
 
 double Odometry::elapsed() const {

@@ -9,8 +9,7 @@
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
-#include "core/motion/colour_motion.hpp"
-#include "core/motion/depth_motion.hpp"
+#include "core/motion/motion_stage.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/direct_alignment.hpp"
 #include "core/odometry/frame_preparer.hpp"
@@ -26,17 +25,8 @@ namespace stillpoint {
 /// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
 struct FrameResult {
   FrameRecord record;
-  MotionTrace motion;               ///< what the method's motion stage saw; without rounds where it has none
-  DepthMotionTrace depth_motion;    ///< the same of method `stillpoint`; without references where it has none
-  ColourMotionTrace colour_motion;  ///< the same of a frame without depth; without points where it has none
-  cv::Mat mask;                     ///< what was removed, CV_8UC1, 255 = moving; empty when nothing was
-};
-
-/// A frame that was processed before, and where it was found to be.
-struct PastFrame {
-  Frame frame;
-  Pose camera_from_world = Pose::Identity();
-  bool estimated = false;  ///< the pose was measured, not predicted
+  MotionResult motion;  ///< the method's judgement, as far as it came to one
+  cv::Mat mask;         ///< what was removed, CV_8UC1, 255 = dynamic; empty when nothing was
 };
 
 /// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds
@@ -83,8 +73,6 @@ class Odometry {
   [[nodiscard]] const Config& config() const { return config_; }
 
  private:
-  friend class MotionReplay;
-
   /// The frame being tracked.
   struct Current {
     std::shared_ptr<const FeatureSet> features;  // static ones
@@ -108,12 +96,6 @@ class Odometry {
     int reference_keyframe = kNone;
     Pose camera_from_reference = Pose::Identity();
   };
-  /// A small frame that was tracked, and from where.
-  struct PastView {
-    int frame_index = 0;
-    std::shared_ptr<const RgbdView> view;
-    Pose camera_from_world = Pose::Identity();
-  };
   /// Where patches say the camera stands, and how well they know (DirectAlignment::information).
   struct DirectPose {
     Pose camera_from_world = Pose::Identity();
@@ -127,17 +109,14 @@ class Odometry {
 
   void apply_due_bundle(FrameRecord& record, bool now);
   [[nodiscard]] FrameResult run_frame(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask);
-  void take_mask(const Frame& frame, PreparedFrame& prepared, const cv::Mat& known_mask, FrameResult& result);
+  void judge(const MotionInput& input, FrameResult& result) const;
+  [[nodiscard]] cv::Mat prior_mask(const MotionInput& input, FrameRecord& record) const;
+  [[nodiscard]] std::vector<MotionFeature> motion_features(const PreparedFrame& prepared,
+                                                           const Current& first) const;
   [[nodiscard]] Current remove_moving(const Frame& frame, const PreparedFrame& prepared, const cv::Mat& mask,
                                       const Vector6d& velocity, FrameRecord& record,
-                                      const cv::Mat& log_odds = {}) const;
-  [[nodiscard]] Current track_frame(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
-  [[nodiscard]] cv::Mat remembered_mask(const Frame& frame, const Pose& predicted, FrameRecord& record);
-  void detect_in_colour(const Frame& frame, FrameResult& result);
-  void detect_by_pose(const Frame& frame, const Pose& camera_from_world, FrameResult& result);
-  void remember_view(const Frame& frame, const FrameResult& result);
-  [[nodiscard]] std::vector<ReferenceView> reference_views(int frame_index,
-                                                           const Pose& camera_from_world) const;
+                                      const MotionResult& motion = {}) const;
+  [[nodiscard]] Current track_frame(MotionInput input, const PreparedFrame& prepared, FrameResult& result);
   void purge_moving_points(const Frame& frame, const cv::Mat& mask, const Pose& camera_from_world);
   [[nodiscard]] Current initialise(const Frame& frame, const PreparedFrame& prepared, FrameResult& result);
   /// @returns why there is no pose; empty when there is one
@@ -191,6 +170,7 @@ class Odometry {
   Camera camera_;
   Config config_;
   FramePreparer preparer_;
+  MotionStage motion_;  // what is classified as dynamic
   std::vector<double> scales_;
   LocalMap map_;
   std::optional<Last> last_;  // empty until the map has begun
@@ -201,11 +181,6 @@ class Odometry {
   int lost_frames_ = 0;          // in a row
   int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
   std::optional<PendingBundle> pending_;
-  std::deque<PastView> past_views_;                 // newest last: what method `stillpoint` compares with
-  std::optional<MotionMemory> memory_;              // of the newest past view
-  std::shared_ptr<const RgbdView> view_;            // of the frame at hand
-  SurfacePatches patches_;                          // … and its surfaces, until its motion is judged
-  std::optional<ColourMotionDetector> colour_;      // while frames have no depth
   std::optional<DirectReference> last_reference_;   // the newest frame with a pose and depth
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
   double usual_first_inliers_ = 0.0;                // of first poses, lately

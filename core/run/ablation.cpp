@@ -43,49 +43,43 @@ std::optional<double> mean_iou(const AblationRow& row) {
 
 }  // namespace
 
-const std::vector<Ingredient>& ingredients() {
-  static const std::vector<Ingredient> all = {
-      {"depth_evidence", "judging motion by depth", {"depth_motion.use_depth=0"}},
-      {"brightness_evidence", "judging motion by brightness", {"depth_motion.use_brightness=0"}},
-      {"memory", "carrying evidence from frame to frame", {"depth_motion.memory=0"}},
-      {"firm_memory", "letting go but slowly of what firmly moves", {"depth_motion.release=1"}},
-      {"misplacement",
-       "leave for surfaces that lie beside their place",
-       {"depth_motion.max_misplacement_px=0"}},
-      {"patch_shifts", "slow movers by the shifts of patches", {"depth_motion.patch_share=0"}},
-      {"receding", "patches that go back, away from the camera", {"depth_motion.find_receding=0"}},
-      {"inherit",
-       "what comes into view taking over what its surface is known to do",
-       {"depth_motion.inherit=0"}},
-      {"slow_reference",
-       "a far reference that lies farther back in every second frame",
-       {"depth_motion.slow_reference=10"}},
-      {"neighbours", "patches of one surface agreeing", {"depth_motion.smoothing=0"}},
-      {"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=0"}},
-      {"held_start", "a second pose held to the first one's consensus", {"tracking.start_looseness=0"}},
-      {"look_back", "solving poses once more by the later map", {"tracking.look_back_frames=0"}},
-      {"direct", "direct alignment where corners starve", {"direct.below_inliers=0"}},
-      {"soft_weights", "weighing features by how likely they stand still", {"tracking.soft_weights=0"}},
-      {"purge", "taking map points on movers out of the map", {"map.purge_moving=0"}},
+std::vector<Ingredient> ingredients(const MethodInfo& method) {
+  std::vector<Ingredient> all = method.ingredients;
+  if (method.needs.first_pose) {
+    all.push_back({"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=false"}});
+    all.push_back(
+        {"held_start", "a second pose held to the first one's consensus", {"tracking.start_looseness=0"}});
+  }
+  if (method.extends_odometry) {
+    all.push_back({"look_back", "solving poses once more by the later map", {"tracking.look_back_frames=0"}});
+    all.push_back({"direct", "direct alignment where corners starve", {"direct.below_inliers=0"}});
+  }
+  if (method.needs.first_pose) {
+    all.push_back({"soft_weights",
+                   "weighing features by how likely they stand still",
+                   {"tracking.soft_weights=false"}});
+    all.push_back({"purge", "taking map points on movers out of the map", {"map.purge_moving=false"}});
+  }
+  const std::vector<Ingredient> of_all = {
       {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},
       {"depth_residual", "depth beside pixels in the pose", {"tracking.depth_weight=0"}},
-      {"rolling_shutter", "undoing the rolling shutter", {"tracking.correct_rolling_shutter=0"}},
-      {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=0"}},
-  };
+      {"rolling_shutter", "undoing the rolling shutter", {"tracking.correct_rolling_shutter=false"}},
+      {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=false"}}};
+  all.insert(all.end(), of_all.begin(), of_all.end());
   return all;
 }
 
-const Ingredient& ingredient_by_name(const std::string& name) {
+Ingredient ingredient_by_name(const MethodInfo& method, const std::string& name) {
   std::vector<std::string> names;
-  for (const Ingredient& one : ingredients()) {
+  for (const Ingredient& one : ingredients(method)) {
     if (one.name == name) return one;
     names.push_back(one.name);
   }
-  throw InputError(fmt::format("there is no ingredient '{}'; there are: {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("there is no ingredient '{}' of method {}; there are: {}", name, method.name,
+                               fmt::join(names, ", ")));
 }
 
 Config ablated(Config config, const Ingredient* without) {
-  config.run.method = "stillpoint";
   if (without)
     for (const std::string& assignment : without->assignments) set_parameter(config, assignment);
   return config;
@@ -124,9 +118,10 @@ AblationChange change_of(const AblationRow& row, const AblationRow& whole) {
   return change;
 }
 
-Table ablation_summary(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
+Table ablation_summary(const std::string& method, const std::vector<AblationRow>& rows,
+                       const std::vector<std::string>& sequences) {
   Table table;
-  table.header = {"stillpoint",     "RPE, mean change", "worst change",      "on", "mask IoU", "IoU change",
+  table.header = {method,           "RPE, mean change", "worst change",      "on", "mask IoU", "IoU change",
                   "least coverage", "median ms",        "nothing changed on"};
   for (const AblationRow& row : rows) {
     const AblationChange change = change_of(row, rows.front());
@@ -170,7 +165,7 @@ Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std:
   return table;
 }
 
-nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
+nlohmann::ordered_json ablation_json(const std::string& method, const std::vector<AblationRow>& rows,
                                      const std::vector<std::string>& sequences) {
   nlohmann::ordered_json variants = nlohmann::ordered_json::array();
   for (const AblationRow& row : rows) {
@@ -189,14 +184,14 @@ nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
     variant["without"] =
         row.without.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(row.without);
     if (!row.without.empty()) {
-      variant["set"] = ingredient_by_name(row.without).assignments;
+      variant["set"] = row.assignments;
       variant["rpe_mean_change"] = or_null(change.mean);
       variant["mask_iou_change"] = or_null(change.mask_iou);
     }
     variant["runs"] = runs;
     variants.push_back(variant);
   }
-  return {{"method", "stillpoint"}, {"variants", variants}};
+  return {{"method", method}, {"variants", variants}};
 }
 
 }  // namespace stillpoint

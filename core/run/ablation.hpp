@@ -7,28 +7,22 @@
 
 #include "core/config.hpp"
 #include "core/evaluation/tables.hpp"
+#include "core/motion/methods.hpp"
 #include "core/run/run_report.hpp"
 
 namespace stillpoint {
 
-// What each ingredient of method `stillpoint` is worth: the whole method, and the method with one ingredient
-// left out at a time, over the same sequences.
+// What each ingredient of a method, and of the odometry behind it, is worth: the whole, and the method with
+// one ingredient left out at a time, over the same sequences.
 
-/// Something the method can do without, and how it is told to.
-struct Ingredient {
-  std::string name;                      ///< for the command line and tables: "memory"
-  std::string help;                      ///< what it does, a few words
-  std::vector<std::string> assignments;  ///< `section.name=value`, as set_parameter takes them
-};
-
-/// All of them, in the order of tables.
-[[nodiscard]] const std::vector<Ingredient>& ingredients();
+/// A method's own ingredients and then the odometry's, in the order of tables.
+[[nodiscard]] std::vector<Ingredient> ingredients(const MethodInfo& method);
 
 /// The ingredient of that name.
 /// @throws InputError naming those there are
-[[nodiscard]] const Ingredient& ingredient_by_name(const std::string& name);
+[[nodiscard]] Ingredient ingredient_by_name(const MethodInfo& method, const std::string& name);
 
-/// Method `stillpoint` with `config`'s constants, without one ingredient or, where `without` is null, whole.
+/// `config` without one ingredient or, where `without` is null, whole.
 [[nodiscard]] Config ablated(Config config, const Ingredient* without);
 
 /// What one variant reached on one sequence.
@@ -44,7 +38,8 @@ struct AblationCell {
 
 /// All that one variant reached, a cell a sequence, in their order.
 struct AblationRow {
-  std::string without;  ///< an ingredient's name; empty = the whole method
+  std::string without;                     ///< an ingredient's name; empty = the whole method
+  std::vector<std::string> assignments{};  ///< what left it out
   std::vector<AblationCell> cells;
 };
 
@@ -63,7 +58,7 @@ struct AblationChange {
 [[nodiscard]] AblationChange change_of(const AblationRow& row, const AblationRow& whole);
 
 /// A row a variant, the whole method first: what changed over all sequences.
-[[nodiscard]] Table ablation_summary(const std::vector<AblationRow>& rows,
+[[nodiscard]] Table ablation_summary(const std::string& method, const std::vector<AblationRow>& rows,
                                      const std::vector<std::string>& sequences);
 
 /// A row a sequence: RPE over 1 s of each variant.
@@ -73,7 +68,8 @@ struct AblationChange {
 /// A row a run, for programs.
 [[nodiscard]] Table ablation_list(const std::vector<AblationRow>& rows,
                                   const std::vector<std::string>& sequences);
-[[nodiscard]] nlohmann::ordered_json ablation_json(const std::vector<AblationRow>& rows,
+[[nodiscard]] nlohmann::ordered_json ablation_json(const std::string& method,
+                                                   const std::vector<AblationRow>& rows,
                                                    const std::vector<std::string>& sequences);
 
 }  // namespace stillpoint

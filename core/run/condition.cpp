@@ -248,7 +248,7 @@ class Parser {
                   [column](const FrameFigures& f, int row) { return f.value(row, column); });
     }
     std::vector<std::string_view> names;
-    for (const FrameFigureInfo& info : infos) names.push_back(info.name);
+    for (const FigureInfo& info : infos) names.push_back(info.name);
     unknown(token, "name", names);
   }
 
@@ -362,7 +362,7 @@ std::string condition_help() {
       "              spike(x, 3): more than 3 standard deviations off the median of the 60 frames before\n"
       "  What is not known, such as errors without ground truth, makes a comparison false.\n"
       "Names:\n";
-  for (const FrameFigureInfo& info : frame_figure_infos())
+  for (const FigureInfo& info : frame_figure_infos())
     text += fmt::format("  {:<18} {:<7} {}\n", info.name, to_string(info.unit), info.help);
   return text;
 }

@@ -1,5 +1,7 @@
 #include "core/run/frame_figures.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <limits>
 #include <unordered_map>
 
@@ -21,8 +23,8 @@ struct Row {
 };
 
 struct Figure {
-  FrameFigureInfo info;
-  double (*of)(const Row&);
+  FigureInfo info;
+  std::function<double(const Row&)> of;
 };
 
 double flag(bool is) { return is ? 1.0 : 0.0; }
@@ -31,8 +33,17 @@ double known(const std::optional<double>& value) { return value.value_or(kUnknow
 
 using enum FigureUnit;
 
-const std::vector<Figure>& figures() {
-  static const std::vector<Figure> all = {
+/// What a method measures of a frame, known in runs by that method alone.
+Figure of_method(const FigureInfo& info) {
+  return {info, [name = info.name](const Row& row) {
+            for (const MotionFigure& figure : row.record.motion_figures)
+              if (figure.name == name) return figure.value;
+            return kUnknown;
+          }};
+}
+
+std::vector<Figure> all_figures() {
+  std::vector<Figure> all = {
       {{"frame", plain, "its index, from 0"}, [](const Row& r) { return double(r.record.index); }},
       {{"lost", truth, "no pose could be estimated"},
        [](const Row& r) { return flag(r.record.status == FrameStatus::lost); }},
@@ -94,10 +105,6 @@ const std::vector<Figure>& figures() {
        [](const Row& r) { return double(r.record.direct.patches); }},
       {{"rounds", plain, "rounds of motion detection"},
        [](const Row& r) { return double(r.record.motion_rounds); }},
-      {{"static_tracks", plain, "flow tracks that agree with the homography"},
-       [](const Row& r) { return double(r.record.static_tracks); }},
-      {{"homography_rms", pixels, "error of the homography over those tracks"},
-       [](const Row& r) { return r.record.motion_rounds > 0 ? r.record.homography_rms_px : kUnknown; }},
       {{"map_points", plain, "points in the map after the frame"},
        [](const Row& r) { return double(r.record.map_points); }},
       {{"map_keyframes", plain, "keyframes in the map after the frame"},
@@ -122,6 +129,15 @@ const std::vector<Figure>& figures() {
        [](const Row& r) { return r.record.ms.bundle; }},
       {{"ms.total", milliseconds, "time of the whole frame"}, [](const Row& r) { return r.record.ms.total; }},
   };
+  for (const MethodInfo& method : methods())
+    for (const FigureInfo& info : method.figures)
+      if (std::none_of(all.begin(), all.end(), [&](const Figure& one) { return one.info.name == info.name; }))
+        all.push_back(of_method(info));
+  return all;
+}
+
+const std::vector<Figure>& figures() {
+  static const std::vector<Figure> all = all_figures();
   return all;
 }
 
@@ -172,9 +188,9 @@ std::string_view to_string(FigureUnit unit) {
   return "";
 }
 
-const std::vector<FrameFigureInfo>& frame_figure_infos() {
-  static const std::vector<FrameFigureInfo> infos = [] {
-    std::vector<FrameFigureInfo> all;
+const std::vector<FigureInfo>& frame_figure_infos() {
+  static const std::vector<FigureInfo> infos = [] {
+    std::vector<FigureInfo> all;
     for (const Figure& figure : figures()) all.push_back(figure.info);
     return all;
   }();

@@ -4,25 +4,16 @@
 #include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
+#include "core/motion/methods.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
 
-/// What a figure is measured in; times in ms, lengths in m, shares 0 to 1.
-enum class FigureUnit : std::uint8_t { plain, metres, degrees, pixels, milliseconds, share, truth };
-
 [[nodiscard]] std::string_view to_string(FigureUnit unit);  ///< "m", …; "" for plain numbers, "yes/no"
 
-/// A figure known of each frame, by the name that conditions use.
-struct FrameFigureInfo {
-  std::string_view name;
-  FigureUnit unit = FigureUnit::plain;
-  std::string_view help;  ///< one line
-};
-
-/// All there are, in the order help lists them.
-[[nodiscard]] const std::vector<FrameFigureInfo>& frame_figure_infos();
+/// All there are, in the order help lists them; those that only one method has come last.
+[[nodiscard]] const std::vector<FigureInfo>& frame_figure_infos();
 
 /// The figures of a run's frames as one table: a row a record, a column a figure; NaN where it is not known.
 class FrameFigures {

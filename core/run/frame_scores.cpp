@@ -5,7 +5,7 @@ namespace stillpoint {
 FrameScores& FrameScores::operator+=(const FrameScores& other) {
   known = known || other.known;
   mask += other.mask;
-  forward_mask += other.forward_mask;
+  partial_mask += other.partial_mask;
   removal += other.removal;
   return *this;
 }
@@ -17,8 +17,7 @@ FrameScores score_frame(const FrameResult& result, const cv::Mat& moving) {
   if (!result.mask.empty() && result.mask.size() != moving.size()) return scores;
   scores.known = true;
   scores.mask = score_mask(result.mask, moving);
-  scores.forward_mask =
-      score_mask(result.motion.rounds.empty() ? cv::Mat() : result.motion.rounds.back().forward.mask, moving);
+  scores.partial_mask = score_mask(result.motion.partial_mask, moving);
   std::vector<FeatureVerdict> verdicts;
   verdicts.reserve(record.features.size());
   for (const FeatureRecord& feature : record.features)

@@ -9,7 +9,7 @@ namespace stillpoint {
 struct FrameScores {
   bool known = false;      ///< the truth was there, and the frame had a reference to compare with
   MaskScore mask;          ///< the method's mask
-  MaskScore forward_mask;  ///< the forward direction's alone, where the method has one
+  MaskScore partial_mask;  ///< MotionResult::partial_mask, where the method has one
   RemovalScore removal;    ///< features taken out
 
   FrameScores& operator+=(const FrameScores& other);

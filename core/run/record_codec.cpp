@@ -61,6 +61,23 @@ void transfer_direct(ByteReader& from, DirectRecord& direct) {
   direct.seen = seen.empty() ? nullptr : std::make_shared<const std::vector<DirectPatch>>(std::move(seen));
 }
 
+void transfer_motion_figures(ByteWriter& to, const std::vector<MotionFigure>& figures) {
+  to(static_cast<std::uint32_t>(figures.size()));
+  for (const MotionFigure& figure : figures) {
+    to(figure.name);
+    to(figure.value);
+  }
+}
+
+void transfer_motion_figures(ByteReader& from, std::vector<MotionFigure>& figures) {
+  constexpr std::size_t kFigureBytes = 12;
+  figures.resize(from.count(kFigureBytes));
+  for (MotionFigure& figure : figures) {
+    from(figure.name);
+    from(figure.value);
+  }
+}
+
 template <typename Archive, typename Record>
 void transfer_fields(Archive& archive, Record& r) {
   archive(r.index);
@@ -72,20 +89,19 @@ void transfer_fields(Archive& archive, Record& r) {
   archive(r.reference_keyframe);
   transfer_pose(archive, r.camera_from_reference);
   archive(r.pose_start);
-  for (auto* count :
-       {&r.features_found, &r.features_removed, &r.features_kept, &r.motion_rounds, &r.static_tracks,
-        &r.matches, &r.inliers, &r.refine_iterations, &r.new_points, &r.fused_points, &r.culled_points,
-        &r.culled_keyframes, &r.map_points, &r.map_keyframes, &r.bundle_iterations})
+  for (auto* count : {&r.features_found, &r.features_removed, &r.features_kept, &r.motion_rounds, &r.matches,
+                      &r.inliers, &r.refine_iterations, &r.new_points, &r.fused_points, &r.culled_points,
+                      &r.culled_keyframes, &r.map_points, &r.map_keyframes, &r.bundle_iterations})
     archive(*count);
-  for (auto* figure :
-       {&r.mask_share, &r.homography_rms_px, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px,
-        &r.ms.motion, &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
+  for (auto* figure : {&r.mask_share, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px, &r.ms.motion,
+                       &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total})
     archive(*figure);
   archive(r.keyframe);
   for (auto* pose :
        {&r.prior_pose, &r.motion_pose, &r.removal_check.nothing_removed, &r.removal_check.truth_removed})
     transfer_optional_pose(archive, *pose);
   transfer_direct(archive, r.direct);
+  transfer_motion_figures(archive, r.motion_figures);
 }
 
 /// Field by field over all features: what is alike lies together, which packs better.
@@ -104,7 +120,7 @@ void transfer_features(Archive& archive, Features& features) {
 template <typename Archive, typename Scores>
 void transfer_scores(Archive& archive, Scores& s) {
   archive(s.known);
-  for (auto* mask : {&s.mask, &s.forward_mask})
+  for (auto* mask : {&s.mask, &s.partial_mask})
     for (auto* pixels : {&mask->found_rightly, &mask->found_wrongly, &mask->missed, &mask->left_rightly})
       archive(*pixels);
   for (auto* features : {&s.removal.removed_rightly, &s.removal.removed_wrongly, &s.removal.kept_wrongly,

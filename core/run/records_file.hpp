@@ -14,7 +14,7 @@ namespace stillpoint {
 // looked at again without being run again.
 //
 //   8 bytes  "STILLREC"
-//   u32      version: 4
+//   u32      version: 5
 //   chunks, each
 //     u8     kind: 'H' header, 'F' frame, 'E' end
 //     u32    bytes of the content as it lies here
@@ -27,7 +27,7 @@ namespace stillpoint {
 // its fields), then the mask. The end comes once the run has ended: map, trajectories, scores, and, last, the
 // run's hash.
 
-inline constexpr std::uint32_t kRecordsVersion = 4;
+inline constexpr std::uint32_t kRecordsVersion = 5;
 inline constexpr const char* kRecordsName = "records.bin";
 
 /// Writes records.bin while a run goes on. A frame that cannot be written, because the disk is full, does not

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -55,7 +56,8 @@ class Row {
   }
 };
 
-Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors& errors) {
+Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors& errors,
+              const MethodInfo& method) {
   Row row;
   row.count("frame", r.index);
   row.number("timestamp_s", r.timestamp, 6);
@@ -66,8 +68,12 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
   row.count("features_kept", r.features_kept);
   row.number("mask_share", r.mask_share);
   row.count("motion_rounds", r.motion_rounds);
-  row.count("static_tracks", r.static_tracks);
-  row.number("homography_rms_px", r.homography_rms_px);
+  for (const FigureInfo& info : method.figures) {
+    const auto figure = std::find_if(r.motion_figures.begin(), r.motion_figures.end(),
+                                     [&](const MotionFigure& one) { return one.name == info.name; });
+    row.number(info.name.c_str(), figure == r.motion_figures.end() ? FrameErrors::kUnknown : figure->value,
+               info.digits);
+  }
   row.text("pose_start", to_string(r.pose_start));
   row.count("matches", r.matches);
   row.count("inliers", r.inliers);
@@ -109,12 +115,14 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
 std::string frames_csv(const RunResult& run, const RunReport& report) {
   const auto errors = errors_by_stamp(report);
   Table table;
-  table.header = frame_row({}, {}, {}).names;
+  const MethodInfo& method = method_of(run.config);
+  table.header = frame_row({}, {}, {}, method).names;
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const FrameRecord& record = run.records[i];
     const auto known = errors.find(record.timestamp);
     const bool has_errors = record.estimated && known != errors.end();
-    table.rows.push_back(frame_row(record, run.scores[i], has_errors ? known->second : FrameErrors{}).values);
+    table.rows.push_back(
+        frame_row(record, run.scores[i], has_errors ? known->second : FrameErrors{}, method).values);
   }
   return to_csv(table);
 }

@@ -137,7 +137,8 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["masks"] = nullptr;
   if (report.scores.known) {
     json["masks"]["mask"] = nlohmann::json(report.scores.mask);
-    json["masks"]["forward_mask_alone"] = nlohmann::json(report.scores.forward_mask);
+    if (const std::string& part = method_of(run.config).partial_mask; !part.empty())
+      json["masks"][part + "_alone"] = nlohmann::json(report.scores.partial_mask);
     json["masks"]["removed_features"] = nlohmann::json(report.scores.removal);
   }
   json["speed"] = speed_json(report.speed);
@@ -161,7 +162,7 @@ std::string to_text(const RunReport& report) {
   } else {
     text += "  no ground truth: no errors\n";
   }
-  if (report.scores.known && report.method != "none")
+  if (report.scores.known && !method_named(report.method).baseline)
     text += fmt::format(
         "  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",
         share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),

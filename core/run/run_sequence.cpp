@@ -123,7 +123,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.config = config;
   result.frames_in_sequence = source.size();
   const int end = options.count > 0 ? std::min(source.size(), options.first + options.count) : source.size();
-  const bool told = config.run.method == "oracle" || config.run.check_removal != 0;
+  const bool told = method_of(config).needs.true_mask || config.run.check_removal;
 
   const ReadAhead reader(source, options, end, config.run.threads);
   Odometry odometry(source.camera(), config);

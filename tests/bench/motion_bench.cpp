@@ -2,11 +2,11 @@
 
 #include <opencv2/core/utility.hpp>
 
-#include "core/motion/cleanup.hpp"
-#include "core/motion/compensation.hpp"
-#include "core/motion/detect_motion.hpp"
-#include "core/motion/difference.hpp"
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/cleanup.hpp"
+#include "core/motion/paper/compensation.hpp"
+#include "core/motion/paper/detect_motion.hpp"
+#include "core/motion/paper/difference.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "tests/unit/motion_scene.hpp"
 
@@ -23,10 +23,10 @@ struct Pair {
     target = prepare_motion_frame(scene.target, config);
     trace = detect_motion(reference, target, config);
   }
-  MotionConfig config;
+  PaperConfig config;
   motion_test::PlaneAndPatch scene;
   MotionFrame reference, target;
-  MotionTrace trace;
+  PaperTrace trace;
 };
 
 const Pair& pair() {

@@ -3,7 +3,7 @@
 
 #include <opencv2/features2d.hpp>
 
-#include "core/motion/segments.hpp"
+#include "core/motion/stillpoint/segments.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
@@ -112,7 +112,7 @@ BENCHMARK(LocalBundleAdjustment)->Unit(benchmark::kMillisecond);
 
 void DepthMotion(benchmark::State& state) {
   const Scene& scene = Scene::get();
-  const DepthMotionConfig config;
+  const StillpointConfig config;
   const auto view = [&](std::size_t i) {
     return std::make_shared<const RgbdView>(
         make_rgbd_view(scene.frames[i].gray, scene.frames[i].depth, scene.source->camera(), config.factor));

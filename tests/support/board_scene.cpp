@@ -44,7 +44,7 @@ void BoardScene::render(cv::Mat& gray, cv::Mat& depth, cv::Mat* truth) const {
 RgbdView BoardScene::view() const {
   cv::Mat gray, depth;
   render(gray, depth);
-  return make_rgbd_view(gray, depth, board_camera(), DepthMotionConfig{}.factor);
+  return make_rgbd_view(gray, depth, board_camera(), StillpointConfig{}.factor);
 }
 
 }  // namespace stillpoint

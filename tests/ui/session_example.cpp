@@ -4,7 +4,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "core/motion/detect_motion.hpp"
+#include "core/motion/paper/detect_motion.hpp"
 #include "core/run/run_sequence.hpp"
 
 namespace stillpoint::testing {
@@ -204,8 +204,8 @@ DirectionTrace handmade_direction(const cv::Mat& from, const cv::Mat& to) {
 }
 
 /// Method `stillpoint`'s stages, small images of a disc that moves.
-DepthMotionTrace handmade_depth_motion() {
-  DepthMotionTrace trace;
+StillpointTrace handmade_depth_motion() {
+  StillpointTrace trace;
   const cv::Size small{160, 120};
   cv::Mat disc(small, CV_32FC1, cv::Scalar(-1.0));
   cv::circle(disc, {96, 60}, 22, cv::Scalar(4.0), cv::FILLED);

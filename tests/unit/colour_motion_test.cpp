@@ -1,4 +1,4 @@
-#include "core/motion/colour_motion.hpp"
+#include "core/motion/epipolar/colour_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/motion/camera_turn.hpp"
+#include "core/motion/epipolar/camera_turn.hpp"
 
 namespace stillpoint {
 namespace {
@@ -61,9 +61,9 @@ Camera camera() {
   return camera;
 }
 
-ColourMotionTrace last_of(const Scene& scene, int frames) {
-  ColourMotionDetector detector(camera(), ColourMotionConfig{});
-  ColourMotionTrace trace;
+EpipolarTrace last_of(const Scene& scene, int frames) {
+  ColourMotionDetector detector(camera(), EpipolarConfig{});
+  EpipolarTrace trace;
   for (int i = 0; i < frames; ++i) trace = detector.next(scene.frame(i));
   return trace;
 }
@@ -73,7 +73,7 @@ double share(const cv::Mat& part, const cv::Mat& whole) {
 }
 
 void expect_found(const Scene& scene, int frames) {
-  const ColourMotionTrace trace = last_of(scene, frames);
+  const EpipolarTrace trace = last_of(scene, frames);
   ASSERT_EQ(trace.mask.size(), cv::Size(kWidth, kHeight));
   ASSERT_EQ(trace.mask.type(), CV_8UC1);
   const cv::Mat truth = scene.truth(frames - 1);
@@ -112,7 +112,7 @@ TEST(ColourMotion, IsEmptyWhereNothingMoves) {
       scene.pan = pan;
       scene.blur_px = blur_px;
       if (pan.x < 0) scene.ground = texture({1000, 720}, 5, 2.5)(cv::Rect(0, 0, 1000, 720));
-      ColourMotionDetector detector(camera(), ColourMotionConfig{});
+      ColourMotionDetector detector(camera(), EpipolarConfig{});
       for (int i = 0; i < 7; ++i) {
         const int at = pan.x < 0 ? 6 - i : i;  // the same way, the other way round
         Scene forward = scene;
@@ -128,7 +128,7 @@ TEST(ColourMotion, ParallaxIsNoMotion) {
   scene.pan = {2.0F, 0.0F};
   scene.walk = {-6.0F, 0.0F};
   const cv::Mat between = texture({900, 120}, 11, 2.0);
-  ColourMotionDetector detector(camera(), ColourMotionConfig{});
+  ColourMotionDetector detector(camera(), EpipolarConfig{});
   for (int i = 0; i < 10; ++i) {
     cv::Mat image = scene.frame(i);
     between(cv::Rect(20 + 4 * i, 0, kWidth, 120)).copyTo(image(cv::Rect(0, 360, kWidth, 120)));
@@ -140,14 +140,14 @@ TEST(ColourMotion, ACopyGoesOnWithTheSameBytesWhateverTheThreads) {
   const Scene scene;
   Camera rolling = camera();
   rolling.readout_s = 0.03;
-  ColourMotionDetector one(rolling, ColourMotionConfig{});
+  ColourMotionDetector one(rolling, EpipolarConfig{});
   for (int i = 0; i < 5; ++i) (void)one.next(scene.frame(i), i / 30.0);
   ColourMotionDetector other = one;
   const int threads = cv::getNumThreads();
   cv::setNumThreads(1);
-  const ColourMotionTrace a = one.next(scene.frame(5), 5 / 30.0);
+  const EpipolarTrace a = one.next(scene.frame(5), 5 / 30.0);
   cv::setNumThreads(4);
-  const ColourMotionTrace b = other.next(scene.frame(5), 5 / 30.0);
+  const EpipolarTrace b = other.next(scene.frame(5), 5 / 30.0);
   cv::setNumThreads(threads);
   EXPECT_EQ(cv::norm(a.mask, b.mask, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(a.evidence, b.evidence, cv::NORM_INF), 0.0);
@@ -156,13 +156,13 @@ TEST(ColourMotion, ACopyGoesOnWithTheSameBytesWhateverTheThreads) {
 }
 
 TEST(ColourMotion, SaysWhatIsWrong) {
-  ColourMotionDetector detector(camera(), ColourMotionConfig{});
+  ColourMotionDetector detector(camera(), EpipolarConfig{});
   EXPECT_THROW((void)detector.next(cv::Mat()), InputError);
   EXPECT_THROW((void)detector.next(cv::Mat::zeros(480, 640, CV_32FC1)), InputError);
-  const ColourMotionTrace tiny = detector.next(cv::Mat::zeros(20, 30, CV_8UC1));
+  const EpipolarTrace tiny = detector.next(cv::Mat::zeros(20, 30, CV_8UC1));
   EXPECT_TRUE(tiny.mask.empty());
   EXPECT_NE(tiny.note.find("30x20"), std::string::npos);
-  const ColourMotionTrace blank = detector.next(cv::Mat::zeros(480, 640, CV_8UC1));
+  const EpipolarTrace blank = detector.next(cv::Mat::zeros(480, 640, CV_8UC1));
   EXPECT_EQ(cv::countNonZero(blank.mask), 0);
   EXPECT_TRUE(blank.points.empty());
   EXPECT_FALSE(blank.note.empty());
@@ -170,11 +170,11 @@ TEST(ColourMotion, SaysWhatIsWrong) {
 
 TEST(ColourMotion, AnotherSizeBeginsAnew) {
   const Scene scene;
-  ColourMotionDetector detector(camera(), ColourMotionConfig{});
+  ColourMotionDetector detector(camera(), EpipolarConfig{});
   for (int i = 0; i < 3; ++i) (void)detector.next(scene.frame(i));
   cv::Mat half;
   cv::resize(scene.frame(3), half, {320, 240});
-  const ColourMotionTrace trace = detector.next(half);
+  const EpipolarTrace trace = detector.next(half);
   EXPECT_TRUE(trace.references.empty());
   EXPECT_EQ(trace.mask.size(), half.size());
 }

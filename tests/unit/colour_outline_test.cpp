@@ -1,4 +1,4 @@
-#include "core/motion/colour_outline.hpp"
+#include "core/motion/epipolar/colour_outline.hpp"
 
 #include <gtest/gtest.h>
 

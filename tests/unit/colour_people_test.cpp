@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/config.hpp"
-#include "core/motion/colour_motion.hpp"
+#include "core/motion/epipolar/colour_motion.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
@@ -81,10 +81,10 @@ TEST(ColourMotionOfPeople, TheWalkingManIsMaskedFromTheFourthFrameOnAndWhatStand
   if (!std::filesystem::exists(kData + "fr3_walking_rpy_16")) GTEST_SKIP() << "the real frames are not here";
   const auto source = open_sequence(kData + "fr3_walking_rpy_16");
   ASSERT_EQ(source->size(), 16);
-  ColourMotionDetector detector(source->camera(), ColourMotionConfig{});
+  ColourMotionDetector detector(source->camera(), EpipolarConfig{});
   for (int i = 0; i < source->size(); ++i) {
     const Frame frame = source->read(i);
-    const ColourMotionTrace trace = detector.next(frame.colour, frame.timestamp);
+    const EpipolarTrace trace = detector.next(frame.colour, frame.timestamp);
     if (i < 3) continue;
     const cv::Mat truth = man(i);
     EXPECT_GT(share(trace.mask, truth), 0.5) << i;
@@ -95,7 +95,7 @@ TEST(ColourMotionOfPeople, TheWalkingManIsMaskedFromTheFourthFrameOnAndWhatStand
 TEST(ColourMotionOfPeople, ARoomWithoutThemStaysNearlyEmpty) {
   if (!std::filesystem::exists(kData + "fr1_xyz_clip")) GTEST_SKIP() << "the real clip is not here";
   const auto source = open_sequence(kData + "fr1_xyz_clip");
-  ColourMotionDetector detector(source->camera(), ColourMotionConfig{});
+  ColourMotionDetector detector(source->camera(), EpipolarConfig{});
   double masked = 0.0;
   constexpr int kFrames = 60;
   for (int i = 0; i < kFrames; ++i) {

@@ -1,13 +1,13 @@
-#include "core/motion/depth_motion.hpp"
+#include "core/motion/stillpoint/depth_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/motion/depth_evidence.hpp"
-#include "core/motion/entering.hpp"
-#include "core/motion/patch_motion.hpp"
-#include "core/motion/segments.hpp"
+#include "core/motion/stillpoint/depth_evidence.hpp"
+#include "core/motion/stillpoint/entering.hpp"
+#include "core/motion/stillpoint/patch_motion.hpp"
+#include "core/motion/stillpoint/segments.hpp"
 #include "tests/support/board_scene.hpp"
 
 namespace stillpoint {
@@ -19,8 +19,8 @@ ReferenceView reference(const BoardScene& then, const BoardScene& now) {
   return {std::make_shared<const RgbdView>(then.view()), reference_from_current};
 }
 
-DepthMotionTrace detect(const BoardScene& now, const std::vector<ReferenceView>& references,
-                        const MotionMemory* memory = nullptr) {
+StillpointTrace detect(const BoardScene& now, const std::vector<ReferenceView>& references,
+                       const MotionMemory* memory = nullptr) {
   cv::Mat gray, depth;
   now.render(gray, depth);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
@@ -35,14 +35,14 @@ double overlap(const cv::Mat& mask, const cv::Mat& truth) {
 TEST(DepthMotion, NothingMovesUnderAMovingCamera) {
   // Parallax, and an exposure that changed: neither is motion.
   const BoardScene now{0.15, 0.0, 1.0, true, 12.0};
-  const DepthMotionTrace trace = detect(now, {reference({0.10}, now), reference({0.0}, now)});
+  const StillpointTrace trace = detect(now, {reference({0.10}, now), reference({0.0}, now)});
   EXPECT_EQ(cv::countNonZero(trace.mask), 0) << "a frame in which nothing moves has an empty mask";
   EXPECT_EQ(trace.references.size(), 2u);
 }
 
 TEST(DepthMotion, AMoverIsCoveredToItsOutline) {
   const BoardScene now{0.06, 0.30};
-  const DepthMotionTrace trace = detect(now, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)});
+  const StillpointTrace trace = detect(now, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)});
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
   EXPECT_GT(overlap(trace.mask, truth), 0.85);
@@ -51,7 +51,7 @@ TEST(DepthMotion, AMoverIsCoveredToItsOutline) {
 TEST(DepthMotion, MotionAlongTheOpticalAxisIsSeen) {
   BoardScene now;
   now.board_z = 0.9;
-  const DepthMotionTrace trace = detect(now, {reference({}, now)});
+  const StillpointTrace trace = detect(now, {reference({}, now)});
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
   EXPECT_GT(overlap(trace.mask, truth), 0.8);
@@ -61,13 +61,13 @@ TEST(DepthMotion, WhatLeavesRevealsBackgroundThatIsTrusted) {
   // The board was here a moment ago and is gone: what is seen now is the wall, and the wall stands still.
   BoardScene now;
   now.board = false;
-  const DepthMotionTrace trace = detect(now, {reference({}, now)});
+  const StillpointTrace trace = detect(now, {reference({}, now)});
   EXPECT_EQ(cv::countNonZero(trace.mask), 0);
 }
 
 TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
   const BoardScene now{0.0, 0.30}, before{0.0, 0.30};
-  const DepthMotionTrace moving =
+  const StillpointTrace moving =
       detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
   ASSERT_GT(cv::countNonZero(moving.mask), 0);
   MotionMemory memory{std::make_shared<const RgbdView>(before.view()), moving.log_odds};
@@ -77,7 +77,7 @@ TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
   int frames = 0;
   for (cv::Mat odds = moving.log_odds; frames < 300; ++frames) {
     memory.log_odds = odds;
-    const DepthMotionTrace trace = detect(now, {reference(before, now)}, &memory);
+    const StillpointTrace trace = detect(now, {reference(before, now)}, &memory);
     if (cv::countNonZero(trace.mask) == 0) break;
     odds = trace.log_odds;
   }
@@ -93,7 +93,7 @@ TEST(DepthMotion, ASlowMoverIsSeenOverTime) {
   now.render(gray, depth, &truth);
   const auto detect_three_times = [&] {
     MotionMemory memory{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
-    DepthMotionTrace trace;
+    StillpointTrace trace;
     for (int i = 0; i < 3; ++i) {
       trace = detect(now, {then}, &memory);
       memory.log_odds = trace.log_odds;
@@ -102,7 +102,7 @@ TEST(DepthMotion, ASlowMoverIsSeenOverTime) {
   };
   EXPECT_EQ(cv::countNonZero(detect_three_times().mask), 0) << "pixel by pixel it is not seen";
   then.old = true;
-  const DepthMotionTrace trace = detect_three_times();
+  const StillpointTrace trace = detect_three_times();
   EXPECT_GT(overlap(trace.mask, truth), 0.7);
   EXPECT_EQ(trace.slow.size(), trace.log_odds.size());
 }
@@ -117,7 +117,7 @@ TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
   const cv::Rect hole(middle.x - 10, middle.y - 10, 20, 20);
   depth(hole).setTo(0);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
-  const DepthMotionTrace trace = detect_depth_motion(
+  const StillpointTrace trace = detect_depth_motion(
       view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(trace.mask(hole)), hole.area());
@@ -132,7 +132,7 @@ TEST(DepthMotion, AGapOpenToOneSideIsNoPartOfTheMover) {
   const cv::Rect shadow(board.br().x, board.y, 12, board.height);
   depth(shadow).setTo(0);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
-  const DepthMotionTrace trace = detect_depth_motion(
+  const StillpointTrace trace = detect_depth_motion(
       view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
   EXPECT_GT(overlap(trace.mask, truth), 0.8);
@@ -146,7 +146,7 @@ TEST(DepthMotion, ASlantedSurfaceSeenAPixelOffIsNoMover) {
   off.reference_from_current.translation().x() += 2.0 * 4.0 * 2.0 / board_camera().fx;  // 2 small px at 2 m
   const ReferenceEvidence known = detect(now, {exact}).references.front();
   EXPECT_LT(known.misplacement_px, 0.2);
-  const DepthMotionTrace trace = detect(now, {off});
+  const StillpointTrace trace = detect(now, {off});
   EXPECT_GT(trace.references.front().misplacement_px, 0.2);
   EXPECT_EQ(cv::countNonZero(trace.mask), 0);
 }
@@ -253,10 +253,10 @@ TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
   ReferenceView then = reference(before, now);
   then.old = true;
   const auto mask = [&](int find_receding) {
-    DepthMotionConfig config;
+    StillpointConfig config;
     config.find_receding = find_receding;
     MotionMemory memory{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
-    DepthMotionTrace trace;
+    StillpointTrace trace;
     for (int i = 0; i < 2; ++i) {
       trace = detect_depth_motion(view, segment_surfaces(view, config), depth, {then}, &memory,
                                   Pose::Identity(), config);
@@ -307,7 +307,7 @@ TEST(CarryMemory, TellsWhatLayOutsideTheFrameBefore) {
 }
 
 TEST(References, FarOnesTakeTurns) {
-  DepthMotionConfig config;
+  StillpointConfig config;
   config.near_reference = 2, config.far_reference = 10, config.slow_reference = 24;
   EXPECT_EQ(reference_gaps(config, 6), (std::array<int, 2>{2, 10}));
   EXPECT_EQ(reference_gaps(config, 7), (std::array<int, 2>{2, 24}));
@@ -336,17 +336,17 @@ TEST(Entering, NeighboursAloneMakeNothingFirm) {
   entered.inherit();
   const double mean = cv::mean(entered.prior, entered.fresh_board)[0];
   EXPECT_GT(mean, 1.0);
-  EXPECT_LT(mean, DepthMotionConfig{}.firm_log_odds);
+  EXPECT_LT(mean, StillpointConfig{}.firm_log_odds);
 }
 
 TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
-  const DepthMotionTrace alone = detect({}, {});
+  const StillpointTrace alone = detect({}, {});
   EXPECT_EQ(cv::countNonZero(alone.mask), 0);
   EXPECT_FALSE(alone.note.empty());
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
   const RgbdView view = make_rgbd_view(gray, none, board_camera(), 4);
-  const DepthMotionTrace blind = detect_depth_motion(view, segment_surfaces(view, {}), none,
-                                                     {reference({}, {})}, nullptr, Pose::Identity(), {});
+  const StillpointTrace blind = detect_depth_motion(view, segment_surfaces(view, {}), none,
+                                                    {reference({}, {})}, nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(blind.mask), 0);
 }
 

@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
-#include "core/motion/compensation.hpp"
-#include "core/motion/detect_motion.hpp"
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/compensation.hpp"
+#include "core/motion/paper/detect_motion.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "tests/unit/motion_scene.hpp"
 
 namespace stillpoint {
@@ -26,8 +26,8 @@ PlaneAndPatch walking_patch() { return plane_and_patch(kVga, {260, 120, 130, 240
 /// A larger patch whose motion, 8 px off the plane's, lies within the RANSAC threshold of pulled_config().
 PlaneAndPatch pulling_patch() { return plane_and_patch(kVga, {360, 60, 240, 380}, {12, 0}, 8); }
 
-MotionConfig pulled_config() {
-  MotionConfig config;
+PaperConfig pulled_config() {
+  PaperConfig config;
   config.ransac_threshold_px = 12.0;
   config.max_rounds = 6;
   return config;
@@ -67,7 +67,7 @@ void expect_equal_directions(const DirectionTrace& a, const DirectionTrace& b) {
   expect_equal_images(a.mask, b.mask, "mask");
 }
 
-void expect_equal_traces(const MotionTrace& a, const MotionTrace& b) {
+void expect_equal_traces(const PaperTrace& a, const PaperTrace& b) {
   EXPECT_EQ(a.converged, b.converged);
   EXPECT_EQ(a.note, b.note);
   ASSERT_EQ(a.rounds.size(), b.rounds.size());
@@ -84,7 +84,7 @@ void expect_equal_traces(const MotionTrace& a, const MotionTrace& b) {
 
 TEST(DetectMotion, UnionCoversThePatchAndHardlyAnythingElse) {
   const PlaneAndPatch scene = walking_patch();
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, MotionConfig{});
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, PaperConfig{});
   ASSERT_FALSE(trace.mask().empty());
   EXPECT_EQ(trace.note, "");
   const MotionRound& last = trace.rounds.back();
@@ -102,7 +102,7 @@ TEST(DetectMotion, UnionCoversThePatchAndHardlyAnythingElse) {
 
 TEST(DetectMotion, UnionHoldsBothDirectionsAndForwardAloneIsLess) {
   const PlaneAndPatch scene = walking_patch();
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, MotionConfig{});
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, PaperConfig{});
   for (const MotionRound& round : trace.rounds) {
     expect_equal_images(round.mask, round.forward.mask | round.backward_mask_in_target, "union");
     EXPECT_GT(cv::countNonZero(round.mask), cv::countNonZero(round.forward.mask));
@@ -113,7 +113,7 @@ TEST(DetectMotion, UnionHoldsBothDirectionsAndForwardAloneIsLess) {
 
 TEST(DetectMotion, RemovedTracksLieInTheMaskOfTheRoundBefore) {
   const PlaneAndPatch scene = pulling_patch();
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, pulled_config());
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, pulled_config());
   ASSERT_GE(trace.rounds.size(), 2U);
   for (const Track& track : trace.rounds[0].forward.tracks) EXPECT_FALSE(track.removed);
   int removed = 0;
@@ -129,7 +129,7 @@ TEST(DetectMotion, RemovedTracksLieInTheMaskOfTheRoundBefore) {
 
 TEST(DetectMotion, RoundsImproveAHomographyThatACoherentPatchPulls) {
   const PlaneAndPatch scene = pulling_patch();
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, pulled_config());
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, pulled_config());
   ASSERT_GE(trace.rounds.size(), 2U);
   const auto error = [&](const MotionRound& round) {
     return corner_error_px(scene.target_from_reference, round.forward.homography.matrix, kVga);
@@ -140,7 +140,7 @@ TEST(DetectMotion, RoundsImproveAHomographyThatACoherentPatchPulls) {
 
 TEST(DetectMotion, NothingInTheBorderWithoutData) {
   const PlaneAndPatch scene = walking_patch();
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, MotionConfig{});
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, PaperConfig{});
   for (const MotionRound& round : trace.rounds) {
     EXPECT_GT(cv::countNonZero(~round.forward.valid), 2000);
     EXPECT_EQ(cv::countNonZero(round.forward.mask & ~round.forward.valid), 0);
@@ -154,10 +154,10 @@ TEST(DetectMotion, SameBytesWhateverTheThreads) {
   const PlaneAndPatch scene = walking_patch();
   const int opencv_threads = cv::getNumThreads();
   cv::setNumThreads(1);
-  const MotionTrace alone = detect_motion(scene.reference, scene.target, MotionConfig{}, 1);
-  const MotionTrace beside = detect_motion(scene.reference, scene.target, MotionConfig{}, 2);
+  const PaperTrace alone = detect_motion(scene.reference, scene.target, PaperConfig{}, 1);
+  const PaperTrace beside = detect_motion(scene.reference, scene.target, PaperConfig{}, 2);
   cv::setNumThreads(4);
-  const MotionTrace many = detect_motion(scene.reference, scene.target, MotionConfig{}, 2);
+  const PaperTrace many = detect_motion(scene.reference, scene.target, PaperConfig{}, 2);
   cv::setNumThreads(opencv_threads);
   expect_equal_traces(alone, beside);
   expect_equal_traces(alone, many);
@@ -165,10 +165,10 @@ TEST(DetectMotion, SameBytesWhateverTheThreads) {
 
 TEST(DetectMotion, PreparedFramesGiveTheSameAndServeTwice) {
   const PlaneAndPatch scene = walking_patch();
-  const MotionConfig config;
+  const PaperConfig config;
   const MotionFrame reference = prepare_motion_frame(scene.reference, config);
   const MotionFrame target = prepare_motion_frame(scene.target, config);
-  const MotionTrace direct = detect_motion(scene.reference, scene.target, config);
+  const PaperTrace direct = detect_motion(scene.reference, scene.target, config);
   expect_equal_traces(direct, detect_motion(reference, target, config));
   expect_equal_traces(direct, detect_motion(reference, target, config, 2));
   expect_equal_traces(detect_motion(scene.target, scene.reference, config),
@@ -177,17 +177,17 @@ TEST(DetectMotion, PreparedFramesGiveTheSameAndServeTwice) {
 
 TEST(DetectMotion, ForwardAndBackwardChangePlacesWithTheFrames) {
   const PlaneAndPatch scene = walking_patch();
-  MotionConfig config;
+  PaperConfig config;
   config.max_rounds = 1;
-  const MotionTrace there = detect_motion(scene.reference, scene.target, config);
-  const MotionTrace back = detect_motion(scene.target, scene.reference, config);
+  const PaperTrace there = detect_motion(scene.reference, scene.target, config);
+  const PaperTrace back = detect_motion(scene.target, scene.reference, config);
   expect_equal_directions(there.rounds[0].forward, back.rounds[0].backward);
   expect_equal_directions(there.rounds[0].backward, back.rounds[0].forward);
 }
 
 TEST(DetectMotion, EqualFramesShowNoMotion) {
   const cv::Mat image = textured_image(kVga, 1);
-  const MotionTrace trace = detect_motion(image, image, MotionConfig{});
+  const PaperTrace trace = detect_motion(image, image, PaperConfig{});
   ASSERT_EQ(trace.rounds.size(), 1U);
   EXPECT_TRUE(trace.converged);
   EXPECT_EQ(cv::countNonZero(trace.rounds[0].forward.difference), 0);
@@ -206,7 +206,7 @@ TEST(DetectMotion, PairsWithoutTextureGiveANoteAndNoMask) {
   const std::vector<std::pair<cv::Mat, cv::Mat>> pairs = {
       {black, black}, {grey, grey}, {black, image}, {image, black}, {black, grey}, {noise, other_noise}};
   for (const auto& [reference, target] : pairs) {
-    const MotionTrace trace = detect_motion(reference, target, MotionConfig{}, 2);
+    const PaperTrace trace = detect_motion(reference, target, PaperConfig{}, 2);
     EXPECT_TRUE(trace.mask().empty());
     EXPECT_EQ(trace.rounds.size(), 1U);
     EXPECT_NE(trace.note.find("no mask"), std::string::npos) << trace.note;
@@ -216,7 +216,7 @@ TEST(DetectMotion, PairsWithoutTextureGiveANoteAndNoMask) {
 TEST(DetectMotion, TooSmallFramesGiveANote) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(31, 400), cv::Size(400, 2)}) {
     const cv::Mat image(size, CV_8UC1, cv::Scalar(9));
-    const MotionTrace trace = detect_motion(image, image, MotionConfig{});
+    const PaperTrace trace = detect_motion(image, image, PaperConfig{});
     EXPECT_TRUE(trace.rounds.empty());
     EXPECT_TRUE(trace.mask().empty());
     EXPECT_NE(trace.note.find("too small"), std::string::npos);
@@ -229,10 +229,10 @@ TEST(DetectMotion, AnySizeWorks) {
     const cv::Mat plane = textured_image({size.width + 8, size.height + 8}, 17);
     const cv::Mat reference = plane(cv::Rect({4, 4}, size)).clone(),
                   target = plane(cv::Rect({3, 6}, size)).clone();
-    MotionConfig config;
+    PaperConfig config;
     config.min_tracks = 6;
     config.corner_distance_px = 3;
-    const MotionTrace trace = detect_motion(reference, target, config, 2);
+    const PaperTrace trace = detect_motion(reference, target, config, 2);
     ASSERT_EQ(trace.mask().size(), size) << size << ' ' << trace.note;
     EXPECT_LT(
         corner_error_px({1, 0, 1, 0, 1, -2, 0, 0, 1}, trace.rounds.back().forward.homography.matrix, size),
@@ -243,7 +243,7 @@ TEST(DetectMotion, AnySizeWorks) {
 
 TEST(DetectMotion, FramesOfOtherSizeOrTypeAreRefused) {
   const cv::Mat gray = textured_image(kVga, 1);
-  const MotionConfig config;
+  const PaperConfig config;
   EXPECT_THROW(static_cast<void>(detect_motion(gray, gray.colRange(0, 320), config)), InputError);
   EXPECT_THROW(static_cast<void>(detect_motion(gray, cv::Mat(kVga, CV_8UC3), config)), InputError);
   EXPECT_THROW(static_cast<void>(detect_motion(cv::Mat(kVga, CV_16UC1), gray, config)), InputError);
@@ -252,9 +252,9 @@ TEST(DetectMotion, FramesOfOtherSizeOrTypeAreRefused) {
 
 TEST(DetectMotion, FewStaticTracksKeepTheLastHomography) {
   const PlaneAndPatch scene = pulling_patch();
-  MotionConfig config = pulled_config();
+  PaperConfig config = pulled_config();
   config.ransac_threshold_px = 50.0;  // every track is an inlier of the first round
-  const MotionTrace free = detect_motion(scene.reference, scene.target, config);
+  const PaperTrace free = detect_motion(scene.reference, scene.target, config);
   ASSERT_GE(free.rounds.size(), 2U);
   // So many are wanted that the direction with fewer tracks cannot spare the patch's in the second round.
   const int forward = free.rounds[0].forward.homography.ransac_inliers;
@@ -264,7 +264,7 @@ TEST(DetectMotion, FewStaticTracksKeepTheLastHomography) {
   const std::vector<Track>& second = (free.rounds[1].*scarce).tracks;
   ASSERT_LT(std::count_if(second.begin(), second.end(), [](const Track& track) { return !track.removed; }),
             config.min_tracks);
-  const MotionTrace trace = detect_motion(scene.reference, scene.target, config);
+  const PaperTrace trace = detect_motion(scene.reference, scene.target, config);
   ASSERT_GE(trace.rounds.size(), 2U);
   EXPECT_FALSE((trace.rounds[1].*scarce).homography.valid);
   EXPECT_EQ((trace.rounds[1].*scarce).homography.matrix, (trace.rounds[0].*scarce).homography.matrix);

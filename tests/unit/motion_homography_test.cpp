@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "tests/unit/motion_scene.hpp"
 
 namespace stillpoint {
@@ -52,7 +52,7 @@ cv::Matx33d direct_linear_transform(const std::vector<Track>& tracks) {
 TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     std::vector<Track> tracks = make_tracks(slight_motion(), 600, 240, 0.3, seed);
-    const HomographyEstimate estimate = estimate_homography(tracks, kVga, MotionConfig{}, cv::Matx33d::eye());
+    const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
     ASSERT_TRUE(estimate.valid);
     // 360 good tracks of 0.3 px noise: a corner is known to about 0.3 * sqrt(8 / 720) * 3 = 0.1 px.
     EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.25);
@@ -67,7 +67,7 @@ TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
 
 TEST(Homography, ExactTracksGiveTheExactHomography) {
   std::vector<Track> tracks = make_tracks(slight_motion(), 100, 0, 0.0, 4);
-  const HomographyEstimate estimate = estimate_homography(tracks, kVga, MotionConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 1e-3);  // Track's floats round at 1e-5 px
 }
@@ -111,7 +111,7 @@ TEST(Homography, RemovedTracksHaveNoSay) {
     other.removed = true;
     tracks.push_back(other);
   }
-  const HomographyEstimate estimate = estimate_homography(tracks, kVga, MotionConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.2);
   for (const Track& track : tracks) EXPECT_FALSE(track.removed && track.inlier);
@@ -128,7 +128,7 @@ TEST(Homography, TooFewOrSenselessTracksFallBack) {
     anywhere.push_back({.from = cv::Point2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0)),
                         .to = cv::Point2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0))});
   for (std::vector<Track>* tracks : {&few, &on_a_point, &none, &anywhere}) {
-    const HomographyEstimate estimate = estimate_homography(*tracks, kVga, MotionConfig{}, fall_back);
+    const HomographyEstimate estimate = estimate_homography(*tracks, kVga, PaperConfig{}, fall_back);
     EXPECT_FALSE(estimate.valid);
     EXPECT_EQ(estimate.matrix, fall_back);
     for (const Track& track : *tracks) EXPECT_FALSE(track.inlier);

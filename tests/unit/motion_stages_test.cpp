@@ -5,11 +5,11 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "core/motion/cleanup.hpp"
-#include "core/motion/compensation.hpp"
-#include "core/motion/corners.hpp"
-#include "core/motion/difference.hpp"
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/cleanup.hpp"
+#include "core/motion/paper/compensation.hpp"
+#include "core/motion/paper/corners.hpp"
+#include "core/motion/paper/difference.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "tests/unit/motion_scene.hpp"
 
@@ -189,7 +189,7 @@ cv::Rect extent(const cv::Mat& mask) { return cv::boundingRect(mask); }
 TEST(Cleanup, ErosionTakesSixPixelsAndDilationAddsFifteen) {
   cv::Mat square = cv::Mat::zeros(100, 100, CV_8UC1);
   square(cv::Rect(40, 50, 20, 12)).setTo(255);  // x 40..59, y 50..61
-  MotionConfig config;
+  PaperConfig config;
   config.dilate_iterations = 0;
   // Each 4x4 erosion anchored at its third pixel takes 2 from the left or top and 1 from the right or bottom.
   EXPECT_EQ(extent(clean_mask(square, all_valid(square.size()), config)), cv::Rect(44, 54, 14, 6));
@@ -204,7 +204,7 @@ TEST(Cleanup, ErosionTakesSixPixelsAndDilationAddsFifteen) {
 }
 
 TEST(Cleanup, SpecksVanishAndSixPixelsAreTooThin) {
-  const MotionConfig config;
+  const PaperConfig config;
   for (const int side : {1, 3, 6}) {
     cv::Mat speck = cv::Mat::zeros(60, 60, CV_8UC1);
     speck(cv::Rect(20, 20, side, 40)).setTo(255);
@@ -216,7 +216,7 @@ TEST(Cleanup, SpecksVanishAndSixPixelsAreTooThin) {
 }
 
 TEST(Cleanup, KernelsOfOneSizePutASquareBackWhereItWas) {
-  MotionConfig config;
+  PaperConfig config;
   config.erode_kernel_px = config.dilate_kernel_px = 4;
   config.erode_iterations = config.dilate_iterations = 2;
   cv::Mat square = cv::Mat::zeros(60, 60, CV_8UC1);
@@ -229,7 +229,7 @@ TEST(Cleanup, NothingGrowsWhereTheWarpHasNoData) {
   raw(cv::Rect(5, 5, 30, 30)).setTo(255);
   cv::Mat valid = all_valid(raw.size());
   valid.colRange(0, 10).setTo(0);
-  const cv::Mat mask = clean_mask(raw, valid, MotionConfig{});
+  const cv::Mat mask = clean_mask(raw, valid, PaperConfig{});
   EXPECT_GT(cv::countNonZero(mask), 0);
   EXPECT_EQ(cv::countNonZero(mask & ~valid), 0);
 }

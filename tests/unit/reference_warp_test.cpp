@@ -1,4 +1,4 @@
-#include "core/motion/reference_warp.hpp"
+#include "core/motion/stillpoint/reference_warp.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Small views and their patches of surface.
-#include "core/motion/segments.hpp"
+#include "core/motion/stillpoint/segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(Segments, ContactsAreAllPairsThatTouchOnASurface) {
       SCOPED_TRACE(testing::Message() << size << " by " << side);
       const cv::Rect part({0, 0}, size);
       const RgbdView view = make_rgbd_view(gray(part), depth(part), board_camera(), 4);
-      DepthMotionConfig config;
+      StillpointConfig config;
       config.segment_px = side;
       const auto [labels, segments, contacts] = segment_surfaces(view, config);
       const auto expected = contacts_by_hand(view, labels);

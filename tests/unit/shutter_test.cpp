@@ -1,4 +1,4 @@
-#include "core/motion/shutter.hpp"
+#include "core/motion/epipolar/shutter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/geometry/se3.hpp"
-#include "core/motion/camera_turn.hpp"
+#include "core/motion/epipolar/camera_turn.hpp"
 
 namespace stillpoint {
 namespace {

@@ -25,7 +25,7 @@ class ColourMotionPanel final : public FramePanel {
       draw_absent(frame, missing);
       return;
     }
-    const ColourMotionTrace& trace = session.current->colour_motion;
+    const EpipolarTrace& trace = session.current->colour_motion;
     Controls controls(frame);
     controls.choice("stage", {"All", "Shifts", "Points", "Evidence", "Mask"}, shown_);
     if (const int references = static_cast<int>(trace.references.size()); references > 1) {
@@ -109,15 +109,14 @@ class ColourMotionPanel final : public FramePanel {
     return cv::Mat(2, 2, CV_8UC4, cv::Scalar(shade.b, shade.g, shade.r, 255));
   }
 
-  [[nodiscard]] const ColourReference* reference_of(const ColourMotionTrace& trace) const {
+  [[nodiscard]] const ColourReference* reference_of(const EpipolarTrace& trace) const {
     if (trace.references.empty()) return nullptr;
     const auto last = trace.references.size() - 1;
     return &trace.references[reference_ < 0 ? last : std::min(last, static_cast<std::size_t>(reference_))];
   }
 
   /// Each point's way that no still room explains, several times its length.
-  void draw_shifts(const UiFrame& frame, const ImageResponse& response,
-                   const ColourMotionTrace& trace) const {
+  void draw_shifts(const UiFrame& frame, const ImageResponse& response, const EpipolarTrace& trace) const {
     constexpr float kLength = 8.0F;  // times; residuals are of the half-size image
     const ColourReference* reference = reference_of(trace);
     if (reference == nullptr) return;
@@ -134,7 +133,7 @@ class ColourMotionPanel final : public FramePanel {
   }
 
   static void draw_points(const UiFrame& frame, const SessionView& session, const ImageResponse& response,
-                          const ColourMotionTrace& trace) {
+                          const EpipolarTrace& trace) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const auto limit = static_cast<float>(session.config.colour_motion.moving_evidence);
     for (const ColourPoint& point : trace.points) {
@@ -147,7 +146,7 @@ class ColourMotionPanel final : public FramePanel {
   }
 
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
-                                 const ColourMotionTrace& trace) const {
+                                 const EpipolarTrace& trace) const {
     Footer footer;
     footer.legend.push_back({"moves", mask_colour(frame), Sign::kHollowSquare});
     footer.legend.push_back({"stands still", role_colour(Role::kInlier, frame.theme.name), Sign::kCircle});

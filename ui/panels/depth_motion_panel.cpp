@@ -32,7 +32,7 @@ class DepthMotionPanel final : public FramePanel {
       draw_absent(frame, missing);
       return;
     }
-    const DepthMotionTrace& trace = session.current->depth_motion;
+    const StillpointTrace& trace = session.current->depth_motion;
     Controls controls(frame);
     controls.choice(
         "stage", {"All", "Depth", "Brightness", "Shifts", "Memory", "Log-odds", "Segments", "Mask"}, shown_);
@@ -86,7 +86,7 @@ class DepthMotionPanel final : public FramePanel {
 
   /// What the ends of a stage's scale stand for.
   [[nodiscard]] static double range_of_stage(const SessionView& session, Stage stage) {
-    const DepthMotionConfig& config = session.config.depth_motion;
+    const StillpointConfig& config = session.config.depth_motion;
     if (stage == kDepth) return 2.0 * config.depth_sigmas;
     if (stage == kBrightness) return 60.0;
     return config.max_log_odds;
@@ -119,7 +119,7 @@ class DepthMotionPanel final : public FramePanel {
     return scale;
   }
 
-  [[nodiscard]] const cv::Mat& values_of(const DepthMotionTrace& trace, Stage stage) const {
+  [[nodiscard]] const cv::Mat& values_of(const StillpointTrace& trace, Stage stage) const {
     const ReferenceEvidence& reference = trace.references[static_cast<std::size_t>(reference_)];
     switch (stage) {
       case kDepth:
@@ -149,7 +149,7 @@ class DepthMotionPanel final : public FramePanel {
   void draw_stage(const UiFrame& frame, const FramePlace& place, Stage stage, ImVec2 size) {
     const SessionView& session = place.session;
     const FrameView& view = *session.current;
-    const DepthMotionTrace& trace = view.depth_motion;
+    const StillpointTrace& trace = view.depth_motion;
     const auto slot = static_cast<std::size_t>(stage);
     ImageContent content;
     if (stage == kMask) {
@@ -191,7 +191,7 @@ class DepthMotionPanel final : public FramePanel {
 
   /// Each patch in the colour of its log-odds, patches parted by lines.
   cv::Mat make_segments(const UiFrame& frame, const SessionView& session) {
-    const DepthMotionTrace& trace = session.current->depth_motion;
+    const StillpointTrace& trace = session.current->depth_motion;
     segment_values_ = cv::Mat(trace.labels.size(), CV_32FC1, cv::Scalar(std::nanf("")));
     for (int y = 0; y < trace.labels.rows; ++y) {
       for (int x = 0; x < trace.labels.cols; ++x) {
@@ -215,7 +215,7 @@ class DepthMotionPanel final : public FramePanel {
   }
 
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
-                                 const DepthMotionTrace& trace) const {
+                                 const StillpointTrace& trace) const {
     Footer footer;
     footer.legend.push_back({"speaks for moving", diverging_colour(frame.theme, 1.0), Sign::kSquare});
     footer.legend.push_back(

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/motion/difference.hpp"
+#include "core/motion/paper/difference.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/plot/plot.hpp"

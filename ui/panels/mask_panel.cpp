@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/evaluation/mask_scores.hpp"
-#include "core/motion/compensation.hpp"
+#include "core/motion/paper/compensation.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 

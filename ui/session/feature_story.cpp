@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "ui/session/feature_trail.hpp"
 #include "ui/session/reference_word.hpp"
@@ -37,7 +37,7 @@ struct PaperSays {
   int region_px = 0;
 };
 
-PaperSays ask_paper(const MotionTrace& motion, const Eigen::Vector2d& pixel) {
+PaperSays ask_paper(const PaperTrace& motion, const Eigen::Vector2d& pixel) {
   PaperSays says;
   if (motion.rounds.empty()) return says;
   const MotionRound& last = motion.rounds.back();
@@ -62,7 +62,7 @@ void add_difference(const DirectionTrace& direction, const char* name, const Eig
 }
 
 void tell_paper(const FrameView& view, FeatureStory& story) {
-  const MotionTrace& motion = view.motion;
+  const PaperTrace& motion = view.motion;
   if (motion.rounds.empty()) return;
   const Eigen::Vector2d pixel(story.feature.pixel.x, story.feature.pixel.y);
   const MotionRound& last = motion.rounds.back();
@@ -95,11 +95,11 @@ void tell_paper(const FrameView& view, FeatureStory& story) {
 }
 
 void tell_depth_motion(const FrameView& view, const Config& config, int factor, FeatureStory& story) {
-  const DepthMotionTrace& trace = view.depth_motion;
+  const StillpointTrace& trace = view.depth_motion;
   if (trace.log_odds.empty()) return;
   const Eigen::Vector2d small((static_cast<double>(story.feature.pixel.x) + 0.5) / factor - 0.5,
                               (static_cast<double>(story.feature.pixel.y) + 0.5) / factor - 0.5);
-  const DepthMotionConfig& limits = config.depth_motion;
+  const StillpointConfig& limits = config.depth_motion;
   const auto label = value_at<int>(trace.labels, small);
   const Segment* segment = nullptr;
   if (label && *label >= 0 && static_cast<std::size_t>(*label) < trace.segments.size()) {
@@ -146,9 +146,9 @@ void tell_depth_motion(const FrameView& view, const Config& config, int factor, 
 
 void tell_colour_motion(const FrameView& view, const Config& config, FeatureStory& story) {
   constexpr double kReach = 16.0;  // px: a point stands for what lies about it
-  const ColourMotionTrace& trace = view.colour_motion;
+  const EpipolarTrace& trace = view.colour_motion;
   if (trace.points.empty()) return;
-  const ColourMotionConfig& limits = config.colour_motion;
+  const EpipolarConfig& limits = config.colour_motion;
   const cv::Point2f& at = story.feature.pixel;
   const Eigen::Vector2d pixel(at.x, at.y);
   if (!trace.evidence.empty()) {
@@ -265,7 +265,7 @@ FeatureStory explain_feature(const FrameView& view, const RunView& run, const Se
   return story;
 }
 
-std::optional<std::size_t> followed_point_near(const ColourMotionTrace& trace, const Eigen::Vector2d& pixel,
+std::optional<std::size_t> followed_point_near(const EpipolarTrace& trace, const Eigen::Vector2d& pixel,
                                                double radius) {
   std::optional<std::size_t> nearest;
   double least = radius;

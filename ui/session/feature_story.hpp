@@ -68,7 +68,7 @@ struct FeatureStory {
                                               double radius);
 
 /// The followed point nearest to a pixel of the frame, within `radius` px; nothing where there is none.
-[[nodiscard]] std::optional<std::size_t> followed_point_near(const ColourMotionTrace& trace,
+[[nodiscard]] std::optional<std::size_t> followed_point_near(const EpipolarTrace& trace,
                                                              const Eigen::Vector2d& pixel, double radius);
 
 /// How far the camera's motion against a reference leaves a followed point unexplained, standard deviations;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "ui/session/feature_story.hpp"
 #include "ui/session/reference_word.hpp"
 
@@ -120,7 +120,7 @@ void read_direction(const DirectionTrace& direction, const std::string& name,
       {name + " mask, raw → clean", fmt::format("{} → {}", word(raw), word(clean)), clean.value_or(0) != 0});
 }
 
-ReadingGroup read_round(const MotionTrace& motion, std::size_t index, const Point& target) {
+ReadingGroup read_round(const PaperTrace& motion, std::size_t index, const Point& target) {
   const MotionRound& round = motion.rounds[index];
   ReadingGroup group{fmt::format("Paper, round {} of {}", index + 1, motion.rounds.size()), {}};
   read_direction(round.forward, "Forward", target, group.readings);
@@ -138,7 +138,7 @@ ReadingGroup read_round(const MotionTrace& motion, std::size_t index, const Poin
   return group;
 }
 
-void read_patch(const DepthMotionTrace& trace, const DepthMotionConfig& config, const Point& small,
+void read_patch(const StillpointTrace& trace, const StillpointConfig& config, const Point& small,
                 std::vector<Reading>& readings) {
   const auto label = at<int>(trace.labels, small);
   if (!label || *label < 0 || static_cast<std::size_t>(*label) >= trace.segments.size()) {
@@ -162,8 +162,8 @@ void read_patch(const DepthMotionTrace& trace, const DepthMotionConfig& config, 
 }
 
 /// How far the point's patch lies from where the camera's motion would have it.
-Reading read_shift(const DepthMotionTrace& trace, const ReferenceEvidence& reference,
-                   const std::string& which, const Point& small) {
+Reading read_shift(const StillpointTrace& trace, const ReferenceEvidence& reference, const std::string& which,
+                   const Point& small) {
   std::string name = fmt::format("Patch's shift{}", which);
   const auto label = at<int>(trace.labels, small);
   if (!label || *label < 0 || static_cast<std::size_t>(*label) >= reference.patches.size())
@@ -176,7 +176,7 @@ Reading read_shift(const DepthMotionTrace& trace, const ReferenceEvidence& refer
       patch.log_odds > 0.0F};
 }
 
-ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionConfig& config,
+ReadingGroup read_depth_motion(const StillpointTrace& trace, const StillpointConfig& config,
                                const Point& small, const Point& target) {
   ReadingGroup group{"Stillpoint", {}};
   auto& readings = group.readings;
@@ -200,7 +200,7 @@ ReadingGroup read_depth_motion(const DepthMotionTrace& trace, const DepthMotionC
   return group;
 }
 
-ReadingGroup read_colour_motion(const ColourMotionTrace& trace, const ColourMotionConfig& config,
+ReadingGroup read_colour_motion(const EpipolarTrace& trace, const EpipolarConfig& config,
                                 const cv::Size& size, const Point& target) {
   ReadingGroup group{"Stillpoint, colour alone", {}};
   auto& readings = group.readings;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint {

@@ -7,9 +7,9 @@
 
 #include "core/config.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
-#include "core/motion/colour_motion.hpp"
-#include "core/motion/depth_motion.hpp"
-#include "core/motion/motion_trace.hpp"
+#include "core/motion/epipolar/colour_motion.hpp"
+#include "core/motion/paper/paper_trace.hpp"
+#include "core/motion/stillpoint/depth_motion.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/frame.hpp"
@@ -21,13 +21,13 @@ namespace stillpoint {
 /// are empty.
 struct FrameView {
   int index = 0;
-  Frame frame;                      ///< t
-  Frame reference;                  ///< t - motion.reference_gap; unreadable (empty) for the first frames
-  MotionTrace motion;               ///< the paper's stages on that pair, whatever the method run
-  DepthMotionTrace depth_motion;    ///< method `stillpoint`'s stages; without references for other methods
-  ColourMotionTrace colour_motion;  ///< … of a frame without depth; without points elsewhere
-  cv::Mat mask;                     ///< CV_8UC1: what the method removed; empty = nothing
-  FrameTruth truth;                 ///< for display and evaluation only
+  Frame frame;                   ///< t
+  Frame reference;               ///< t - motion.reference_gap; unreadable (empty) for the first frames
+  PaperTrace motion;             ///< the paper's stages on that pair, whatever the method run
+  StillpointTrace depth_motion;  ///< method `stillpoint`'s stages; without references for other methods
+  EpipolarTrace colour_motion;   ///< … of a frame without depth; without points elsewhere
+  cv::Mat mask;                  ///< CV_8UC1: what the method removed; empty = nothing
+  FrameTruth truth;              ///< for display and evaluation only
   const FrameRecord* record = nullptr;  ///< null while the frame has not been processed
   /// Records of the frames right before, newest first, with their features where these are kept.
   std::vector<std::shared_ptr<const FrameRecord>> history;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "core/motion/detect_motion.hpp"
+#include "core/motion/paper/detect_motion.hpp"
 #include "ui/session/frame_neighbours.hpp"
 
 namespace stillpoint {

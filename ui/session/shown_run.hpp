@@ -56,9 +56,9 @@ class ShownRun {
   /// What a frame's motion stage made and a record does not hold.
   struct Extras {
     int index = 0;
-    MotionTrace motion{};
-    DepthMotionTrace depth_motion{};
-    ColourMotionTrace colour_motion{};
+    PaperTrace motion{};
+    StillpointTrace depth_motion{};
+    EpipolarTrace colour_motion{};
     cv::Mat mask{};
   };
 

@@ -26,7 +26,7 @@ cv::Matx33d for_small(const cv::Matx33d& homography, int factor) {
 /// The frame before's picture where this frame has its camera.
 cv::Mat carried_here(const FrameView& view, const StagePicture& old, int factor) {
   // The reference's camera is the target's of the frame before: its own pair tells what came between.
-  const MotionTrace& between = old.space == FrameSpace::kReference ? view.before->motion : view.motion;
+  const PaperTrace& between = old.space == FrameSpace::kReference ? view.before->motion : view.motion;
   if (between.rounds.empty()) return old.image;
   cv::Matx33d homography = between.rounds.back().forward.homography.matrix;
   if (old.space == FrameSpace::kSmall) homography = for_small(homography, factor);

@@ -8,7 +8,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "core/motion/reference_warp.hpp"
+#include "core/motion/stillpoint/reference_warp.hpp"
 
 namespace stillpoint {
 namespace {
@@ -146,7 +146,7 @@ StagePictures paper_pictures(const FrameView& view, const MotionRound& round, St
 }
 
 /// What is said of each pixel's patch; NaN where it is in none, or nothing is said of it.
-cv::Mat patch_values(const DepthMotionTrace& trace, const std::function<float(std::size_t)>& of_patch) {
+cv::Mat patch_values(const StillpointTrace& trace, const std::function<float(std::size_t)>& of_patch) {
   cv::Mat values(trace.labels.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
@@ -155,12 +155,12 @@ cv::Mat patch_values(const DepthMotionTrace& trace, const std::function<float(st
   return values;
 }
 
-cv::Mat segment_values(const DepthMotionTrace& trace) {
+cv::Mat segment_values(const StillpointTrace& trace) {
   return patch_values(trace, [&](std::size_t i) { return trace.segments[i].log_odds; });
 }
 
 /// What patches say by their shifts, which are drawn as lines several times as long.
-StagePicture patch_shifts(const DepthMotionTrace& trace, const std::vector<PatchMotion>& patches) {
+StagePicture patch_shifts(const StillpointTrace& trace, const std::vector<PatchMotion>& patches) {
   constexpr float kLonger = 4.0F;  // drawn at twice that
   StagePicture picture = signed_picture("Shifts, 8 times as long",
                                         patch_values(trace,
@@ -182,8 +182,8 @@ StagePicture patch_shifts(const DepthMotionTrace& trace, const std::vector<Patch
 
 StagePictures reference_pictures(const FrameView& view, const Camera& camera, const Config& config,
                                  const ReferenceEvidence& evidence, StageKind kind) {
-  const DepthMotionTrace& trace = view.depth_motion;
-  const DepthMotionConfig& limits = config.depth_motion;
+  const StillpointTrace& trace = view.depth_motion;
+  const StillpointConfig& limits = config.depth_motion;
   const StagePicture depth =
       signed_picture("Depth residual", evidence.depth_residual, 2.0 * limits.depth_sigmas, "σ");
   const StagePicture brightness =
@@ -216,7 +216,7 @@ StagePictures reference_pictures(const FrameView& view, const Camera& camera, co
 
 StagePictures stillpoint_pictures(const FrameView& view, const Camera& camera, const Config& config,
                                   const StageInfo& stage) {
-  const DepthMotionTrace& trace = view.depth_motion;
+  const StillpointTrace& trace = view.depth_motion;
   const double most = config.depth_motion.max_log_odds;
   if (const ReferenceEvidence* evidence = evidence_of(view, stage))
     return reference_pictures(view, camera, config, *evidence, stage.kind);

@@ -20,15 +20,13 @@ double share_of(double part, std::size_t whole) {
 }
 
 /// Whether a point has been followed long enough to have a say.
-bool has_say(const ColourPoint& point, const ColourMotionConfig& config) {
-  return point.age >= config.min_age;
-}
+bool has_say(const ColourPoint& point, const EpipolarConfig& config) { return point.age >= config.min_age; }
 
-bool is_off(const ColourReference& reference, std::size_t k, const ColourMotionConfig& config) {
+bool is_off(const ColourReference& reference, std::size_t k, const EpipolarConfig& config) {
   return static_cast<double>(reference.sigmas[k]) > config.sigmas;
 }
 
-void add_reference(const ColourReference& reference, int index, const ColourMotionConfig& config,
+void add_reference(const ColourReference& reference, int index, const EpipolarConfig& config,
                    std::vector<StageInfo>& stages) {
   const std::string group = fmt::format("{} frame{} back", reference.gap, reference.gap == 1 ? "" : "s");
   StageInfo& turn =
@@ -58,7 +56,7 @@ void add_reference(const ColourReference& reference, int index, const ColourMoti
   add_figure(off, "Of all", share_of(static_cast<double>(count), reference.sigmas.size()), "%", 1);
 }
 
-std::vector<PictureDot> point_dots(const ColourMotionTrace& trace, const ColourMotionConfig& config,
+std::vector<PictureDot> point_dots(const EpipolarTrace& trace, const EpipolarConfig& config,
                                    float ColourPoint::*evidence) {
   std::vector<PictureDot> dots;
   for (const ColourPoint& point : trace.points) {
@@ -70,9 +68,9 @@ std::vector<PictureDot> point_dots(const ColourMotionTrace& trace, const ColourM
 }
 
 /// Each point's way against one reference, several times as long. @param ways px of the small image
-std::vector<PictureDot> way_dots(const ColourMotionTrace& trace, const ColourReference& reference,
+std::vector<PictureDot> way_dots(const EpipolarTrace& trace, const ColourReference& reference,
                                  const std::vector<cv::Point2f>& ways, float longer,
-                                 const ColourMotionConfig& config) {
+                                 const EpipolarConfig& config) {
   std::vector<PictureDot> dots;
   for (std::size_t k = 0; k < ways.size(); ++k) {
     const cv::Point2f at = trace.points[static_cast<std::size_t>(reference.points[k])].at;
@@ -93,8 +91,8 @@ StagePicture dotted(const char* heading, const FrameView& view, std::vector<Pict
 }  // namespace
 
 void add_colour_stages(const FrameView& view, const Config& config, std::vector<StageInfo>& stages) {
-  const ColourMotionTrace& trace = view.colour_motion;
-  const ColourMotionConfig& limits = config.colour_motion;
+  const EpipolarTrace& trace = view.colour_motion;
+  const EpipolarConfig& limits = config.colour_motion;
   if (trace.points.empty()) return;
   StageInfo& points =
       add_stage(stages, StageKind::kFollowedPoints, kMotion, "Points",
@@ -143,8 +141,8 @@ void add_colour_stages(const FrameView& view, const Config& config, std::vector<
 }
 
 StagePictures colour_pictures(const FrameView& view, const Config& config, const StageInfo& stage) {
-  const ColourMotionTrace& trace = view.colour_motion;
-  const ColourMotionConfig& limits = config.colour_motion;
+  const EpipolarTrace& trace = view.colour_motion;
+  const EpipolarConfig& limits = config.colour_motion;
   const StagePicture plain{fmt::format("Frame {}", view.frame.index), PictureLook::kPhoto, view.frame.gray};
   const auto index = static_cast<std::size_t>(std::max(stage.reference, 0));
   const bool of_reference = stage.kind == StageKind::kCameraTurn || stage.kind == StageKind::kUnexplained;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/median.hpp"
-#include "core/motion/homography.hpp"
+#include "core/motion/paper/homography.hpp"
 #include "core/motion/regions.hpp"
 #include "ui/session/stages.hpp"
 
@@ -127,7 +127,7 @@ void add_mask_stages(const MotionRound& round, int index, bool last_round, std::
 }  // namespace
 
 void add_paper_stages(const FrameView& view, std::vector<StageInfo>& stages) {
-  const MotionTrace& motion = view.motion;
+  const PaperTrace& motion = view.motion;
   if (motion.rounds.empty()) return;
   StageInfo& tracks = add_stage(stages, StageKind::kTracks, "Tracks", "Tracks",
                                 "Corners of one frame followed into the other by pyramidal Lucas-Kanade.");
@@ -182,7 +182,7 @@ void add_patch_figures(const ReferenceEvidence& evidence, StageInfo& stage) {
 }
 
 void add_reference_stages(const ReferenceEvidence& evidence, int index, std::size_t count,
-                          const DepthMotionConfig& config, std::vector<StageInfo>& stages) {
+                          const StillpointConfig& config, std::vector<StageInfo>& stages) {
   const std::string group = count == 1 ? "Reference" : index == 0 ? "Near reference" : "Far reference";
   const auto add = [&](StageKind kind, const char* name, const char* what) -> StageInfo& {
     StageInfo& stage = add_stage(stages, kind, group, name, what);
@@ -226,9 +226,9 @@ void add_reference_stages(const ReferenceEvidence& evidence, int index, std::siz
 }  // namespace
 
 void add_stillpoint_stages(const FrameView& view, const Config& config, std::vector<StageInfo>& stages) {
-  const DepthMotionTrace& trace = view.depth_motion;
+  const StillpointTrace& trace = view.depth_motion;
   if (trace.log_odds.empty()) return;
-  const DepthMotionConfig& limits = config.depth_motion;
+  const StillpointConfig& limits = config.depth_motion;
   StageInfo& small = add_stage(stages, StageKind::kSmallView, "Motion", "Small view",
                                "Grey, gradient and depth made smaller: where motion is judged.");
   small.timed = false;

@@ -164,7 +164,7 @@ TEST(FeatureStory, OfStillpointsMaskThePatchDecides) {
   InspectScene scene;
   scene.config.run.method = "stillpoint";
   const int index = scene.add_feature({52, 40}, FeatureFate::removed);
-  DepthMotionTrace& trace = scene.view.depth_motion;
+  StillpointTrace& trace = scene.view.depth_motion;
   trace.log_odds = cv::Mat::zeros(30, 40, CV_32FC1);
   trace.labels = cv::Mat::zeros(30, 40, CV_32SC1);
   trace.segments = {{{}, 2.0F, 30, 1.5F, 1.25F, true}};

@@ -122,7 +122,7 @@ struct InspectScene {
 inline void without_depth(InspectScene& scene) {
   scene.config.run.method = "stillpoint";
   scene.view.frame.depth.release();
-  ColourMotionTrace& trace = scene.view.colour_motion;
+  EpipolarTrace& trace = scene.view.colour_motion;
   trace.points = {{{50.0F, 40.0F}, 9, 0.2F, 0.8F}, {{120.0F, 90.0F}, 12, -0.4F, -0.4F}, {{10.0F, 10.0F}, 1}};
   ColourReference reference;
   reference.gap = 6;

@@ -76,7 +76,7 @@ TEST(PointReadings, SayWhereALayerHasNothing) {
 
 TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
   InspectScene scene;
-  DepthMotionTrace& trace = scene.view.depth_motion;
+  StillpointTrace& trace = scene.view.depth_motion;
   trace.log_odds = trace.prior = cv::Mat(30, 40, CV_32FC1, cv::Scalar(0.5));
   trace.labels = cv::Mat(30, 40, CV_32SC1, cv::Scalar(-1));
   trace.labels.at<int>(5, 5) = 0;

@@ -50,7 +50,7 @@ TEST(Stages, OfTheOthersAreTheirOwn) {
   scene.config.run.method = "none";
   EXPECT_EQ(stages_of(scene.view, scene.config).front().kind, kFeatures);
   scene.config.run.method = "stillpoint";
-  DepthMotionTrace& trace = scene.view.depth_motion;
+  StillpointTrace& trace = scene.view.depth_motion;
   trace.log_odds = trace.prior = cv::Mat::zeros(30, 40, CV_32FC1);
   trace.references.resize(2);
   for (ReferenceEvidence& evidence : trace.references)
@@ -72,7 +72,7 @@ TEST(Stages, OfTheOthersAreTheirOwn) {
 TEST(Stages, PatchesShiftsStandWithTheReferenceTheyWereMeasuredAgainst) {
   InspectScene scene;
   scene.config.run.method = "stillpoint";
-  DepthMotionTrace& trace = scene.view.depth_motion;
+  StillpointTrace& trace = scene.view.depth_motion;
   trace.log_odds = trace.prior = trace.slow = cv::Mat::zeros(30, 40, CV_32FC1);
   trace.labels = cv::Mat::zeros(30, 40, CV_32SC1);
   trace.labels.colRange(20, 40).setTo(1);

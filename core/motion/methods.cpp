@@ -1,0 +1,63 @@
+#include "core/motion/methods.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+
+// One line a method: NAME is defined as `MethodInfo NAME_method()` in the method's own file.
+#define STILLPOINT_METHODS(METHOD) \
+  METHOD(stillpoint)               \
+  METHOD(paper)                    \
+  METHOD(none)                     \
+  METHOD(oracle)                   \
+  METHOD(epipolar)
+
+namespace stillpoint {
+
+#define DECLARE_METHOD(name) MethodInfo name##_method();
+STILLPOINT_METHODS(DECLARE_METHOD)
+#undef DECLARE_METHOD
+
+namespace {
+
+std::vector<MethodInfo>& registry() {
+#define LIST_METHOD(name) name##_method(),
+  static std::vector<MethodInfo> all = {STILLPOINT_METHODS(LIST_METHOD)};
+#undef LIST_METHOD
+  return all;
+}
+
+}  // namespace
+
+const std::vector<MethodInfo>& methods() { return registry(); }
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const MethodInfo& method : methods()) names.push_back(method.name);
+  return names;
+}
+
+const MethodInfo& method_named(const std::string& name) {
+  for (const MethodInfo& method : methods())
+    if (method.name == name) return method;
+  throw InputError(
+      fmt::format("there is no method '{}'; the methods are: {}", name, fmt::join(method_names(), ", ")));
+}
+
+const MethodInfo& method_of(const Config& config) { return method_named(config.run.method); }
+
+const MethodInfo& baseline_method() {
+  return *std::find_if(methods().begin(), methods().end(), [](const MethodInfo& m) { return m.baseline; });
+}
+
+void register_method(MethodInfo method) {
+  const std::vector<std::string> names = method_names();
+  if (std::find(names.begin(), names.end(), method.name) != names.end())
+    throw InputError(fmt::format("there is a method '{}' already", method.name));
+  registry().push_back(std::move(method));
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,242 @@
+#include "core/motion/stillpoint/depth_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/core/hal/intrin.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/median.hpp"
+#include "core/motion/stillpoint/carrier.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float kMinIntensitySigma = 2.0F;  // grey levels: no camera is better
+// Log-odds a pixel gets from one reference.
+constexpr float kSeenThrough = 1.2F;  // free space where the surface is now
+constexpr float kStepsBack = 0.5F;    // a surface nearer by little: most likely the same one, moving off
+constexpr float kSteppedBack = 0.1F;  // … less likely the same one, the longer ago
+constexpr float kOtherBrightness = 0.6F;
+constexpr float kSameDepth = -0.25F;     // weak: the middle of a mover agrees with itself
+constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same does stand still
+constexpr float kStepBackLimit = 0.15F;  // m: a surface farther off than this was another one
+
+/// Of the nine measurements about a pixel, the one nearest to what is expected; 0 when there is none. Edges
+/// lie a pixel off easily, and then the neighbour still has the surface.
+float nearest_depth(const cv::Mat& depth, const cv::Point& at, float expected) {
+  float best = 0.0F, best_difference = std::numeric_limits<float>::max();
+  for (int dy = -1; dy <= 1; ++dy) {
+    const float* row = depth.ptr<float>(at.y + dy) + at.x;
+    for (int dx = -1; dx <= 1; ++dx) {
+      const float difference = std::abs(row[dx] - expected);
+      const bool better = (row[dx] > 0) & (difference < best_difference);
+      best = better ? row[dx] : best;
+      best_difference = better ? difference : best_difference;
+    }
+  }
+  return best;
+}
+
+/// A pixel as it is expected in the reference, or a row of them.
+struct Expected {
+  const float* depth;  // m, there
+  const float* here;   // m, as measured in the current view
+  const float* slope;  // m a pixel, of its surface
+  float off = 0.0F;    // px, misplacement()
+};
+
+/// Measured less expected depth, in standard deviations of both and of where on a slanted surface the pixel
+/// comes to lie; NaN where nothing was measured.
+float depth_residual(float measured, const Expected& expected, int x) {
+  const float a = depth_sigma(expected.here[x]), b = depth_sigma(measured),
+              c = expected.off * expected.slope[x];
+  return measured > 0 ? (measured - expected.depth[x]) / std::sqrt(a * a + b * b + c * c) : kUnknown;
+}
+
+/// The same of a row.
+void depth_residuals(const float* measured, const Expected& expected, int width, float* out) {
+  const cv::v_float32x4 base = cv::v_setall_f32(kDepthSigma), growth = cv::v_setall_f32(kDepthSigmaGrowth),
+                        off = cv::v_setall_f32(expected.off), unknown = cv::v_setall_f32(kUnknown),
+                        zero = cv::v_setzero_f32();
+  const auto sigma = [&](const cv::v_float32x4& depth) { return base + growth * depth * depth; };
+  int x = 0;
+  for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
+    const cv::v_float32x4 m = cv::v_load(measured + x), a = sigma(cv::v_load(expected.here + x)),
+                          b = sigma(m), c = off * cv::v_load(expected.slope + x);
+    const cv::v_float32x4 residual = (m - cv::v_load(expected.depth + x)) / cv::v_sqrt(a * a + b * b + c * c);
+    cv::v_store(out + x, cv::v_select(m > zero, residual, unknown));
+  }
+  for (; x < width; ++x) out[x] = depth_residual(measured[x], expected, x);
+}
+
+/// By how much of a pixel slanted surfaces lie beside where they are expected: the pose is not exact, depth
+/// and colour are of different moments, and rows are read one after the other. Of what is not remembered to
+/// move; a median, so that other movers do not count.
+float misplacement(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
+                   const StillpointConfig& config) {
+  constexpr int kEvery = 4;  // rows
+  constexpr std::size_t kFewest = 100;
+  constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
+  constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
+  Carrier carried(current.camera, reference.reference_from_current);
+  const auto* then = reference.view->depth.ptr<float>();
+  std::vector<float> squares;  // px²
+  for (int y = kEvery / 2; y < current.depth.rows; y += kEvery) {
+    const auto *depth = current.depth.ptr<float>(y), *slope = current.depth_slope.ptr<float>(y),
+               *remembered = prior.ptr<float>(y);
+    carried.carry_row(y, depth);
+    for (int x = 0; x < current.depth.cols; ++x) {
+      if (!carried.inside(x) || remembered[x] > static_cast<float>(config.moving_log_odds)) continue;
+      const float measured = carried.at(then, x);
+      if (measured <= 0) continue;
+      const float a = depth_sigma(depth[x]), b = depth_sigma(measured), noise = a * a + b * b;
+      const float step = measured - carried.z(x), steep = slope[x] * slope[x];
+      if (steep < noise || std::abs(step) > kStepBackLimit) continue;
+      squares.push_back((step * step / kMedianOfSquare - noise) / steep);
+    }
+  }
+  if (squares.size() < kFewest) return 0.0F;
+  return std::clamp(std::sqrt(std::max(0.0F, median_of(squares))) - kRounding, 0.0F,
+                    static_cast<float>(config.max_misplacement_px));
+}
+
+/// First pass: depth residuals, and plain brightness differences where the surface is the same.
+cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, const StillpointConfig& config,
+                      ReferenceEvidence& evidence) {
+  const cv::Size size = current.depth.size();
+  evidence.depth_residual = cv::Mat(size, CV_32FC1);
+  evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
+  cv::Mat brightness(size, CV_32FC1, cv::Scalar(kUnknown));
+  Carrier carried(current.camera, reference.reference_from_current);
+  const auto limit = static_cast<float>(config.depth_sigmas);
+  const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
+  const auto* depth_then = then.ptr<float>();
+  std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is carried to
+  for (int y = 0; y < size.height; ++y) {
+    const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
+    auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
+         *differences = brightness.ptr<float>(y);
+    carried.carry_row(y, depth);
+    const Expected there{carried.expected_depth(), depth, current.depth_slope.ptr<float>(y),
+                         static_cast<float>(evidence.misplacement_px)};
+    for (int x = 0; x < size.width; ++x)
+      measured[static_cast<std::size_t>(x)] = carried.inside(x) ? carried.at(depth_then, x) : 0.0F;
+    depth_residuals(measured.data(), there, size.width, residuals);
+    for (int x = 0; x < size.width; ++x) {
+      if (!carried.inside(x)) continue;
+      // Only what does not fit at its own pixel is sought beside it.
+      if (!(std::abs(residuals[x]) <= limit)) {
+        const float expected = carried.z(x), beside = nearest_depth(then, carried.nearest(x), expected);
+        residuals[x] = depth_residual(beside, there, x);
+        if (beside <= 0) continue;
+        if (residuals[x] > limit) {
+          log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residuals[x] - limit));
+          continue;
+        }
+        if (residuals[x] < -limit) {
+          if (expected - beside < kStepBackLimit) log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
+          continue;
+        }
+      }
+      log_odds[x] = kSameDepth;
+      differences[x] = gray[x] - bilinear(gray_then, carried.u(x), carried.v(x));
+    }
+  }
+  return brightness;
+}
+
+}  // namespace
+
+ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
+                                         const cv::Mat& prior, const StillpointConfig& config) {
+  ReferenceEvidence evidence;
+  evidence.misplacement_px = static_cast<double>(misplacement(current, reference, prior, config));
+  const cv::Mat brightness = compare_depth(current, reference, config, evidence);
+  if (!config.use_depth) evidence.log_odds.setTo(0.0F);
+
+  // Exposure may have changed between the two: the median difference is taken off; what spreads about it is
+  // noise.
+  std::vector<float> values;
+  constexpr std::size_t kEvery = 7;  // pixels: some thousands tell a median to a few hundredths
+  values.reserve(brightness.total() / kEvery + 1);
+  const auto* differences = brightness.ptr<float>();
+  for (std::size_t i = 0; i < brightness.total(); i += kEvery)
+    if (!std::isnan(differences[i])) values.push_back(differences[i]);
+  const float shift = median_of(values);
+  for (float& value : values) value = std::abs(value - shift);
+  const float sigma = std::max(kMinIntensitySigma, 1.4826F * median_of(values));
+  evidence.intensity_sigma = sigma;
+
+  const auto limit = static_cast<float>(config.intensity_sigmas) * sigma;
+  const auto share = static_cast<float>(config.gradient_share);
+  evidence.intensity_residual = cv::Mat(brightness.size(), CV_32FC1);
+  for (int y = 0; y < brightness.rows; ++y) {
+    const auto *difference = brightness.ptr<float>(y), *gradient = current.gradient.ptr<float>(y);
+    auto *residuals = evidence.intensity_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y);
+    for (int x = 0; x < brightness.cols; ++x) {
+      const bool known = !std::isnan(difference[x]);
+      const float residual = std::max(0.0F, std::abs(difference[x] - shift) - share * gradient[x]);
+      residuals[x] = known ? residual : kUnknown;
+      if (!known || !config.use_brightness) continue;
+      if (residual > limit)
+        log_odds[x] += kOtherBrightness * std::min(2.0F, residual / limit);
+      else if (gradient[x] > 3.0F * sigma && residual < sigma)
+        log_odds[x] += kSameTexture;
+    }
+  }
+  return evidence;
+}
+
+CarriedMemory carry_memory(const RgbdView& current, const MotionMemory& memory,
+                           const Pose& previous_from_current, const StillpointConfig& config) {
+  constexpr int kReach = 3;            // small px a mover may have gone in a frame
+  constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
+  constexpr float kDepthShare = 0.02F;
+  constexpr float kArrived = 1.5F;  // log-odds that a mover's step carries at most
+  const cv::Size size = current.depth.size();
+  CarriedMemory result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
+  cv::Mat& prior = result.log_odds;
+  cv::Mat most_near;  // of what is remembered within reach: mostly nothing, and then nothing need be sought
+  const int side = 2 * kReach + 1;
+  cv::dilate(memory.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  Carrier carried(current.camera, previous_from_current);
+  const auto keep = static_cast<float>(config.memory), firm = static_cast<float>(config.firm_log_odds);
+  const cv::Mat& depth_then = memory.view->depth;
+  const auto *there = depth_then.ptr<float>(), *known = memory.log_odds.ptr<float>(),
+             *about = most_near.ptr<float>();
+  for (int y = 0; y < prior.rows; ++y) {
+    const auto* depth = current.depth.ptr<float>(y);
+    auto* out = prior.ptr<float>(y);
+    auto* entered = result.entered.ptr<uchar>(y);
+    carried.carry_row(y, depth);
+    for (int x = 0; x < prior.cols; ++x) {
+      if (!carried.inside(x)) {
+        if (depth[x] > 0) entered[x] = 255;
+        continue;
+      }
+      const float expected = carried.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
+      if (std::abs(carried.at(there, x) - expected) < tolerance) {
+        const float odds = carried.at(known, x);
+        out[x] = odds > firm ? odds : keep * odds;
+        continue;
+      }
+      if (carried.at(about, x) <= 0) continue;
+      // A surface that was not here before came from beside, most likely: it is taken to move if what is
+      // there does, but not firmly.
+      const cv::Point at = carried.nearest(x);
+      float odds = 0.0F;
+      for (int py = std::max(0, at.y - kReach); py <= std::min(prior.rows - 1, at.y + kReach); ++py)
+        for (int px = std::max(0, at.x - kReach); px <= std::min(prior.cols - 1, at.x + kReach); ++px) {
+          const float near = memory.log_odds.ptr<float>(py)[px];
+          if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < 0.5F * tolerance)
+            odds = near;
+        }
+      out[x] = std::min(keep * odds, kArrived);
+    }
+  }
+  return result;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,297 @@
+#include "core/motion/stillpoint/depth_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <future>
+#include <opencv2/core/hal/intrin.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/image_memory.hpp"
+#include "core/motion/stillpoint/depth_evidence.hpp"
+#include "core/motion/stillpoint/entering.hpp"
+#include "core/motion/stillpoint/patch_motion.hpp"
+#include "core/motion/stillpoint/segments.hpp"
+#include "core/stopwatch.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr float kMostStill = 0.8F, kMostMoved = 1.6F;  // log-odds a patch's shift may give in one frame
+constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
+constexpr int kHole = 4;                               // small px: half of what a mover may have unmeasured
+constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
+
+/// One value for each pixel, by its patch; `none` where it lies in no patch.
+template <typename T>
+cv::Mat paint_patches(const cv::Mat& labels, const std::vector<T>& of_patch, T none) {
+  cv::Mat image(labels.size(), cv::DataType<T>::type);
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    auto* out = image.ptr<T>(y);
+    for (int x = 0; x < labels.cols; ++x)
+      out[x] = label[x] >= 0 ? of_patch[static_cast<std::size_t>(label[x])] : none;
+  }
+  return image;
+}
+
+/// The pixels of moving patches.
+cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
+  std::vector<uchar> of_patch;
+  of_patch.reserve(segments.size());
+  for (const Segment& segment : segments) of_patch.push_back(segment.moving ? 255 : 0);
+  return paint_patches<uchar>(labels, of_patch, 0);
+}
+
+/// Adds what one reference says of each pixel. Where its patch was measured as a whole, that it looks the
+/// same says nothing more: a slow mover's pixels hardly change.
+void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
+  std::vector<std::uint8_t> measured_whole;
+  measured_whole.reserve(reference.patches.size());
+  for (const PatchMotion& patch : reference.patches) measured_whole.push_back(patch.log_odds != 0.0F);
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    const auto* says = reference.log_odds.ptr<float>(y);
+    auto* sum = evidence.ptr<float>(y);
+    for (int x = 0; x < labels.cols; ++x) {
+      const bool measured = says[x] < 0 && label[x] >= 0 && !measured_whole.empty() &&
+                            measured_whole[static_cast<std::size_t>(label[x])] != 0;
+      if (!measured) sum[x] += says[x];
+    }
+  }
+}
+
+/// What patches say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each says
+/// only a part of it.
+cv::Mat evidence_of_patches(const StillpointTrace& trace, const StillpointConfig& config) {
+  std::vector<float> of_patch(trace.segments.size(), 0.0F);
+  for (const ReferenceEvidence& reference : trace.references)
+    for (std::size_t i = 0; i < reference.patches.size(); ++i) {
+      if (reference.patches[i].log_odds == 0.0F) continue;
+      of_patch[i] +=
+          std::clamp(static_cast<float>(config.patch_share) * (reference.patches[i].log_odds - kDoubt),
+                     -kMostStill, kMostMoved);
+    }
+  return paint_patches(trace.labels, of_patch, 0.0F);
+}
+
+/// Memory and evidence together. What is firmly known to move is let go but slowly: people who stop go on.
+cv::Mat with_memory(const cv::Mat& prior, const cv::Mat& evidence, const StillpointConfig& config) {
+  const auto limit = static_cast<float>(config.max_log_odds), firm = static_cast<float>(config.firm_log_odds),
+             release = static_cast<float>(config.release);
+  cv::Mat odds(prior.size(), CV_32FC1);
+  for (int y = 0; y < odds.rows; ++y) {
+    const auto *before = prior.ptr<float>(y), *says = evidence.ptr<float>(y);
+    auto* out = odds.ptr<float>(y);
+    for (int x = 0; x < odds.cols; ++x) {
+      const float share = before[x] > firm && says[x] < 0 ? release : 1.0F;
+      out[x] = std::clamp(before[x] + share * says[x], -kStillLimit, limit);
+    }
+  }
+  return odds;
+}
+
+void drop_small_regions(cv::Mat& mask, double min_area_share) {
+  cv::Mat labels, stats, centroids;
+  const int count = cv::connectedComponentsWithStats(mask, labels, stats, centroids, 8, CV_32S);
+  const double least = min_area_share * static_cast<double>(mask.total());
+  std::vector<std::uint8_t> keep(static_cast<std::size_t>(count), 0);
+  for (int i = 1; i < count; ++i)
+    keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
+  for (int y = 0; y < mask.rows; ++y)
+    for (int x = 0; x < mask.cols; ++x)
+      if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
+}
+
+/// Whether a pixel without depth lies in a mover: whether the nearest measured pixels to all four sides do.
+/// The image's end says nothing against it. A gap between a mover and what stands behind it, the sensor's
+/// shadow, is open to one side.
+bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
+  constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  const cv::Rect image({0, 0}, mask.size());
+  return std::all_of(kSides.begin(), kSides.end(), [&](const std::array<int, 2>& side) {
+    for (int step = 1; step <= reach; ++step) {
+      const cv::Point p(x + step * side[0], y + step * side[1]);
+      if (!image.contains(p)) return true;
+      if (depth.ptr<float>(p.y)[p.x] > 0) return mask.ptr<uchar>(p.y)[p.x] != 0;
+    }
+    return false;
+  });
+}
+
+/// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
+/// sensor's shadow beside a mover is background, and stays out.
+void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
+  const cv::Rect movers = cv::boundingRect(mask);
+  std::vector<cv::Point> inside;
+  for (int y = movers.y; y < movers.br().y; ++y)
+    for (int x = movers.x; x < movers.br().x; ++x)
+      if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
+        inside.emplace_back(x, y);
+  for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
+}
+
+/// The measured ones of the 3x3 small pixels about one: by whether they move, full-size pixels there are
+/// judged.
+class Neighbourhood {
+ public:
+  Neighbourhood(const cv::Mat& small_mask, const cv::Mat& small_depth, int sx, int sy) {
+    for (int v = std::max(0, sy - 1); v <= std::min(small_mask.rows - 1, sy + 1); ++v)
+      for (int u = std::max(0, sx - 1); u <= std::min(small_mask.cols - 1, sx + 1); ++u) {
+        if (const float z = small_depth.ptr<float>(v)[u]; z > 0)
+          depth_[count_] = z, moving_[count_++] = small_mask.ptr<uchar>(v)[u];
+      }
+  }
+
+  /// What the pixel with the depth most like z (m) is.
+  [[nodiscard]] uchar most_like(float z) const {
+    uchar value = 0;
+    float best = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < count_; ++i)
+      if (const float difference = std::abs(depth_[i] - z); difference < best)
+        best = difference, value = moving_[i];
+    return value;
+  }
+
+  /// The same of a block's row, its unmeasured pixels 0; four at a time, as blocks mostly are wide.
+  void most_like(const float* z, int width, uchar* out) const {
+    int x = 0;
+    for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
+      const cv::v_float32x4 depth = cv::v_load(z + x);
+      cv::v_float32x4 best = cv::v_setall_f32(std::numeric_limits<float>::max()), value = cv::v_setzero_f32();
+      for (std::size_t i = 0; i < count_; ++i) {
+        const cv::v_float32x4 difference = cv::v_abs(cv::v_setall_f32(depth_[i]) - depth);
+        const cv::v_float32x4 nearer = difference < best;
+        best = cv::v_select(nearer, difference, best);
+        value = cv::v_select(nearer, cv::v_setall_f32(moving_[i]), value);
+      }
+      const int moving = cv::v_signmask((value > cv::v_setzero_f32()) & (depth > cv::v_setzero_f32()));
+      for (int k = 0; k < cv::v_float32x4::nlanes; ++k) out[x + k] = (moving >> k & 1) != 0 ? 255 : 0;
+    }
+    for (; x < width; ++x) out[x] = z[x] > 0 ? most_like(z[x]) : uchar{0};
+  }
+
+ private:
+  std::array<float, 9> depth_{};
+  std::array<uchar, 9> moving_{};
+  std::size_t count_ = 0;
+};
+
+/// The small mask at full size, its outline fitted to the depth image.
+cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::Mat& full_depth) {
+  constexpr int kReach = 3;  // px: the ragged rim of an outline is no wider
+  if (cv::countNonZero(small_mask) == 0) return cv::Mat::zeros(full_depth.size(), CV_8UC1);
+  cv::Mat low, high, mask;
+  cv::erode(small_mask, low, cv::Mat());
+  cv::dilate(small_mask, high, cv::Mat());
+  const cv::Mat edge = low != high;
+  mask = enlarged(small_mask, view.factor, full_depth.size());
+  const int f = view.factor;
+  std::vector<cv::Point, KeptMemory<cv::Point>> unmeasured, inside;
+  for (int sy = 0; sy < edge.rows; ++sy)
+    for (int sx = 0; sx < edge.cols; ++sx) {
+      if (edge.ptr<uchar>(sy)[sx] == 0) continue;
+      const Neighbourhood about(small_mask, view.depth, sx, sy);
+      const int first = sx * f, end = std::min((sx + 1) * f, mask.cols);
+      for (int y = sy * f; y < std::min((sy + 1) * f, mask.rows); ++y) {
+        const auto* z = full_depth.ptr<float>(y);
+        about.most_like(z + first, end - first, mask.ptr<uchar>(y) + first);
+        for (int x = first; x < end; ++x)
+          if (z[x] <= 0) unmeasured.emplace_back(x, y);
+      }
+    }
+  for (const cv::Point& p : unmeasured)
+    if (enclosed_by_motion(mask, full_depth, p.x, p.y, kReach)) inside.push_back(p);
+  for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
+  return mask;
+}
+
+/// What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
+/// firm, or memory would creep along every surface a mover touches.
+void remember_judgement(StillpointTrace& trace, const StillpointConfig& config) {
+  const auto limit = static_cast<float>(config.moving_log_odds);
+  for (int y = 0; y < trace.labels.rows; ++y) {
+    const auto* label = trace.labels.ptr<int>(y);
+    auto* log_odds = trace.log_odds.ptr<float>(y);
+    for (int x = 0; x < trace.labels.cols; ++x) {
+      if (label[x] < 0) continue;
+      const Segment& segment = trace.segments[static_cast<std::size_t>(label[x])];
+      const float odds = log_odds[x];
+      const bool agrees = segment.moving && odds > segment.log_odds;
+      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
+      log_odds[x] = std::min(joined, std::max({odds, segment.evidence, limit}));
+    }
+  }
+}
+
+/// What one reference says, told by the patches' labels and what is remembered.
+ReferenceEvidence evidence_of_reference(const RgbdView& current, ReferenceView reference,
+                                        const StillpointTrace& trace, const StillpointConfig& config) {
+  const Stopwatch watch;
+  PatchMotions measured;
+  if (reference.old) {
+    measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+    reference.reference_from_current = measured.reference_from_current;
+  }
+  ReferenceEvidence evidence = compare_with_reference(current, reference, trace.prior, config);
+  evidence.patches = std::move(measured.patches);
+  evidence.reference = reference;
+  evidence.ms = watch.milliseconds();
+  return evidence;
+}
+
+}  // namespace
+
+StillpointTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
+                                    const cv::Mat& full_depth, const std::vector<ReferenceView>& references,
+                                    const MotionMemory* memory, const Pose& previous_from_current,
+                                    const StillpointConfig& config, int threads) {
+  StillpointTrace trace;
+  Stopwatch watch;
+  if (memory) {
+    const CarriedMemory carried = carry_memory(current, *memory, previous_from_current, config);
+    trace.prior = carried.log_odds;
+    if (config.inherit) inherit_memory(carried.entered, patches, trace.prior);
+  } else {
+    trace.prior = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  }
+  trace.labels = std::move(patches.labels);
+  trace.segments = std::move(patches.segments);
+  trace.ms.memory = watch.lap();
+  // References know nothing of each other: all but the last are compared with beside it.
+  std::vector<std::future<ReferenceEvidence>> compared;
+  for (std::size_t i = 0; i < references.size(); ++i)
+    compared.push_back(
+        std::async(threads > 1 && i + 1 < references.size() ? std::launch::async : std::launch::deferred,
+                   [&, i] { return evidence_of_reference(current, references[i], trace, config); }));
+  if (!compared.empty()) compared.back().wait();
+  cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
+  for (std::future<ReferenceEvidence>& one : compared) {
+    trace.references.push_back(one.get());
+    add_pixels(trace.references.back(), trace.labels, evidence);
+  }
+  (void)watch.lap();
+  trace.slow = evidence_of_patches(trace, config);
+  evidence += trace.slow;
+  trace.log_odds = with_memory(trace.prior, evidence, config);
+
+  judge_segments(trace.log_odds, trace.labels, patches.contacts, config, trace.segments);
+  trace.ms.segments = watch.lap();
+  trace.small_mask = paint_moving(trace.labels, trace.segments);
+  drop_small_regions(trace.small_mask, config.min_area_share);
+  fill_unmeasured(current.depth, kHole, trace.small_mask);
+  trace.mask = fit_to_depth(trace.small_mask, current, full_depth);
+  if (config.margin_px > 0) {
+    const int side = 2 * config.margin_px + 1;
+    cv::dilate(trace.mask, trace.mask, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  }
+  trace.mask_share =
+      static_cast<double>(cv::countNonZero(trace.mask)) / static_cast<double>(trace.mask.total());
+  trace.ms.mask = watch.lap();
+  if (references.empty()) trace.note = "no earlier frame with depth to compare with";
+
+  remember_judgement(trace, config);
+  return trace;
+}
+
+}  // namespace stillpoint

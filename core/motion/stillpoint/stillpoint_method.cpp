@@ -1,0 +1,210 @@
+// Method `stillpoint`: every frame against two earlier ones, in depth and brightness, under a first pose;
+// what was seen is remembered as log-odds.
+#include <algorithm>
+#include <deque>
+
+#include "core/motion/methods.hpp"
+#include "core/motion/stillpoint/depth_evidence.hpp"
+#include "core/motion/stillpoint/depth_motion.hpp"
+#include "core/motion/stillpoint/segments.hpp"
+#include "core/motion/stillpoint/stillpoint_stages.hpp"
+
+namespace stillpoint {
+namespace {
+
+struct Preparation final : MotionPreparation {
+  std::shared_ptr<const RgbdView> view;
+  SurfacePatches patches;
+};
+
+/// A downsampled frame that was tracked, and from where.
+struct PastView {
+  int frame_index = 0;
+  std::shared_ptr<const RgbdView> view;  // null while its images are dropped
+  Pose camera_from_world = Pose::Identity();
+};
+
+const Preparation& prepared(const MotionInput& input) {
+  return static_cast<const Preparation&>(*input.prepared);
+}
+
+class StillpointMethod final : public MotionMethod {
+ public:
+  StillpointMethod(const Camera& camera, const StillpointConfig& config) : camera_(camera), config_(config) {}
+
+  [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
+    return std::make_unique<StillpointMethod>(*this);
+  }
+
+  [[nodiscard]] std::shared_ptr<const MotionPreparation> prepare(
+      const Frame& frame, std::span<const std::shared_ptr<const MotionPreparation>>, int) const override {
+    auto preparation = std::make_shared<Preparation>();
+    preparation->view = view_of(frame);
+    preparation->patches = segment_surfaces(*preparation->view, config_);
+    return preparation;
+  }
+
+  [[nodiscard]] cv::Mat prior_mask(const MotionInput& input) const override {
+    if (past_.empty() || !remembers_motion()) return {};
+    const MotionMemory memory{past_.back().view, log_odds_};
+    const cv::Mat prior =
+        carry_memory(*prepared(input).view, memory, last_from(*input.camera_from_world), config_).log_odds;
+    return enlarged(prior > config_.moving_log_odds, config_.factor, input.frame.gray.size());
+  }
+
+  [[nodiscard]] MotionResult detect(const MotionInput& input) const override {
+    const Preparation& ready = prepared(input);
+    const Pose& pose = *input.camera_from_world;
+    std::optional<MotionMemory> memory;
+    if (!past_.empty()) memory = MotionMemory{past_.back().view, log_odds_};
+    auto trace = std::make_shared<StillpointMotionTrace>();
+    trace->view = ready.view;
+    trace->judged =
+        detect_depth_motion(*ready.view, ready.patches, input.frame.depth,
+                            references(input.frame.index, pose), memory ? &*memory : nullptr,
+                            past_.empty() ? Pose::Identity() : last_from(pose), config_, input.threads);
+    MotionResult result;
+    result.mask = trace->judged.mask;
+    result.mask_share = trace->judged.mask_share;
+    result.log_odds = trace->judged.log_odds;
+    result.note = trace->judged.note;
+    result.trace = std::move(trace);
+    return result;
+  }
+
+  void commit(const MotionInput& input, const MotionResult& result, const MotionOutcome& outcome) override {
+    if (!outcome.estimated) return;
+    const std::shared_ptr<const RgbdView>& view = prepared(input).view;
+    log_odds_ = result.log_odds.empty() ? cv::Mat::zeros(view->depth.size(), CV_32FC1) : result.log_odds;
+    past_.push_back({input.frame.index, view, outcome.camera_from_world});
+    while (past_.size() > 1 && past_[1].frame_index <= input.frame.index - farthest_reference(config_))
+      past_.pop_front();
+  }
+
+  [[nodiscard]] bool settled() const override {
+    return static_cast<int>(past_.size()) > config_.far_reference;
+  }
+
+  [[nodiscard]] int frames_back() const override { return farthest_reference(config_); }
+
+  void drop_images() override {
+    for (PastView& past : past_) past.view.reset();
+  }
+
+  [[nodiscard]] std::set<int> images_wanted(int first, int last) const override {
+    std::set<int> frames;
+    if (past_.empty()) return frames;
+    frames.insert(past_.back().frame_index);  // what is remembered lies in its pixels
+    for (int index = first; index <= last && index - past_.back().frame_index <= frames_back(); ++index)
+      for (const int gap : reference_gaps(config_, index)) frames.insert(reference(index, gap).frame_index);
+    std::erase_if(frames, [this](int frame) {
+      return std::any_of(past_.begin(), past_.end(), [frame](const PastView& past) {
+        return past.frame_index == frame && past.view != nullptr;
+      });
+    });
+    return frames;
+  }
+
+  void restore_images(int first, int last, const ReadFrame& read) override {
+    const std::set<int> wanted = images_wanted(first, last);
+    for (PastView& past : past_)
+      if (wanted.contains(past.frame_index)) past.view = view_of(read(past.frame_index));
+  }
+
+  [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
+    const auto& other = config.of<StillpointConfig>();
+    if (other.factor != config_.factor || farthest_reference(other) > farthest_reference(config_))
+      return nullptr;
+    auto method = std::make_unique<StillpointMethod>(*this);
+    method->config_ = other;
+    return method;
+  }
+
+  [[nodiscard]] StageLog describe(const Frame& frame, const MotionResult& result) const override {
+    if (result.trace)
+      return describe_stillpoint(frame, static_cast<const StillpointMotionTrace&>(*result.trace), config_);
+    StageLog log;
+    log.note = result.note;
+    return log;
+  }
+
+ private:
+  [[nodiscard]] std::shared_ptr<const RgbdView> view_of(const Frame& frame) const {
+    return std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.factor));
+  }
+
+  /// Whether any pixel moves by what is remembered: carried along, none moves more.
+  [[nodiscard]] bool remembers_motion() const {
+    double most = 0.0;
+    cv::minMaxLoc(log_odds_, nullptr, &most);
+    return most > config_.moving_log_odds;
+  }
+
+  [[nodiscard]] Pose last_from(const Pose& camera_from_world) const {
+    return past_.back().camera_from_world * camera_from_world.inverse();
+  }
+
+  /// The youngest past view that lies `gap` frames back or more, else the oldest there is.
+  [[nodiscard]] const PastView& reference(int frame_index, int gap) const {
+    const auto it = std::find_if(past_.rbegin(), past_.rend(),
+                                 [&](const PastView& past) { return past.frame_index <= frame_index - gap; });
+    return it != past_.rend() ? *it : past_.front();
+  }
+
+  [[nodiscard]] std::vector<ReferenceView> references(int frame_index, const Pose& camera_from_world) const {
+    constexpr int kOld = 8;  // frames: from here on slow objects have gone somewhere
+    std::vector<ReferenceView> views;
+    const PastView* taken = nullptr;
+    for (const int gap : reference_gaps(config_, frame_index)) {
+      if (past_.empty()) break;
+      const PastView& past = reference(frame_index, gap);
+      if (&past == taken) continue;
+      taken = &past;
+      const int back = frame_index - past.frame_index;
+      views.push_back({past.view, past.camera_from_world * camera_from_world.inverse(), back >= kOld, back});
+    }
+    return views;
+  }
+
+  Camera camera_;
+  StillpointConfig config_;
+  std::deque<PastView> past_;  // newest last
+  cv::Mat log_odds_;           // CV_32FC1, in the newest past view's pixels
+};
+
+}  // namespace
+
+MethodInfo stillpoint_method() {
+  MethodInfo info;
+  info.name = "stillpoint";
+  info.title = "Stillpoint";
+  info.summary = "Depth and brightness against two earlier frames, superpixel by superpixel, with memory.";
+  info.needs.depth = info.needs.first_pose = info.needs.keeps_state = true;
+  info.extends_odometry = true;
+  info.without_depth = "epipolar";
+  info.parameters = AnySection(StillpointConfig());
+  info.old_section = "depth_motion";
+  info.ingredients = {
+      {"depth_evidence", "judging motion by depth", {"stillpoint.use_depth=false"}},
+      {"brightness_evidence", "judging motion by brightness", {"stillpoint.use_brightness=false"}},
+      {"memory", "carrying evidence from frame to frame", {"stillpoint.memory=0"}},
+      {"firm_memory", "letting go but slowly of what firmly moves", {"stillpoint.release=1"}},
+      {"misplacement",
+       "leave for surfaces that lie beside their place",
+       {"stillpoint.max_misplacement_px=0"}},
+      {"patch_shifts", "slow movers by the shifts of patches", {"stillpoint.patch_share=0"}},
+      {"receding", "patches that go back, away from the camera", {"stillpoint.find_receding=false"}},
+      {"inherit",
+       "what comes into view taking over what its surface is known to do",
+       {"stillpoint.inherit=false"}},
+      {"slow_reference",
+       "a far reference that lies farther back in every second frame",
+       {"stillpoint.slow_reference=10"}},
+      {"neighbours", "patches of one surface agreeing", {"stillpoint.smoothing=0"}}};
+  info.make = [](const Camera& camera, const Config& config) -> std::unique_ptr<MotionMethod> {
+    return std::make_unique<StillpointMethod>(camera, config.of<StillpointConfig>());
+  };
+  return info;
+}
+
+}  // namespace stillpoint
