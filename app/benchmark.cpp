@@ -19,7 +19,7 @@ namespace stillpoint {
 namespace {
 
 struct BenchmarkArguments {
-  std::vector<std::string> sequences, methods = {"none", "paper", "stillpoint"};
+  std::vector<std::string> sequences, methods = usual_methods();
   std::string out;
   bool force = false;
   ConfigArguments config;
@@ -47,7 +47,7 @@ Table details_table(const std::vector<RunReport>& reports) {
     }
     if (r.evaluation && r.evaluation->rpe_frame.translation_m.count > 0)
       rpe_frame = r.evaluation->rpe_frame.translation_m.rmse;
-    const bool masks = r.scores.known && r.method != "none";
+    const bool masks = r.scores.known && !method_named(r.method).baseline;
     table.rows.push_back(
         {r.sequence, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4), cell(rpe, 4),
          cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
@@ -86,7 +86,7 @@ std::unique_ptr<FrameSource> open_with_depth(const std::string& sequence, const 
   if (!source->has_depth())
     throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
   for (const std::string& method : arguments.methods)
-    if (method == "oracle" && !source->has_masks())
+    if (method_named(method).needs.true_mask && !source->has_masks())
       throw InputError(
           fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", sequence));
   return source;
@@ -168,11 +168,13 @@ void benchmark(const BenchmarkArguments& arguments) {
     rows.push_back(std::move(row));
     // After each sequence, so that an interrupted benchmark keeps what it has.
     if (!arguments.out.empty())
-      write_tables(arguments.out, table_one(rows, arguments.methods), details_table(reports));
+      write_tables(arguments.out, table_one(rows, arguments.methods, baseline_method().name),
+                   details_table(reports));
     if (stop_requested()) break;
   }
   fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
-             to_markdown(table_one(rows, arguments.methods)), to_markdown(details_table(reports)));
+             to_markdown(table_one(rows, arguments.methods, baseline_method().name)),
+             to_markdown(details_table(reports)));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
   throw_if_interrupted();
 }

@@ -5,9 +5,9 @@
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "core/inspect/frame_ranges.hpp"
 #include "core/run/condition.hpp"
 #include "core/sequence/excerpt.hpp"
-#include "ui/session/frame_ranges.hpp"
 
 namespace stillpoint {
 namespace {

@@ -9,9 +9,9 @@
 #include "app/painter.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/inspect/frame_ranges.hpp"
 #include "core/out_folder.hpp"
 #include "ui/panels/figure_sheet.hpp"
-#include "ui/session/frame_ranges.hpp"
 #include "ui/session/session.hpp"
 #include "ui/workbench/settings.hpp"
 
@@ -29,6 +29,13 @@ struct FiguresArguments {
   double scale = 1.0;
   bool force = false;
 };
+
+/// The first method that has a panel for its stages; null where none has.
+const MethodInfo* method_with_panel(const std::string& panel) {
+  for (const MethodInfo& method : methods())
+    if (std::find(method.panels.begin(), method.panels.end(), panel) != method.panels.end()) return &method;
+  return nullptr;
+}
 
 /// The figures of one frame, written one by one, with the list of what each shows.
 class Figures {
@@ -50,7 +57,9 @@ class Figures {
       // Each alone as well, for pages that set their own captions.
       write_image(folder_ / fmt::format("figure1{}.png", cell.letter), cell.picture);
     }
-    FigureSheet sheet(fmt::format("Figure 1   Motion mask by the paper's method: {}", where), cells, 3);
+    FigureSheet sheet(fmt::format("Figure 1   Motion mask by method {}: {}",
+                                  stages_with(*view.current, "compensated")->method, where),
+                      cells, 3);
     write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size(scale_)),
           fmt::format("frames, compensated frame, forward, backward and union mask of {}; figure1a.png to "
                       "figure1f.png are its pictures alone",
@@ -100,6 +109,8 @@ void figures(const FiguresArguments& arguments) {
 
   if (place.options.recorded == nullptr) place.options.keep_times = false;
   Session session(place.source, place.config, place.options);
+  if (const MethodInfo* shows = method_with_panel("compensated"); shows != nullptr && shows->name != method)
+    session.request(request::StagesBeside{shows->name});
   {
     // Errors are drawn over the whole sequence.
     const int last = has_depth && has_truth ? place.frames - 1 : frame;

@@ -22,12 +22,13 @@ std::shared_ptr<const RecordedRun> baseline_beside(const PlaceArguments& argumen
                                    arguments.baseline, named->origin.name, arguments.place, run.origin.name));
     return named;
   }
-  if (run.run.config.run.method == "none") return nullptr;
-  const fs::path beside = (fs::path(arguments.place) / "." / "..").lexically_normal() / "none";
+  if (method_of(run.run.config).baseline) return nullptr;
+  const fs::path beside =
+      (fs::path(arguments.place) / "." / "..").lexically_normal() / baseline_method().name;
   try {
     if (!is_run_folder(beside)) return nullptr;
     auto found = std::make_shared<const RecordedRun>(read_records(beside));
-    if (found->origin.fingerprint == run.origin.fingerprint && found->run.config.run.method == "none")
+    if (found->origin.fingerprint == run.origin.fingerprint && method_of(found->run.config).baseline)
       return found;
   } catch (const InputError&) {  // nobody asked for it
   }

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/error.hpp"
-#include "ui/session/frame_ranges.hpp"
+#include "core/inspect/frame_ranges.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {

@@ -62,7 +62,7 @@ void run(const RunArguments& arguments) {
     throw InputError(
         fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint motion` works without",
                     arguments.sequence));
-  if (config.run.method == "oracle" && !source->has_masks())
+  if (method_of(config).needs.true_mask && !source->has_masks())
     throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt",
                                  arguments.sequence));
   RunOptions options;

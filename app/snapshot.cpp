@@ -11,9 +11,9 @@
 #include "app/progress.hpp"
 #include "app/video_file.hpp"
 #include "core/error.hpp"
+#include "core/inspect/frame_ranges.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
-#include "ui/session/frame_ranges.hpp"
 #include "ui/session/session.hpp"
 #include "ui/workbench/settings.hpp"
 
@@ -125,10 +125,9 @@ void snapshot(const SnapshotArguments& arguments) {
   place.options.baseline = !arguments.no_baseline;
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
   // The records of a finished run hold all but what these show.
-  place.options.catch_up =
-      method == "stillpoint" &&
-      (painter.draws("depth_motion") || painter.draws("colour_motion") || painter.draws("stages") ||
-       painter.draws("feature") || painter.draws("inspector") || painter.draws("workbench"));
+  place.options.catch_up = method_named(method).needs.keeps_state &&
+                           (painter.draws("motion") || painter.draws("stages") || painter.draws("feature") ||
+                            painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);

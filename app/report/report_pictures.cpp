@@ -40,8 +40,9 @@ struct Curve {
 /// How a run looks in every plot: as in the panels where its method has a role there, else as a ghost does.
 RunLook look_of_run(const ReportRun& run, std::size_t place) {
   const ThemeName theme = ThemeName::kLight;
-  if (run.report.method == "none") return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
-  if (run.report.method == "stillpoint") return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
+  if (method_named(run.report.method).baseline)
+    return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
+  if (run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
   return ghost_look(place, theme);
 }
 
@@ -94,21 +95,16 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run,
   if (!run.opened.no_images.empty())
     return Panels{{"features_before", "Features before removal; the image is missing"},
                   {"features_after", "Features after removal; the image is missing"}};
-  const std::string& method = run.report.method;
+  const MethodInfo& method = method_named(run.report.method);
   const std::pair<std::string, std::string> before = {"features_before",
                                                       "Features before removal, and the mask"},
                                             after = {"features_after", "Features after removal, as tracked"};
-  if (method == "none") return {{"input", "Input"}, after};
-  if (method == "paper")
-    return {before, {"difference", "Difference after compensation"}, {"union_mask", "Motion mask"}, after};
-  if (method == "stillpoint" && !frame.colour_motion.points.empty())
-    return {{"input", "Input"},
-            before,
-            {"colour_motion", "Motion judged by colour alone, as the frame has no depth"},
-            after};
-  if (method == "stillpoint")
-    return {{"input", "Input"}, before, {"depth_motion", "Motion judged by depth, stage by stage"}, after};
-  return {before, after};
+  if (method.baseline) return {{"input", "Input"}, after};
+  if (method.reference) return {before, after};
+  return {{"input", "Input"},
+          before,
+          {"motion", fmt::format("What method {} judges by, stage by stage", frame.motion->method)},
+          after};
 }
 
 }  // namespace
@@ -144,7 +140,7 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
                                const ReportProgress& progress) {
   const std::vector<WorstFrame> worst = worst_frames(run.result(), run.report, count, kApart);
   if (worst.empty()) return {};
-  const bool again = run.report.method == "stillpoint" && run.opened.no_images.empty();
+  const bool again = method_named(run.report.method).needs.keeps_state && run.opened.no_images.empty();
   const auto session = session_of(group, run, again);
   const double start = run.result().records.front().timestamp;
   std::string html = fmt::format("<h3>Worst frames of {}</h3>\n", escaped(run.label));

@@ -36,7 +36,7 @@ void label_runs(ReportGroup& group) {
 
 const ReportRun* ReportGroup::baseline() const {
   const auto it = std::find_if(runs.begin(), runs.end(),
-                               [](const ReportRun& run) { return run.report.method == "none"; });
+                               [](const ReportRun& run) { return method_named(run.report.method).baseline; });
   return it == runs.end() ? nullptr : &*it;
 }
 

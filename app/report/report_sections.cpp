@@ -36,7 +36,7 @@ RunFigures figures_of(const RunReport& report) {
     figures.ate_m = rmse_of(e.ate.translation_m);
     figures.rpe_frame_m = rmse_of(e.rpe_frame.translation_m);
   }
-  if (report.scores.known && report.method != "none") {
+  if (report.scores.known && !method_named(report.method).baseline) {
     figures.precision = report.scores.mask.precision();
     figures.recall = report.scores.mask.recall();
   }
@@ -50,7 +50,7 @@ std::optional<double> least(const ReportGroup& group, std::optional<double> RunF
   int known = 0;
   for (const ReportRun& run : group.runs) {
     const auto value = figures_of(run.report).*figure;
-    if (!value || run.report.method == "oracle") continue;
+    if (!value || method_named(run.report.method).reference) continue;
     ++known;
     if (!best || *value < *best) best = value;
   }
@@ -124,10 +124,10 @@ std::string summary_table(const ReportGroup& group) {
     const auto cell = [&r](const std::optional<double>& value, double factor, int digits,
                            const std::optional<double>& best) {
       return HtmlCell{text_of(value, factor, digits), true,
-                      value && best && *value == *best && r.method != "oracle"};
+                      value && best && *value == *best && !method_named(r.method).reference};
     };
     const auto plain = [](std::string text) { return HtmlCell{std::move(text), true, false}; };
-    const bool masks = r.scores.known && r.method != "none";
+    const bool masks = r.scores.known && !method_named(r.method).baseline;
     rows.push_back(
         {{run.label},
          plain(fmt::format("{:.1f} % of {}", 100.0 * r.coverage, r.frames)),

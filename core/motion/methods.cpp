@@ -49,6 +49,13 @@ const MethodInfo& method_named(const std::string& name) {
 
 const MethodInfo& method_of(const Config& config) { return method_named(config.run.method); }
 
+std::vector<std::string> usual_methods() {
+  std::vector<std::string> names{baseline_method().name};
+  for (const MethodInfo& method : methods())
+    if (method.usual && !method.baseline) names.push_back(method.name);
+  return names;
+}
+
 const MethodInfo& baseline_method() {
   return *std::find_if(methods().begin(), methods().end(), [](const MethodInfo& m) { return m.baseline; });
 }

@@ -35,6 +35,7 @@ struct MethodInfo {
   std::string citation;  ///< where it comes from; empty for none
   MotionNeeds needs{};
   bool baseline = false;   ///< removes nothing: what others are held against
+  bool usual = false;      ///< among those compared when no methods are named
   bool reference = false;  ///< is given the ground truth: what removal could gain, not a method
   /// Runs with what the odometry has beyond METHOD.md §2: direct alignment and fixed-lag re-estimation.
   bool extends_odometry = false;
@@ -58,6 +59,9 @@ struct MethodInfo {
 
 /// The method that a config runs.
 [[nodiscard]] const MethodInfo& method_of(const Config& config);
+
+/// Names of those compared when none are named, the baseline first.
+[[nodiscard]] std::vector<std::string> usual_methods();
 
 /// The one that removes nothing.
 [[nodiscard]] const MethodInfo& baseline_method();

@@ -29,6 +29,7 @@ struct MotionNeeds {
   bool matches = false;      ///< detect() wants the frame's features and their map points; implies first_pose
   bool true_mask = false;    ///< detect() wants the ground-truth mask: a reference, not a method
   bool keeps_state = false;  ///< what it finds in a frame depends on more than frames_back() frames
+  int checkpoint_every = 25;  ///< frames between copies of that state: few where a copy is light
 };
 
 /// What a method makes of a frame before its turn, when no pose is known: its own type.

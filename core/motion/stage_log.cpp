@@ -9,8 +9,11 @@ namespace stillpoint {
 namespace {
 
 const Layer* layer_in(const Stage& stage, const std::string& id) {
-  for (const StageSide& side : stage.sides)
+  for (const StageSide& side : stage.sides) {
     if (side.output.id == id) return &side.output;
+    for (const Layer& input : side.inputs)
+      if (input.id == id && side.name.empty()) return &input;
+  }
   return nullptr;
 }
 

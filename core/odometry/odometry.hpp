@@ -71,6 +71,8 @@ class Odometry {
   /// By frame index: the poses of earlier frames that were solved once more, by the map as it was later.
   [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const { return hindsight_.revised(); }
   [[nodiscard]] const Config& config() const { return config_; }
+  /// The motion method's state, as the next frame will find it.
+  [[nodiscard]] const MotionStage& motion() const { return motion_; }
 
  private:
   /// The frame being tracked.

@@ -173,7 +173,7 @@ TEST(ConditionLimits, HostileTextsAreRefused) {
 
 TEST(FrameFigures, NamesAreUniqueAndExplained) {
   std::set<std::string_view> names;
-  for (const FrameFigureInfo& info : frame_figure_infos()) {
+  for (const FigureInfo& info : frame_figure_infos()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.help.empty()) << info.name;
     EXPECT_NO_THROW((void)Condition(info.name)) << info.name;

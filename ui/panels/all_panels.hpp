@@ -12,8 +12,17 @@ using Shared = std::shared_ptr<PanelsShared>;
 [[nodiscard]] std::unique_ptr<Panel> make_compensated_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_difference_panel(Shared shared);
 
-enum class MaskKind { kForward, kBackward, kUnion };
-[[nodiscard]] std::unique_ptr<Panel> make_mask_panel(MaskKind kind, Shared shared);
+/// Which mask a mask panel shows: the one the run used, or a layer of the stages.
+struct MaskPanelInfo {
+  std::string name, title;
+  Role role = Role::kUnion;
+  bool numbered = false;       ///< its regions are numbered
+  std::string layer{};         ///< id of the layer; empty: what the run removed
+  std::string raw_layer{};     ///< … before it was cleaned up, where it is
+  std::string warped_layer{};  ///< … in the target's camera, where it lies in another
+  std::string values_layer{};  ///< … whose limit made it, where there is one
+};
+[[nodiscard]] std::unique_ptr<Panel> make_mask_panel(MaskPanelInfo info, Shared shared);
 
 [[nodiscard]] std::unique_ptr<Panel> make_flow_tracks_panel(Shared shared);
 
@@ -22,8 +31,7 @@ enum class FeatureMoment { kBefore, kAfter };
 
 [[nodiscard]] std::unique_ptr<Panel> make_stages_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_feature_panel(Shared shared);
-[[nodiscard]] std::unique_ptr<Panel> make_depth_motion_panel(Shared shared);
-[[nodiscard]] std::unique_ptr<Panel> make_colour_motion_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_motion_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_trajectory_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_errors_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timeline_panel(Shared shared);

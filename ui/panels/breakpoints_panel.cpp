@@ -106,7 +106,7 @@ class BreakpointsPanel final : public NamedPanel {
     ImGui::TextDisabled("Click a name to use it. Units: m, cm, mm, deg, px, ms, s, %%. Also previous(x),");
     ImGui::TextDisabled("change(x), abs(x), spike(x, sigmas), &&, ||, ! and + - * /.");
     if (ImGui::BeginTable("names", 3, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingFixedFit)) {
-      for (const FrameFigureInfo& info : frame_figure_infos()) {
+      for (const FigureInfo& info : frame_figure_infos()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::PushFont(frame.fonts.mono);

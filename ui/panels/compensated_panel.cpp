@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/inspect/layer_values.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 
@@ -18,7 +19,8 @@ class CompensatedPanel final : public FramePanel {
       : FramePanel("compensated", "Compensated frame", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (draw_missing_motion(frame, session)) return;
+    const StageLog* log = stages_or_absent(frame, session, actions, name(), "compensated");
+    if (log == nullptr) return;
     bool held = false;
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
@@ -28,17 +30,17 @@ class CompensatedPanel final : public FramePanel {
       controls.button("Hold for target (T)", "Hold the button, or T over this panel", &held);
     held = held || (is_key_down(kFlipKey) && ImGui::IsWindowHovered());
 
-    const FrameView& view = *session.current;
-    const MotionRound& round = view.motion.rounds.back();
-    const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;
-    if (trace.compensated.empty()) {
+    const Layer* layer = log->layer(direction_ == 0 ? "compensated" : "compensated_backward");
+    if (layer == nullptr || layer->image.empty()) {
       draw_absent(frame, "This direction has no homography, so nothing was compensated.");
       return;
     }
+    const Layer& trace = *layer;
+    const FrameView& view = *session.current;
     const Frame& target = direction_ == 0 ? view.frame : view.reference;
     const FrameSpace seen = direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference;
-    const FrameSpace carried =
-        direction_ == 0 ? FrameSpace::kCompensatedForward : FrameSpace::kCompensatedBackward;
+    const FrameSpace carried = layer->space;
+    caption_ = caption(session, *log);
     if (look_ == kSigned)
       draw_signed(frame, {session, actions, seen}, trace, target);
     else
@@ -48,17 +50,17 @@ class CompensatedPanel final : public FramePanel {
  private:
   enum LookAt { kImage, kWipe, kSigned };
 
-  void draw_images(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace,
-                   const Frame& target, bool held) {
+  void draw_images(const UiFrame& frame, const FramePlace& place, const Layer& trace, const Frame& target,
+                   bool held) {
     const SessionView& session = place.session;
     const Texture& compensated =
-        compensated_.get(frame, session.current, direction_, [&] { return trace.compensated; });
+        compensated_.get(frame, session.current, direction_, [&] { return trace.image; });
     const Texture& seen = target_.get(frame, session.current, direction_, [&] { return target.gray; });
     Footer footer;
-    footer.caption = caption(session, trace);
+    footer.caption = caption_;
     ImageContent content;
     content.texture = held && look_ == kImage ? &seen : &compensated;
-    content.values = held && look_ == kImage ? &target.gray : &trace.compensated;
+    content.values = held && look_ == kImage ? &target.gray : &trace.image;
     if (look_ == kWipe) {
       content.texture = &seen;
       content.values = &target.gray;
@@ -70,8 +72,7 @@ class CompensatedPanel final : public FramePanel {
     footer.draw(frame);
   }
 
-  void draw_signed(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace,
-                   const Frame& target) {
+  void draw_signed(const UiFrame& frame, const FramePlace& place, const Layer& trace, const Frame& target) {
     const SessionView& session = place.session;
     ColourScale scale;
     scale.low = -kSignedRange;
@@ -81,15 +82,11 @@ class CompensatedPanel final : public FramePanel {
     scale.none = "no data";
     scale.none_colour = no_value_colour(frame.theme);
     const Texture& texture = signed_.get(frame, session.current, direction_, [&] {
-      cv::Mat seen, carried;
-      target.gray.convertTo(seen, CV_32F);
-      trace.compensated.convertTo(carried, CV_32F);
-      difference_ = seen - carried;
-      difference_.setTo(std::nanf(""), trace.valid == 0);
+      difference_ = signed_difference(trace, target.gray);
       return coloured(difference_, scale);
     });
     Footer footer;
-    footer.caption = "Target less compensated: above zero it became brighter. " + caption(session, trace);
+    footer.caption = "Target less compensated: above zero it became brighter. " + caption_;
     ImageContent content;
     content.texture = &texture;
     content.values = &difference_;
@@ -97,21 +94,28 @@ class CompensatedPanel final : public FramePanel {
     footer.draw(frame);
   }
 
-  [[nodiscard]] std::string caption(const SessionView& session, const DirectionTrace& trace) const {
+  [[nodiscard]] std::string caption(const SessionView& session, const StageLog& log) const {
     const FrameView& view = *session.current;
-    const int from = direction_ == 0 ? view.reference.index : view.frame.index;
-    const int to = direction_ == 0 ? view.frame.index : view.reference.index;
-    std::string text = fmt::format("Frame {} carried into frame {}'s camera", from, to);
-    if (!trace.homography.valid) return text + " by the homography fallen back on.";
-    return text + fmt::format(": {} inliers, {:.2f} px RMS after RANSAC, {:.2f} px refined.",
-                              trace.homography.ransac_inliers, trace.homography.ransac_error_px,
-                              trace.homography.refined_error_px);
+    const bool forward = direction_ == 0;
+    const int from = forward ? view.reference.index : view.frame.index;
+    const int to = forward ? view.frame.index : view.reference.index;
+    std::string text = fmt::format("Frame {} warped into frame {}'s camera", from, to);
+    const std::string begin = forward ? "Forward: " : "Backward: ";
+    std::string figures;
+    if (const Stage* stage = log.stage_of_layer(forward ? "flow_tracks" : "flow_tracks_backward"))
+      for (const StageFigure& figure : stage->figures)
+        if (figure.name.starts_with(begin))
+          figures += fmt::format("{}{} {}", figures.empty() ? ": " : ", ", figure.name.substr(begin.size()),
+                                 figure_text(figure));
+    if (figures.empty()) figures = " by the homography fallen back on";
+    return text + figures + "." + whose_stages(session, log);
   }
 
   int direction_ = 0, look_ = kImage;
   float wipe_ = 0.5F;
   FrameTexture compensated_, target_, signed_;
   cv::Mat difference_;
+  std::string caption_;  // of what is being drawn
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/motion/paper/difference.hpp"
+#include "core/inspect/layer_values.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/plot/plot.hpp"
@@ -19,17 +19,20 @@ class DifferencePanel final : public FramePanel {
   explicit DifferencePanel(Shared shared) : FramePanel("difference", "Difference", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (draw_missing_motion(frame, session)) return;
+    const StageLog* log = stages_or_absent(frame, session, actions, name(), "difference");
+    if (log == nullptr) return;
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
     controls.toggle("Outline what is above", outline_, "Outlines the pixels above the threshold");
-    const MotionRound& round = session.current->motion.rounds.back();
-    const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;
-    if (trace.difference.empty()) {
+    const Layer* layer = log->layer(direction_ == 0 ? "difference" : "difference_backward");
+    raw_ = log->layer(direction_ == 0 ? "raw_forward_mask" : "raw_backward_mask");
+    whose_ = whose_stages(session, *log);
+    if (layer == nullptr || layer->image.empty()) {
       draw_absent(frame, "This direction has no homography, so there is no difference.");
       return;
     }
-    const FramePlace place{session, actions, direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference};
+    const Layer& trace = *layer;
+    const FramePlace place{session, actions, layer->space};
     const ImVec2 room = ImGui::GetContentRegionAvail(), start = ImGui::GetCursorScreenPos();
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     if (room.x > 1.75F * room.y) {
@@ -46,22 +49,21 @@ class DifferencePanel final : public FramePanel {
   }
 
  private:
-  void draw_picture(const UiFrame& frame, const FramePlace& place, const DirectionTrace& trace, ImVec2 size) {
+  void draw_picture(const UiFrame& frame, const FramePlace& place, const Layer& trace, ImVec2 size) {
     ColourScale scale;
-    scale.unit = "grey levels";
-    // Three times the threshold tells most apart; what is above is as bright as can be.
-    scale.high = std::clamp(3.0 * trace.threshold, 30.0, 255.0);
+    scale.unit = trace.unit;
+    scale.high = trace.range;
     scale.colour = [&scale](double v) {
       return map_colour(Colormap::kInferno, static_cast<float>(v / scale.high));
     };
     const Texture& texture = texture_.get(frame, place.session.current, direction_, [&] {
-      above_ = outlines_of(trace.raw_mask);
+      above_ = outlines_of(raw_ != nullptr ? raw_->image : cv::Mat());
       collect_histogram(trace);
-      return coloured(trace.difference, scale);
+      return coloured(trace.image, scale);
     });
     ImageContent content;
     content.texture = &texture;
-    content.values = &trace.difference;
+    content.values = &trace.image;
     const ImageResponse response =
         draw_scaled_image(frame, "difference", content, *shared_, size, place, scale);
     if (outline_) {
@@ -71,37 +73,33 @@ class DifferencePanel final : public FramePanel {
     }
   }
 
-  void collect_histogram(const DirectionTrace& trace) {
-    const Histogram counts = histogram(trace.difference, trace.valid);
-    histogram_ = {};
-    for (std::size_t level = 0; level < counts.size(); ++level) {
+  void collect_histogram(const Layer& trace) {
+    const LevelHistogram counts = level_histogram(trace);
+    for (std::size_t level = 0; level < counts.pixels.size(); ++level) {
       levels_[level] = static_cast<double>(level);
       // A logarithmic axis has no place for zero.
-      histogram_[level] = counts[level] > 0 ? counts[level] : 0.5;
+      histogram_[level] = std::max(0.5, counts.pixels[level]);
     }
-    const auto used = std::find_if(counts.rbegin(), counts.rend(), [](int count) { return count > 0; });
-    highest_ = std::max(16.0, static_cast<double>(counts.rend() - used));
-    above_share_ = static_cast<double>(cv::countNonZero(trace.raw_mask)) /
-                   std::max(1.0, static_cast<double>(cv::countNonZero(trace.valid)));
+    highest_ = std::max(16.0, counts.highest);
+    above_share_ = counts.above_share;
   }
 
-  void draw_histogram(const UiFrame& frame, const SessionView& session, const DirectionTrace& trace,
-                      ImVec2 size) {
+  void draw_histogram(const UiFrame& frame, const SessionView& session, const Layer& trace, ImVec2 size) {
     const ImVec2 start = ImGui::GetCursorScreenPos();
     Footer footer;
     footer.caption = fmt::format(
         "{}: {:.1f} % of the pixels with data are above Otsu's threshold.",
         frame_text(session, direction_ == 0 ? session.current->frame : session.current->reference),
         100.0 * above_share_);
-    footer.caption += whose_motion(session);
+    footer.caption += whose_;
     ImGui::BeginGroup();
     ImGui::PushItemWidth(size.x);
     const ThemeName theme = frame.theme.name;
     Plot plot{.x_label = "difference", .x_unit = "grey levels", .y_label = "pixels"};
     plot.series.push_back({"", levels_, histogram_, frame.theme.accent, SeriesStyle::kBars});
-    plot.marks.push_back({trace.threshold + 1.0, fmt::format("threshold {:.0f}", trace.threshold),
+    plot.marks.push_back({*trace.limit + 1.0, fmt::format("threshold {:.0f}", *trace.limit),
                           role_colour(Role::kWarning, theme)});
-    plot.bands.push_back({{trace.threshold + 1.0, highest_},
+    plot.bands.push_back({{*trace.limit + 1.0, highest_},
                           role_colour(direction_ == 0 ? Role::kForward : Role::kBackward, theme)});
     plot.x_limits = AxisRange{0.0, highest_};
     plot.legend = false;
@@ -114,6 +112,8 @@ class DifferencePanel final : public FramePanel {
   }
 
   int direction_ = 0;
+  const Layer* raw_ = nullptr;  // of what is being drawn
+  std::string whose_;
   bool outline_ = false;
   FrameTexture texture_;
   Outlines above_;

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "core/inspect/feature_story.hpp"
 #include "ui/panels/panel_kit.hpp"
-#include "ui/session/feature_story.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint {

@@ -93,7 +93,7 @@ class FeaturesPanel final : public FramePanel {
     if (response.clicked && !index) shared_->feature.reset();
     if (!index) return;
     if (hovered_ != *index || !same_view(session.current)) {
-      story_ = explain_feature(*session.current, *session.run, session, *index);
+      story_ = explain_feature(*session.current, *session.run, session.camera, session.map_points, *index);
       hovered_ = *index;
       hovered_in_ = session.current;
     }

@@ -13,44 +13,48 @@ namespace {
 
 constexpr int kMargin = 16, kHeading = 48, kCaption = 54;  // px at scale 1
 
-double percent_of(const cv::Mat& mask) {
-  return mask.empty() ? 0.0 : 100.0 * cv::countNonZero(mask) / static_cast<double>(mask.total());
-}
-
-std::string tracks_text(const DirectionTrace& direction) {
-  const auto inliers = std::count_if(direction.tracks.begin(), direction.tracks.end(),
-                                     [](const Track& track) { return track.inlier; });
-  return fmt::format("H from {} of {} tracks, {:.2f} px RMS", inliers, direction.tracks.size(),
-                     direction.homography.refined_error_px);
+/// The figures of a stage whose names begin with a word, that word left out.
+std::string figures_text(const Stage& stage, const std::string& begin) {
+  std::string text;
+  for (const StageFigure& figure : stage.figures)
+    if (figure.name.starts_with(begin))
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", figure.name.substr(begin.size()),
+                          figure_text(figure));
+  return text;
 }
 
 }  // namespace
 
 std::vector<FigureCell> figure_1_cells(const SessionView& session) {
   const FrameView& view = *session.current;
-  if (view.motion.rounds.empty() || view.motion.rounds.back().mask.empty()) return {};
-  const MotionRound& round = view.motion.rounds.back();
-  const DirectionTrace& forward = round.forward;
-  const double gain = percent_of(round.mask) - percent_of(forward.mask);
+  const StageLog* log = stages_with(view, "compensated");
+  const Layer* united = log == nullptr ? nullptr : log->layer("union_mask");
+  if (united == nullptr || united->image.empty()) return {};
+  const cv::Mat forward = log->layer("forward_mask")->image,
+                backward = log->layer("warped_backward_mask")->image;
+  const auto threshold = [&](const char* layer) {
+    return fmt::format("{:.0f}", log->layer(layer)->limit.value_or(0.0));
+  };
+  const double gain = percent_set(united->image) - percent_set(forward);
   return {
       {"a", fmt::format("Frame {}", view.reference.index), picture_of(view.reference)},
       {"b", fmt::format("Frame {}", view.index), picture_of(view.frame)},
       {"c",
        fmt::format("Frame {} compensated: seen from frame {}'s camera. {}", view.reference.index, view.index,
-                   tracks_text(forward)),
-       forward.compensated},
+                   figures_text(*log->stage_of_layer("flow_tracks"), "Forward: ")),
+       log->layer("compensated")->image},
       {"d",
        fmt::format("Forward mask: {:.1f} % of the image, threshold {} (Otsu), cleaned up",
-                   percent_of(forward.mask), forward.threshold),
-       forward.mask},
+                   percent_set(forward), threshold("difference")),
+       forward},
       {"e",
-       fmt::format("Backward mask, carried into frame {}: {:.1f} %, threshold {}", view.index,
-                   percent_of(round.backward_mask_in_target), round.backward.threshold),
-       round.backward_mask_in_target},
+       fmt::format("Backward mask, warped into frame {}: {:.1f} %, threshold {}", view.index,
+                   percent_set(backward), threshold("difference_backward")),
+       backward},
       {"f",
-       fmt::format("Union, the motion mask: {:.1f} % in {} regions; {:.1f} % more than forward alone",
-                   percent_of(round.mask), round.regions.size(), gain),
-       round.mask},
+       fmt::format("Union, the motion mask: {:.1f} % of the image; {:.1f} % more than forward alone",
+                   percent_set(united->image), gain),
+       united->image},
   };
 }
 

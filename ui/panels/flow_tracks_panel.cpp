@@ -15,17 +15,19 @@ class FlowTracksPanel final : public FramePanel {
   explicit FlowTracksPanel(Shared shared) : FramePanel("flow_tracks", "Flow tracks", std::move(shared)) {}
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (draw_missing_motion(frame, session)) return;
+    const StageLog* log = stages_or_absent(frame, session, actions, name(), "flow_tracks");
+    if (log == nullptr) return;
     const FrameView& view = *session.current;
     Controls controls(frame);
     controls.choice("direction", {"Forward", "Backward"}, direction_);
-    controls.round(static_cast<int>(view.motion.rounds.size()), round_);
+    controls.round(log->rounds(), round_);
     controls.slider("##length", length_, 1.0F, 8.0F, "length x%.0f");
-    const MotionRound& round = view.motion.rounds[static_cast<std::size_t>(round_shown(view, round_))];
-    const DirectionTrace& trace = direction_ == 0 ? round.forward : round.backward;
+    const char* id = direction_ == 0 ? "flow_tracks" : "flow_tracks_backward";
+    const int round = round_shown(*log, round_);
+    const Layer& trace = *log->layer(id, round);
     const Frame& target = direction_ == 0 ? view.frame : view.reference;
 
-    const Footer footer = footer_of(frame, session, trace, target);
+    const Footer footer = footer_of(frame, session, *log, trace, target);
     ImageContent content;
     content.texture = &ground_.get(frame, session.current, direction_, [&] { return target.gray; });
     content.values = &target.gray;
@@ -39,7 +41,7 @@ class FlowTracksPanel final : public FramePanel {
         draw_frame_image(frame, "tracks", content, *shared_, room_above(frame, footer),
                          {session, actions, direction_ == 0 ? FrameSpace::kTarget : FrameSpace::kReference});
     push_clip(response);
-    for (const Track& track : trace.tracks) draw_track(frame, response, track);
+    for (const Mark& track : trace.marks) draw_track(frame, response, track);
     pop_clip();
     footer.draw(frame);
   }
@@ -47,8 +49,8 @@ class FlowTracksPanel final : public FramePanel {
  private:
   enum Kind { kInlier, kOutlier, kRemoved };
 
-  [[nodiscard]] static Kind kind_of(const Track& track) {
-    return track.removed ? kRemoved : track.inlier ? kInlier : kOutlier;
+  [[nodiscard]] static Kind kind_of(const Mark& track) {
+    return track.kind == MarkKind::kRemoved ? kRemoved : track.kind == MarkKind::kInlier ? kInlier : kOutlier;
   }
   [[nodiscard]] static LegendEntry look_of(Kind kind, ThemeName theme) {
     if (kind == kInlier) return {"inlier", role_colour(Role::kInlier, theme), Sign::kCircle};
@@ -56,20 +58,21 @@ class FlowTracksPanel final : public FramePanel {
     return {"left out: in the last round's mask", role_colour(Role::kUnion, theme), Sign::kHollowSquare};
   }
 
-  void draw_track(const UiFrame& frame, const ImageResponse& response, const Track& track) const {
+  void draw_track(const UiFrame& frame, const ImageResponse& response, const Mark& track) const {
     const LegendEntry look = look_of(kind_of(track), frame.theme.name);
     const ImU32 colour = to_u32(look.colour);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImVec2 to = response.keypoint_to_screen(track.to);
-    const ImVec2 from = response.keypoint_to_screen(track.to + length_ * (track.from - track.to));
+    const ImVec2 to = response.keypoint_to_screen(track.at);
+    const ImVec2 from =
+        response.keypoint_to_screen(track.at + length_ * (track.from.value_or(track.at) - track.at));
     list.AddLine(from, to, to_u32(look.colour, 0.8F), 1.3F * frame.scale);
     draw_sign(frame, list, to, (look.sign == Sign::kCircle ? 2.2F : 3.2F) * frame.scale, look.sign, colour);
   }
 
-  [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
-                                 const DirectionTrace& trace, const Frame& target) const {
+  [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session, const StageLog& log,
+                                 const Layer& trace, const Frame& target) const {
     std::array<int, 3> counts{};
-    for (const Track& track : trace.tracks) ++counts[static_cast<std::size_t>(kind_of(track))];
+    for (const Mark& track : trace.marks) ++counts[static_cast<std::size_t>(kind_of(track))];
     Footer footer;
     for (const Kind kind : {kInlier, kOutlier, kRemoved}) {
       LegendEntry entry = look_of(kind, frame.theme.name);
@@ -78,11 +81,12 @@ class FlowTracksPanel final : public FramePanel {
     }
     footer.caption =
         fmt::format("{}: {} tracks, drawn where they end, {:.0f} times their length.",
-                    frame_text(session, target), trace.tracks.size(), static_cast<double>(length_));
-    if (trace.homography.valid) {
-      footer.caption += fmt::format(" Homography: {:.2f} px RMS after {} refining steps.",
-                                    trace.homography.refined_error_px, trace.homography.refine_iterations);
-    }
+                    frame_text(session, target), trace.marks.size(), static_cast<double>(length_));
+    const Stage* stage = log.stage_of_layer(trace.id, round_shown(log, round_));
+    const std::string rms = direction_ == 0 ? "Forward: RMS refined" : "Backward: RMS refined";
+    for (const StageFigure& figure : stage->figures)
+      if (figure.name == rms) footer.caption += fmt::format(" Homography: {} RMS.", figure_text(figure));
+    footer.caption += whose_stages(session, log);
     return footer;
   }
 

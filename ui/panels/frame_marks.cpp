@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "ui/session/pins.hpp"
+#include "core/inspect/pins.hpp"
 
 namespace stillpoint {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/motion/methods.hpp"
 #include "ui/panels/run_series.hpp"
 
 namespace stillpoint {
@@ -183,33 +184,47 @@ std::string missing_motion(const SessionView& session) {
                ? fmt::format("Frame {} has not been read yet.", view.index)
                : fmt::format("Frame {} cannot be shown: {}", view.index, view.frame.problem);
   }
-  const int gap = session.config.motion.reference_gap;
-  if (!view.reference.readable()) {
-    if (view.index >= gap)
-      return fmt::format("Frame {}, which this one is compared with, could not be read.", view.index - gap);
-    if (view.index == 0) return "The first frame has none before it to be compared with.";
-    return fmt::format("Frame {} has none {} frames before it to be compared with.", view.index, gap);
+  if (view.motion && !view.motion->note.empty())
+    return fmt::format("Method {} has no stages here: {}.", view.motion->method, view.motion->note);
+  return view.record == nullptr ? fmt::format("Frame {} has not been processed yet.", view.index)
+                                : fmt::format("Method {} has no stages here.", session.config.run.method);
+}
+
+const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                                 const std::string& panel, const std::string& layer) {
+  const FrameView& view = *session.current;
+  if (const StageLog* log = stages_with(view, layer)) return log;
+  if (!view.frame.readable()) {
+    draw_absent(frame, missing_motion(session));
+    return nullptr;
   }
-  if (!view.motion.rounds.empty()) return {};
-  if (!view.motion.note.empty()) return fmt::format("There is no motion mask: {}", view.motion.note);
-  return "Motion has not been computed for this frame yet.";
+  std::string text = missing_motion(session);
+  Controls controls(frame);
+  for (const MethodInfo& method : methods()) {
+    if (std::find(method.panels.begin(), method.panels.end(), panel) == method.panels.end()) continue;
+    const bool is_runs = method.name == session.config.run.method;
+    const bool beside = view.motion_beside && view.motion_beside->method == method.name;
+    if (beside && !view.motion_beside->note.empty())
+      text = fmt::format("Method {} has none here: {}.", method.name, view.motion_beside->note);
+    if (is_runs || beside) continue;
+    text = fmt::format("The run's method, {}, has no such stage.", session.config.run.method);
+    const std::string label = fmt::format("Lay {}'s beside", method.name);
+    if (controls.button(label.c_str(),
+                        "Works out that method's stages of each frame shown, beside the run's"))
+      actions.requests.emplace_back(request::StagesBeside{method.name});
+  }
+  draw_absent(frame, text);
+  return nullptr;
 }
 
-bool draw_missing_motion(const UiFrame& frame, const SessionView& session) {
-  const std::string missing = missing_motion(session);
-  if (!missing.empty()) draw_absent(frame, missing);
-  return !missing.empty();
-}
-
-int round_shown(const FrameView& view, int chosen) {
-  const int last = static_cast<int>(view.motion.rounds.size()) - 1;
+int round_shown(const StageLog& log, int chosen) {
+  const int last = log.rounds() - 1;
   return chosen < 0 ? last : std::min(chosen, last);
 }
 
-std::string whose_motion(const SessionView& session) {
-  const std::string& method = session.config.run.method;
-  if (method == "paper") return {};
-  return fmt::format(" What the paper's method finds; this run is by {}.", method);
+std::string whose_stages(const SessionView& session, const StageLog& log) {
+  if (log.method == session.config.run.method) return {};
+  return fmt::format(" By method {}, laid beside; this run is by {}.", log.method, session.config.run.method);
 }
 
 std::string frame_text(const SessionView& session, const Frame& frame) {

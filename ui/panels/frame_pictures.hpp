@@ -80,18 +80,22 @@ ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const Imag
 /// Writes a heading into a picture's upper left corner, cut where there is no room for it.
 void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading);
 
-/// Why the paper's stages are not there for this frame, one sentence; empty when they are.
+/// Why the method's stages are not there for this frame, one sentence.
 [[nodiscard]] std::string missing_motion(const SessionView& session);
 
-/// Says in the panel why the paper's stages are not there. @returns whether they are not
-bool draw_missing_motion(const UiFrame& frame, const SessionView& session);
+/// The stages that hold a layer: the run's, or those laid beside. Where neither do, says so in the panel and
+/// offers methods that have it.
+/// @param panel name of the panel that asks
+/// @returns null where there are none
+const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                                 const std::string& panel, const std::string& layer);
 
 /// The round shown, from 0: the one chosen, or the last where none is (below 0) or there are not so many.
-[[nodiscard]] int round_shown(const FrameView& view, int chosen);
+[[nodiscard]] int round_shown(const StageLog& log, int chosen);
 
-/// " What the paper's method finds; this run is by stillpoint.": whose work these stages are, where that is
-/// not the run's method; else empty.
-[[nodiscard]] std::string whose_motion(const SessionView& session);
+/// " By method paper, laid beside; this run is by stillpoint.": whose stages these are, where they are not
+/// the run's; else empty.
+[[nodiscard]] std::string whose_stages(const SessionView& session, const StageLog& log);
 
 /// "Frame 42, 1.400 s": place and time since the sequence's first frame.
 [[nodiscard]] std::string frame_text(const SessionView& session, const Frame& frame);

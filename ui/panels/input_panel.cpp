@@ -18,7 +18,7 @@ class InputPanel final : public FramePanel {
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     Controls controls(frame);
-    const int gap = session.config.motion.reference_gap;
+    const int gap = std::max(1, view.index - view.reference.index);
     controls.choice("what", {"Frame t", fmt::format("Frame t−{}", gap), "Depth"}, what_);
     if (what_ == kDepth) {
       draw_depth(frame, {session, actions, FrameSpace::kTarget}, view);
@@ -114,12 +114,8 @@ class InputPanel final : public FramePanel {
   [[nodiscard]] static std::string missing(const SessionView& session, const Frame& shown) {
     if (&shown == &session.current->frame || !session.current->frame.readable())
       return missing_motion(session);
-    const int gap = session.config.motion.reference_gap;
-    if (session.current->index < gap) {
-      return gap == 1 ? "The first frame has none before it."
-                      : fmt::format("Frame {} has none {} frames before it.", session.current->index, gap);
-    }
-    return fmt::format("Frame {} could not be read.", session.current->index - gap);
+    if (session.current->index == 0) return "The first frame has none before it.";
+    return fmt::format("Frame {} could not be read.", session.current->reference.index);
   }
 
   int what_ = kFrame;

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/point_readings.hpp"
+#include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_series.hpp"
-#include "ui/session/point_readings.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -21,9 +22,14 @@ std::string position_text(const Pose& pose) {
   return fmt::format("{:.3f}, {:.3f}, {:.3f} m", t.x(), t.y(), t.z());
 }
 
+/// "static_tracks" as a heading: "Static tracks".
+std::string label_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
 Rows record_rows(const SessionView& session, const FrameRecord& r) {
-  // Only methods that judge by homographies have rounds.
-  const bool rounds = r.motion_rounds > 0;
   Rows rows{
       {"Frame", fmt::format("{} of {}", r.index, session.frame_count)},
       {"Time", fmt::format("{:.3f} s", r.timestamp - series_start(session))},
@@ -40,9 +46,7 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
       {"Features removed", fmt::format("{}", r.features_removed)},
       {"Features kept", fmt::format("{}", r.features_kept)},
       {"Mask", fmt::format("{:.2f} % of the pixels", 100.0 * r.mask_share)},
-      {"Motion rounds", rounds ? fmt::format("{}", r.motion_rounds) : "–"},
-      {"Static tracks", rounds ? fmt::format("{}", r.static_tracks) : "–"},
-      {"Homography RMS", rounds ? fmt::format("{:.3f} px", r.homography_rms_px) : "–"},
+      {"Motion rounds", r.motion_rounds > 0 ? fmt::format("{}", r.motion_rounds) : "–"},
       {"Matches", fmt::format("{}", r.matches)},
       {"Inliers", fmt::format("{}", r.inliers)},
       {"Reprojection RMS", fmt::format("{:.3f} px", r.rms_px)},
@@ -60,6 +64,11 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
   } else {
     rows.emplace_back("Bundle RMS", "none applied");
   }
+  for (const FigureInfo& info : method_of(session.config).figures)
+    for (const MotionFigure& figure : r.motion_figures)
+      if (figure.name == info.name)
+        rows.emplace_back(label_of(info.name),
+                          fmt::format("{:.{}f} {}", figure.value, info.digits, to_string(info.unit)));
   rows.emplace_back("Took", fmt::format("{:.1f} ms", r.ms.total));
   return rows;
 }
@@ -123,11 +132,11 @@ class InspectorPanel final : public FramePanel {
     std::vector<Column> columns;
     const PairGeometry& pair = shared_->geometry(session);
     if (shared_->cursor && shared_->cursor->target)
-      columns.push_back({"Mouse", read_point(session, pair, shared_->pixel->cast<double>()), -1});
+      columns.push_back({"Mouse", read_point(*session.current, pair, shared_->pixel->cast<double>()), -1});
     const auto& pins = session.debug.pins;
     for (std::size_t i = 0; i < pins.size(); ++i)
       columns.push_back(
-          {pins[i].name, read_point(session, pair, {pins[i].x, pins[i].y}), static_cast<int>(i)});
+          {pins[i].name, read_point(*session.current, pair, {pins[i].x, pins[i].y}), static_cast<int>(i)});
     return columns;
   }
 

@@ -8,16 +8,20 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_input_panel(shared));
   panels.push_back(make_compensated_panel(shared));
   panels.push_back(make_difference_panel(shared));
-  panels.push_back(make_mask_panel(MaskKind::kForward, shared));
-  panels.push_back(make_mask_panel(MaskKind::kBackward, shared));
-  panels.push_back(make_mask_panel(MaskKind::kUnion, shared));
+  panels.push_back(make_mask_panel({"mask", "Mask", Role::kUnion, true}, shared));
+  panels.push_back(make_mask_panel({"forward_mask", "Forward mask", Role::kForward, false, "forward_mask",
+                                    "raw_forward_mask", "", "difference"},
+                                   shared));
+  panels.push_back(make_mask_panel({"backward_mask", "Backward mask", Role::kBackward, false, "backward_mask",
+                                    "raw_backward_mask", "warped_backward_mask", "difference_backward"},
+                                   shared));
+  panels.push_back(make_mask_panel({"union_mask", "Union mask", Role::kUnion, true, "union_mask"}, shared));
   panels.push_back(make_flow_tracks_panel(shared));
   panels.push_back(make_features_panel(FeatureMoment::kBefore, shared));
   panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
   panels.push_back(make_feature_panel(shared));
   panels.push_back(make_stages_panel(shared));
-  panels.push_back(make_depth_motion_panel(shared));
-  panels.push_back(make_colour_motion_panel(shared));
+  panels.push_back(make_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
   panels.push_back(make_timeline_panel(shared));

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ui/session/lane_figures.hpp"
+#include "core/inspect/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 

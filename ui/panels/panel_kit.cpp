@@ -55,7 +55,7 @@ const PairGeometry& PanelsShared::geometry(const SessionView& session) {
     return !weak.owner_before(strong) && !strong.owner_before(weak);
   };
   if (same(geometry_of_, session.current) && same(geometry_run_, session.run)) return geometry_;
-  geometry_ = pair_geometry(*session.current, *session.run, session.camera, session.config);
+  geometry_ = pair_geometry(*session.current, *session.run, session.camera);
   geometry_of_ = session.current;
   geometry_run_ = session.run;
   return geometry_;

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/inspect/feature_story.hpp"
+#include "core/inspect/frame_stages.hpp"
+#include "core/inspect/scene_point.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/session/feature_story.hpp"
-#include "ui/session/scene_point.hpp"
-#include "ui/session/stages.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_view.hpp"
 
@@ -34,7 +34,7 @@ struct PanelsShared {
   std::optional<Eigen::Vector2i> pixel;     ///< of frame t: the scene point the mouse was on last
   std::optional<ImageCursor> cursor;        ///< the same, where it was
   std::optional<FeatureSelection> feature;  ///< the feature chosen
-  std::optional<StageInfo> stage;           ///< the stage chosen
+  std::optional<Stage> stage;               ///< the stage chosen: its place
 
   /// The geometry of the pair shown, worked out once a frame.
   const PairGeometry& geometry(const SessionView& session);

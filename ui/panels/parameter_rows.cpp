@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/motion/methods.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -36,14 +38,13 @@ std::string label_of(const Parameter& parameter) {
 std::string heading_of(const std::string& section) { return as_words(section); }
 
 std::string value_text(const Parameter& parameter) {
+  if (const auto* flag = std::get_if<bool*>(&parameter.value)) return **flag ? "true" : "false";
   if (const auto* integer = std::get_if<int*>(&parameter.value)) return fmt::format("{}", **integer);
   if (const auto* text = std::get_if<std::string*>(&parameter.value)) return **text;
   return fmt::format("{}", *std::get<double*>(parameter.value));
 }
 
-bool is_switch(const Parameter& parameter) {
-  return std::holds_alternative<int*>(parameter.value) && parameter.min == 0.0 && parameter.max == 1.0;
-}
+bool is_switch(const Parameter& parameter) { return std::holds_alternative<bool*>(parameter.value); }
 
 std::string range_text(const Parameter& parameter) {
   if (!parameter.choices.empty()) return fmt::format("one of {}", parameter.choices.size());
@@ -59,7 +60,9 @@ bool matches(const Parameter& parameter, std::string_view words) {
 
 bool is_live(const Parameter& parameter) {
   const std::string section = section_of(parameter);
-  return section == "motion" || section == "depth_motion" || parameter.key == "run.method";
+  return parameter.key == "run.method" ||
+         std::any_of(methods().begin(), methods().end(),
+                     [&](const MethodInfo& method) { return method.parameters.name() == section; });
 }
 
 std::vector<ParameterChange> changes(const Config& config, const Config& from) {

@@ -13,35 +13,35 @@ namespace {
 constexpr Rgb kGainedColour = okabe_ito::kSkyBlue, kLostColour = okabe_ito::kVermillion,
               kStaysColour = okabe_ito::kPurple;
 
-LegendEntry look_of(DotKind kind, ThemeName theme) {
+LegendEntry look_of(MarkKind kind, ThemeName theme) {
   switch (kind) {
-    case DotKind::kInlier:
+    case MarkKind::kInlier:
       return {"inlier", role_colour(Role::kInlier, theme), Sign::kCircle};
-    case DotKind::kOutlier:
+    case MarkKind::kOutlier:
       return {"outlier", role_colour(Role::kOutlier, theme), Sign::kTriangle};
-    case DotKind::kRemoved:
+    case MarkKind::kRemoved:
       return {"taken out", role_colour(Role::kRemoved, theme), Sign::kCross};
-    case DotKind::kKept:
+    case MarkKind::kKept:
       return {"kept", role_colour(Role::kKept, theme), Sign::kCircle};
-    case DotKind::kUnmatched:
+    case MarkKind::kUnmatched:
       return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
-    case DotKind::kGained:
+    case MarkKind::kGained:
       return {"gained", kGainedColour, Sign::kCircle};
-    case DotKind::kLost:
+    case MarkKind::kLost:
       return {"lost", kLostColour, Sign::kCross};
   }
   return {};
 }
 
-ColourScale scale_of(const UiFrame& frame, const StagePicture& picture) {
+ColourScale scale_of(const UiFrame& frame, const Layer& picture) {
   ColourScale scale;
   scale.high = picture.range;
   scale.none_colour = no_value_colour(frame.theme);
   const double range = std::max(picture.range, 1e-9);
-  if (picture.look == PictureLook::kSigned) {
+  if (picture.kind == LayerKind::kSigned) {
     scale.low = -picture.range;
     scale.colour = [&theme = frame.theme, range](double v) { return diverging_colour(theme, v / range); };
-  } else if (picture.look == PictureLook::kLength) {
+  } else if (picture.kind == LayerKind::kLength) {
     scale.colour = [range](double v) {
       return map_colour(Colormap::kViridis, static_cast<float>(1.0 - v / range));
     };
@@ -77,11 +77,11 @@ cv::Mat changes(const cv::Mat& image) {
   return picture;
 }
 
-void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::vector<PictureDot>& dots) {
+void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::vector<Mark>& dots) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   // Small pictures get smaller signs.
   const float size = std::clamp(static_cast<float>(response.map.scale()) * 3.6F, 1.3F, 3.0F) * frame.scale;
-  for (const PictureDot& dot : dots) {
+  for (const Mark& dot : dots) {
     const LegendEntry look = look_of(dot.kind, frame.theme.name);
     const ImVec2 at = response.keypoint_to_screen(dot.at);
     if (dot.from)
@@ -94,32 +94,32 @@ void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::v
 
 }  // namespace
 
-void StagePainter::draw(const UiFrame& frame, const char* id, const StagePicture& picture, int variant,
+void StagePainter::draw(const UiFrame& frame, const char* id, const Layer& picture, int variant,
                         PanelsShared& shared, const FramePlace& place, ImVec2 size) {
   ImageContent content;
   content.absent = "There is none.";
   content.values = &picture.image;
   const auto& view = place.session.current;
-  const bool over = picture.look == PictureLook::kMask || picture.look == PictureLook::kMaskChange;
+  const bool over = picture.kind == LayerKind::kMask || picture.kind == LayerKind::kMaskChange;
   if (!picture.image.empty()) {
     content.texture = &ground_.get(frame, view, variant, [&] {
       if (over) return picture.ground;
-      return picture.look == PictureLook::kPhoto
+      return picture.kind == LayerKind::kPhoto
                  ? as_picture(frame, picture.image)
-                 : coloured(picture.image, scale_of(frame, picture), picture.look == PictureLook::kLength);
+                 : coloured(picture.image, scale_of(frame, picture), picture.kind == LayerKind::kLength);
     });
     if (over) {
       const Texture& tint = over_.get(frame, view, variant, [&] {
-        return picture.look == PictureLook::kMask
+        return picture.kind == LayerKind::kMask
                    ? tinted_mask(picture.image, role_colour(Role::kUnion, frame.theme.name))
                    : changes(picture.image);
       });
-      content.overlays.push_back({&tint, picture.look == PictureLook::kMask ? 0.55F : 1.0F});
+      content.overlays.push_back({&tint, picture.kind == LayerKind::kMask ? 0.55F : 1.0F});
     }
   }
-  std::string heading = picture.heading;
-  if (picture.look == PictureLook::kSigned) heading += fmt::format(", ±{:g} {}", picture.range, picture.unit);
-  if (picture.look == PictureLook::kLevels || picture.look == PictureLook::kLength)
+  std::string heading = picture.name;
+  if (picture.kind == LayerKind::kSigned) heading += fmt::format(", ±{:g} {}", picture.range, picture.unit);
+  if (picture.kind == LayerKind::kLevels || picture.kind == LayerKind::kLength)
     heading += fmt::format(", 0 to {:.3g} {}", picture.range, picture.unit);
   if (picture.elsewhere) {
     const ImageResponse response = draw_image(frame, id, content, shared.views.at("frame"), size);
@@ -129,26 +129,26 @@ void StagePainter::draw(const UiFrame& frame, const char* id, const StagePicture
   const ImageResponse response = draw_frame_image(frame, id, content, shared, size,
                                                   {place.session, place.actions, picture.space}, heading);
   push_clip(response);
-  draw_dots(frame, response, picture.dots);
+  draw_dots(frame, response, picture.marks);
   pop_clip();
 }
 
-std::vector<LegendEntry> legend_of(const UiFrame& frame, const StagePicture& picture) {
+std::vector<LegendEntry> legend_of(const UiFrame& frame, const Layer& picture) {
   std::vector<LegendEntry> legend;
-  if (picture.look == PictureLook::kMask)
+  if (picture.kind == LayerKind::kMask)
     legend.push_back({"in the mask", role_colour(Role::kUnion, frame.theme.name), Sign::kSquare});
-  if (picture.look == PictureLook::kMaskChange) {
+  if (picture.kind == LayerKind::kMaskChange) {
     legend.push_back({"gained", kGainedColour, Sign::kSquare});
     legend.push_back({"lost", kLostColour, Sign::kSquare});
     legend.push_back({"stays", kStaysColour, Sign::kSquare});
   }
-  if (picture.look == PictureLook::kSigned) {
+  if (picture.kind == LayerKind::kSigned) {
     legend.push_back({"above 0", diverging_colour(frame.theme, 1.0), Sign::kSquare});
     legend.push_back({"below 0", diverging_colour(frame.theme, -1.0), Sign::kSquare});
   }
-  std::set<DotKind> kinds;
-  for (const PictureDot& dot : picture.dots) kinds.insert(dot.kind);
-  for (const DotKind kind : kinds) legend.push_back(look_of(kind, frame.theme.name));
+  std::set<MarkKind> kinds;
+  for (const Mark& dot : picture.marks) kinds.insert(dot.kind);
+  for (const MarkKind kind : kinds) legend.push_back(look_of(kind, frame.theme.name));
   return legend;
 }
 

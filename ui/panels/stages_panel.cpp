@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/stage_change.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/stage_drawing.hpp"
 #include "ui/theme/icons.hpp"
@@ -14,19 +15,8 @@ namespace {
 constexpr float kListWidth = 206.0F, kListFrom = 620.0F;  // design px
 constexpr std::array<const char*, 3> kAgainst{"Stage before", "Round before", "Frame before"};
 
-std::string time_text(const StageInfo& stage) {
+std::string time_text(const Stage& stage) {
   return stage.timed && stage.ms > 0.0 ? fmt::format("{:.2f} ms", stage.ms) : std::string("–");
-}
-
-/// The stage to begin with: what the method ends its search for motion with.
-std::size_t first_shown(const std::vector<StageInfo>& stages) {
-  for (std::size_t i = stages.size(); i-- > 0;)
-    for (const StageKind kind :
-         {StageKind::kUnion, StageKind::kMotionMask, StageKind::kColourMask, StageKind::kTrueMask})
-      if (stages[i].kind == kind) return i;
-  for (std::size_t i = 0; i < stages.size(); ++i)
-    if (stages[i].kind == StageKind::kRefinement) return i;
-  return 0;
 }
 
 /// A frame's way through its method, one stage at a time: what it takes, makes, takes in time and changes.
@@ -85,17 +75,18 @@ class StagesPanel final : public FramePanel {
   void list(const SessionView& session) {
     const bool same = !listed_.owner_before(session.current) && !session.current.owner_before(listed_);
     if (same && !stages_.empty()) return;
-    stages_ = stages_of(*session.current, session.config);
+    stages_ = stages_of(*session.current);
     listed_ = session.current;
-    pictures_of_.reset();
+    shown_.reset();
   }
 
   [[nodiscard]] std::size_t current_index() const {
-    return shared_->stage ? find_stage(stages_, *shared_->stage) : first_shown(stages_);
+    return shared_->stage ? find_stage(stages_, *shared_->stage) : telling_stage(stages_);
   }
 
   void choose(std::size_t index) {
     shared_->stage = stages_[index];
+    shared_->stage->sides.clear();  // its place is enough
     scroll_ = true;
   }
 
@@ -119,8 +110,12 @@ class StagesPanel final : public FramePanel {
     Controls controls(frame);
     if (controls.button(icons::kChevronUp, "The stage before (Up)")) step_by(session, actions, -1);
     if (controls.button(icons::kChevronDown, "The next stage (Down)")) step_by(session, actions, 1);
-    const StageInfo& stage = stages_[current];
-    if (stage.two_ways) controls.choice("direction", {"Forward", "Backward"}, direction_);
+    const Stage& stage = stages_[current];
+    if (stage.sides.size() > 1) {
+      std::vector<std::string> names;
+      for (const StageSide& side : stage.sides) names.push_back(side.name);
+      controls.choice("direction", names, direction_);
+    }
     controls.choice("against", {kAgainst.begin(), kAgainst.end()}, against_,
                     "What the stage is held against to show what changed");
   }
@@ -128,11 +123,11 @@ class StagesPanel final : public FramePanel {
   void draw_list(const UiFrame& frame, std::size_t current) {
     ImGui::PushFont(frame.fonts.small);
     double longest = 0.0;
-    for (const StageInfo& stage : stages_) longest = std::max(longest, stage.timed ? stage.ms : 0.0);
+    for (const Stage& stage : stages_) longest = std::max(longest, stage.timed ? stage.ms : 0.0);
     const float right = ImGui::GetWindowContentRegionMax().x;
     std::string group;
     for (std::size_t i = 0; i < stages_.size(); ++i) {
-      const StageInfo& stage = stages_[i];
+      const Stage& stage = stages_[i];
       if (stage.group != group) {
         group = stage.group;
         ImGui::TextDisabled("%s", group.c_str());
@@ -148,7 +143,7 @@ class StagesPanel final : public FramePanel {
   }
 
   /// A stage's name, its time, and a bar as long as it took.
-  static void draw_row(const UiFrame& frame, const StageInfo& stage, ImVec2 low, float right, double longest,
+  static void draw_row(const UiFrame& frame, const Stage& stage, ImVec2 low, float right, double longest,
                        bool current) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float width = right - 4.0F * frame.scale, line = ImGui::GetTextLineHeight();
@@ -167,16 +162,16 @@ class StagesPanel final : public FramePanel {
                  time.c_str());
   }
 
-  void draw_stage(const UiFrame& frame, const FramePlace& place, const StageInfo& stage, bool narrow) {
+  void draw_stage(const UiFrame& frame, const FramePlace& place, const Stage& stage, bool narrow) {
     prepare(place.session, stage);
     draw_title(frame, stage, narrow);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const float table = std::min(0.38F * room.y, line * static_cast<float>(stage.figures.size() + 1));
     Footer footer;
-    footer.legend = legend_of(frame, pictures_.output);
+    footer.legend = legend_of(frame, side_.output);
     if (change_) {
-      for (LegendEntry& entry : legend_of(frame, change_->picture))
+      for (LegendEntry& entry : legend_of(frame, change_->layer))
         if (std::none_of(footer.legend.begin(), footer.legend.end(),
                          [&](const LegendEntry& e) { return e.name == entry.name; }))
           footer.legend.push_back(std::move(entry));
@@ -199,7 +194,7 @@ class StagesPanel final : public FramePanel {
     return text;
   }
 
-  void draw_title(const UiFrame& frame, const StageInfo& stage, bool narrow) const {
+  void draw_title(const UiFrame& frame, const Stage& stage, bool narrow) const {
     ImGui::PushFont(frame.fonts.strong);
     ImGui::TextUnformatted(stage.name.c_str());
     ImGui::PopFont();
@@ -219,18 +214,18 @@ class StagesPanel final : public FramePanel {
     const ImVec2 start = ImGui::GetCursorScreenPos();
     const float gap = 4.0F * frame.scale;
     const bool beside = room.x > 0.9F * room.y;
-    const int small = static_cast<int>(pictures_.inputs.size()) + (change_ ? 1 : 0);
+    const int small = static_cast<int>(side_.inputs.size()) + (change_ ? 1 : 0);
     const float share = small == 0 ? 1.0F : 0.62F;
     const ImVec2 large = beside ? ImVec2{std::floor(share * (room.x - gap)), room.y}
                                 : ImVec2{room.x, std::floor(share * (room.y - gap))};
     int slot = 0;
-    const auto draw = [&](const StagePicture& picture, ImVec2 at, ImVec2 size) {
+    const auto draw = [&](const Layer& picture, ImVec2 at, ImVec2 size) {
       ImGui::SetCursorScreenPos(at);
       painters_[static_cast<std::size_t>(slot)].draw(frame, fmt::format("picture {}", slot).c_str(), picture,
                                                      variant_, *shared_, place, size);
       ++slot;
     };
-    draw(pictures_.output, start, large);
+    draw(side_.output, start, large);
     const ImVec2 corner =
         beside ? ImVec2{start.x + large.x + gap, start.y} : ImVec2{start.x, start.y + large.y + gap};
     const ImVec2 rest =
@@ -238,17 +233,17 @@ class StagesPanel final : public FramePanel {
     const Tiling tiling = tile(frame, rest, std::max(small, 1), place.session.current->frame.gray.size());
     int place_in_tiling = 0;
     if (change_) {
-      StagePicture picture = change_->picture;
-      picture.heading = fmt::format("Against {}", lower(change_->against));
+      Layer picture = change_->layer;
+      picture.name = fmt::format("Against {}", lower(change_->against));
       draw(picture, tiling.corner(corner, place_in_tiling++), tiling.size);
     }
-    for (const StagePicture& picture : pictures_.inputs)
+    for (const Layer& picture : side_.inputs)
       if (slot < static_cast<int>(painters_.size()))
         draw(picture, tiling.corner(corner, place_in_tiling++), tiling.size);
     ImGui::SetCursorScreenPos({start.x, start.y + room.y + ImGui::GetStyle().ItemSpacing.y});
   }
 
-  static void draw_figures(const UiFrame& frame, const StageInfo& stage) {
+  static void draw_figures(const UiFrame& frame, const Stage& stage) {
     if (stage.figures.empty()) return;
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
@@ -282,32 +277,34 @@ class StagesPanel final : public FramePanel {
   }
 
   /// Works the pictures out when the frame, the stage or what is asked of it changes.
-  void prepare(const SessionView& session, const StageInfo& stage) {
-    const bool backward = stage.two_ways && direction_ == 1;
-    if (pictures_of_ && pictures_of_->same_place(stage) && made_backward_ == backward &&
-        made_against_ == against_)
+  void prepare(const SessionView& session, const Stage& stage) {
+    const std::size_t direction =
+        stage.sides.size() > 1 ? std::min(static_cast<std::size_t>(direction_), stage.sides.size() - 1) : 0;
+    if (shown_ && shown_->same_place(stage) && made_direction_ == direction && made_against_ == against_)
       return;
-    const FrameView& view = *session.current;
-    pictures_ = stage_pictures(view, session.camera, session.config, stage, backward);
+    side_ = stage.sides.empty() ? StageSide{} : stage.sides[direction];
     // What is asked for first, then whatever else there is.
     change_.reset();
     for (const ChangeAgainst against : {static_cast<ChangeAgainst>(against_), ChangeAgainst::kFrameBefore,
                                         ChangeAgainst::kRoundBefore, ChangeAgainst::kStageBefore})
-      if (!change_) change_ = stage_change(view, session.camera, session.config, stage, backward, against);
-    pictures_of_ = stage;
-    made_backward_ = backward;
+      if (!change_)
+        change_ =
+            stage_change(*session.current, session.camera, stages_, current_index(), direction, against);
+    shown_ = stage;
+    shown_->sides.clear();
+    made_direction_ = direction;
     made_against_ = against_;
     ++variant_;
   }
 
-  std::vector<StageInfo> stages_;
+  std::vector<Stage> stages_;
   std::weak_ptr<const FrameView> listed_;
   int direction_ = 0, against_ = static_cast<int>(ChangeAgainst::kStageBefore);
   bool scroll_ = true;
-  StagePictures pictures_;
+  StageSide side_;
   std::optional<StageChange> change_;
-  std::optional<StageInfo> pictures_of_;
-  bool made_backward_ = false;
+  std::optional<Stage> shown_;  // its place
+  std::size_t made_direction_ = 0;
   int made_against_ = 0, variant_ = 0;
   std::array<StagePainter, 8> painters_;
 };

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/inspect/lane_figures.hpp"
 #include "ui/plot/plot_axis.hpp"
-#include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint {

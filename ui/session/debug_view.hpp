@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/config.hpp"
+#include "core/inspect/marks.hpp"
 #include "core/run/removal_errors.hpp"
 
 namespace stillpoint {
@@ -16,42 +17,6 @@ struct FrameView;
 struct RunView;
 
 // What debugging adds to the session: its part of the snapshot panels draw, and what panels may ask for.
-
-/// Frames `first` to `last`, both among them.
-struct FrameSpan {
-  int first = 0, last = 0;
-  bool operator==(const FrameSpan&) const = default;
-};
-
-/// A frame to come back to.
-struct Bookmark {
-  int frame = 0;
-  std::string note;
-  bool operator==(const Bookmark&) const = default;
-};
-
-/// A pixel watched from frame to frame.
-struct Pin {
-  int frame = 0;            ///< where it was set
-  double x = 0.0, y = 0.0;  ///< px in that frame; the middle of pixel (i, j) is (i, j)
-  std::string name;         ///< "A"
-  bool operator==(const Pin&) const = default;
-};
-
-/// A condition over what is recorded, and where it holds.
-struct Breakpoint {
-  std::string expression;  ///< "rpe > 0.05 || inliers < 30"
-  bool enabled = true;
-  bool operator==(const Breakpoint&) const = default;
-};
-
-struct BreakpointView {
-  Breakpoint breakpoint;
-  std::string error;      ///< one sentence; empty when the expression can be read
-  int error_column = 0;   ///< from 0, into the expression
-  std::vector<int> hits;  ///< processed frames at which it holds, ascending
-  std::string note{};     ///< what it names and no frame processed has, one sentence; empty when nothing
-};
 
 /// A second run beside the session's own, with another configuration.
 struct GhostView {
@@ -139,6 +104,10 @@ struct ExportSession {
 };
 /// What is being written ends, and is taken away.
 struct StopExport {};
+/// Another method's stages of each frame shown, beside the run's own; an empty name ends it.
+struct StagesBeside {
+  std::string method;
+};
 struct SavePreset {
   Config config;
   std::string file;
@@ -148,6 +117,7 @@ struct SavePreset {
 using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Breakpoints,
                  request::Span, request::Preview, request::RunAll, request::AddGhost, request::RemoveGhost,
-                 request::ExportFrames, request::ExportSession, request::StopExport, request::SavePreset>;
+                 request::ExportFrames, request::ExportSession, request::StopExport, request::StagesBeside,
+                 request::SavePreset>;
 
 }  // namespace stillpoint

@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
+#include "core/inspect/export_session.hpp"
 #include "ui/session/debug_view.hpp"
-#include "ui/session/export_session.hpp"
 
 namespace stillpoint {
 

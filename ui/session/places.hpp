@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "ui/session/lane_figures.hpp"
+#include "core/inspect/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <future>
 
-#include "ui/session/frame_neighbours.hpp"
+#include "core/inspect/frame_neighbours.hpp"
 
 namespace stillpoint {
 
@@ -32,12 +32,13 @@ std::shared_ptr<const SessionView> Session::view() const {
 void Session::restart(const Config& config) {
   const RunTrackOptions keep{.keep_times = options_.keep_times};
   run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, config, keep));
+  run_->lay_beside(beside_);
   run_view_.reset();
   baseline_.reset();
   baseline_view_.reset();
-  if (options_.baseline && config.run.method != "none" && source_->has_depth()) {
+  if (options_.baseline && !method_of(config).baseline && source_->has_depth()) {
     Config plain = config;
-    plain.run.method = "none";
+    plain.run.method = baseline_method().name;
     baseline_ = std::make_unique<RunTrack>(*source_, plain,
                                            RunTrackOptions{.max_checkpoints = 1,
                                                            .keep_features = false,

@@ -13,17 +13,17 @@
 #include <utility>
 #include <vector>
 
-#include "ui/session/breakpoint_set.hpp"
+#include "core/inspect/breakpoint_set.hpp"
+#include "core/inspect/frame_cache.hpp"
+#include "core/inspect/shown_run.hpp"
+#include "core/inspect/sidecar.hpp"
 #include "ui/session/export_job.hpp"
-#include "ui/session/frame_cache.hpp"
 #include "ui/session/session_view.hpp"
-#include "ui/session/shown_run.hpp"
-#include "ui/session/sidecar.hpp"
 
 namespace stillpoint {
 
 struct SessionOptions {
-  bool baseline = true;    ///< method `none` runs beside any other method
+  bool baseline = true;    ///< the baseline method runs beside any other
   bool keep_times = true;  ///< false: stage times stay 0, so that images repeat byte for byte
   std::shared_ptr<const RecordedRun> recorded{};           ///< a finished run to begin with
   std::shared_ptr<const RecordedRun> recorded_baseline{};  ///< … and one to stand beside it
@@ -119,6 +119,7 @@ class Session {
   void carry_out(const request::ExportFrames& wanted);
   void carry_out(const request::ExportSession& wanted);
   void carry_out(const request::StopExport& wanted);
+  void carry_out(const request::StagesBeside& wanted);
   void carry_out(const request::SavePreset& wanted);
   void write_beside(const std::string& folder, ExportJob::Work work);
 
@@ -157,6 +158,7 @@ class Session {
   int wanted_ = 0;  // frames to have processed, once there is time
   bool playing_ = false;
   bool frame_asked_ = false;  // among the requests being carried out
+  std::string beside_;        // method whose stages are laid beside; empty = none
   std::string message_;
   DebugView debug_;  // without breakpoints and ghosts
   BreakpointSet breakpoints_;

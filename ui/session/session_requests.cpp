@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/inspect/export_session.hpp"
 #include "core/out_folder.hpp"
-#include "ui/session/export_session.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {
@@ -18,6 +18,7 @@ constexpr const char* kNoOthers = "No other parameters can be tried";
 void refuse_out_of_range(Config config) {
   for (const Parameter& parameter : parameters(config)) {
     double value = parameter.min;
+    if (const auto* flag = std::get_if<bool*>(&parameter.value)) value = **flag ? 1.0 : 0.0;
     if (const auto* whole = std::get_if<int*>(&parameter.value)) value = **whole;
     if (const auto* real = std::get_if<double*>(&parameter.value)) value = **real;
     if (!(value >= parameter.min && value <= parameter.max))
@@ -185,6 +186,13 @@ void Session::carry_out(const request::ExportSession& wanted) {
 
 void Session::carry_out(const request::StopExport& /*wanted*/) {
   if (export_) export_->stop();
+}
+
+void Session::carry_out(const request::StagesBeside& wanted) {
+  if (!wanted.method.empty()) (void)method_named(wanted.method);
+  run_->lay_beside(wanted.method);
+  beside_ = wanted.method;
+  show(current_->index);
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

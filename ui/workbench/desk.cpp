@@ -103,7 +103,7 @@ std::unique_ptr<Session> Desk::make_session(const OpenedPlace& place, const std:
   auto session = std::make_unique<Session>(place.source, place.config, options);
   session->start(options_.wake ? options_.wake : [] {});
   // What moves shows from the first frame that has another to be compared with.
-  session->request_frame(place.config.motion.reference_gap);
+  session->request_frame(1);
   if (!where.empty() && where == options_.plays_when_opened) session->request_play(true);
   return session;
 }

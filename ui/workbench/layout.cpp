@@ -149,17 +149,23 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
   place = divide(place.share, division, {tile(0.5, place.panel), tile(0.5, panel)});
 }
 
+/// Panels that show a method's stages, as the method names them.
+std::vector<std::string> stage_panels(std::string_view method) {
+  for (const MethodInfo& info : methods())
+    if (info.name == method && !info.panels.empty()) return info.panels;
+  return {"motion"};
+}
+
 LayoutNode default_layout(std::string_view method) {
   using enum Division;
   // Above, what is held to be moving and which features that takes, by what the method itself goes by; in the
   // middle what comes of it; below, the whole run to go about in.
-  const LayoutNode found =
-      method == "stillpoint"
-          ? divide(0.42, kColumns,
-                   {tile(0.29, "features_before"), tile(0.42, "depth_motion"), tile(0.29, "features_after")})
-          : divide(0.42, kColumns,
-                   {tile(0.25, "features_before"), tile(0.25, "forward_mask"), tile(0.25, "backward_mask"),
-                    tile(0.25, "union_mask")});
+  const std::vector<std::string> stages = stage_panels(method);
+  std::vector<LayoutNode> tiles{tile(stages.size() > 1 ? 0.25 : 0.29, "features_before")};
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, stages.size()); ++i)
+    tiles.push_back(tile(stages.size() > 1 ? 0.25 : 0.42, stages[i]));
+  if (stages.size() == 1) tiles.push_back(tile(0.29, "features_after"));
+  const LayoutNode found = divide(0.42, kColumns, tiles);
   return divide(
       1.0, kRows,
       {found,
@@ -171,18 +177,19 @@ namespace {
 
 using enum Division;
 
-/// The paper's way from tracks to the union, or the depth-aware one, stage beside stage.
+/// The method's way: its own panels in rows of three, or its stages at a glance beside the mask.
 LayoutNode motion_layout(std::string_view method) {
-  const bool by_depth = method == "stillpoint";
+  const std::vector<std::string> stages = stage_panels(method);
+  std::vector<LayoutNode> rows;
+  for (std::size_t i = 0; i + 2 < stages.size(); i += 3)
+    rows.insert(
+        rows.begin(),
+        divide(0.5, kColumns, {tile(0.33, stages[i]), tile(0.33, stages[i + 1]), tile(0.34, stages[i + 2])}));
+  if (rows.empty())
+    rows = {tile(0.58, stages.front()), divide(0.42, kColumns, {tile(0.4, "mask"), tile(0.6, "stages")})};
   return divide(
       1.0, kColumns,
-      {divide(0.74, kRows,
-              {divide(0.5, kColumns,
-                      {tile(0.33, "flow_tracks"), tile(0.33, "compensated"), tile(0.34, "difference")}),
-               divide(0.5, kColumns,
-                      {tile(0.33, "forward_mask"), tile(0.33, by_depth ? "union_mask" : "backward_mask"),
-                       tile(0.34, by_depth ? "depth_motion" : "union_mask")})}),
-       divide(0.26, kRows, {tile(0.7, "parameters"), tile(0.3, "timeline")})});
+      {divide(0.74, kRows, rows), divide(0.26, kRows, {tile(0.7, "parameters"), tile(0.3, "timeline")})});
 }
 
 /// Runs beside each other: where they went, how far off, what each took out.
@@ -194,11 +201,11 @@ LayoutNode compare_layout(std::string_view) {
 }
 
 /// From the whole run to its worst frames and why they are bad.
-LayoutNode failures_layout(std::string_view method) {
+LayoutNode failures_layout(std::string_view) {
   return divide(
       1.0, kRows,
       {divide(0.55, kColumns,
-              {tile(0.3, "features_after"), tile(0.3, method == "stillpoint" ? "depth_motion" : "union_mask"),
+              {tile(0.3, "features_after"), tile(0.3, "mask"),
                divide(0.4, kColumns, {tile(0.55, "breakpoints"), tile(0.45, "bookmarks")})}),
        divide(0.45, kColumns,
               {tile(0.5, "timeline"), divide(0.3, kRows, {tile(0.5, "errors"), tile(0.5, "removal")}),

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/motion/methods.hpp"
+
 namespace stillpoint {
 
 // The tiling of the workbench: plain data and arithmetic, without GL or ImGui.
@@ -69,7 +71,7 @@ void replace_panel(LayoutNode& root, std::string_view panel, const std::string& 
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
 
 /// What a newcomer sees of a run by this method.
-[[nodiscard]] LayoutNode default_layout(std::string_view method = "stillpoint");
+[[nodiscard]] LayoutNode default_layout(std::string_view method = kDefaultMethod);
 
 /// A layout for one kind of work.
 struct NamedLayout {

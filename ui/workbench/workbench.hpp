@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/inspect/lane_figures.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_choices.hpp"
 #include "ui/session/actions.hpp"
-#include "ui/session/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"

@@ -88,13 +88,14 @@ MethodInfo paper_method() {
   info.summary = "Homography, motion compensation, frame difference both ways, iterated.";
   info.citation =
       "Niu Wenyu, Li Wenfeng: Visual Odometry Algorithm Based on Dynamic Object Feature Point Removal, 2019";
+  info.usual = true;
   info.parameters = AnySection(PaperConfig());
   info.old_section = "motion";
   info.partial_mask = "forward_mask";
   info.figures = {
       {"static_tracks", FigureUnit::plain, "flow tracks that agree with the forward homography", 0},
       {"homography_rms", FigureUnit::pixels, "error of the homography over those tracks", 4}};
-  info.panels = {"union_mask", "forward_mask", "backward_mask", "flow_tracks", "compensated", "difference"};
+  info.panels = {"forward_mask", "backward_mask", "union_mask", "flow_tracks", "compensated", "difference"};
   info.make = [](const Camera&, const Config& config) -> std::unique_ptr<MotionMethod> {
     return std::make_unique<PaperMethod>(config.of<PaperConfig>());
   };

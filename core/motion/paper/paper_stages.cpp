@@ -228,8 +228,9 @@ class PaperStages {
     united.figure("Regions", static_cast<double>(round.regions.size()));
     united.figure("Forward alone", percent_set(round.forward.mask), "%", 2);
     united.figure("Backward, warped", percent_set(round.backward_mask_in_target), "%", 2);
-    united.add_side({mask_layer("Forward mask", round.forward.mask, target_),
-                     mask_layer("Backward mask, warped", round.backward_mask_in_target, target_)},
+    const Layer warped =
+        mask_layer("Backward mask, warped", round.backward_mask_in_target, target_, "warped_backward_mask");
+    united.add_side({mask_layer("Forward mask", round.forward.mask, target_), warped},
                     mask_layer("Union", round.mask, target_, "union_mask"));
   }
 

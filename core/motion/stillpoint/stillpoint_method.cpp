@@ -180,7 +180,8 @@ MethodInfo stillpoint_method() {
   info.title = "Stillpoint";
   info.summary = "Depth and brightness against two earlier frames, superpixel by superpixel, with memory.";
   info.needs.depth = info.needs.first_pose = info.needs.keeps_state = true;
-  info.extends_odometry = true;
+  info.needs.checkpoint_every = 4;
+  info.usual = info.extends_odometry = true;
   info.without_depth = "epipolar";
   info.parameters = AnySection(StillpointConfig());
   info.old_section = "depth_motion";

@@ -4,10 +4,10 @@
 #include <optional>
 #include <random>
 
+#include "core/inspect/stage_change.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/unit/defocused_source.hpp"
 #include "ui/session/session.hpp"
-#include "ui/session/stage_pictures.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,10 +1,10 @@
-#include "ui/session/feature_story.hpp"
+#include "core/inspect/feature_story.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/feature_trail.hpp"
 #include "tests/unit/ui/inspect_scene.hpp"
-#include "ui/session/feature_trail.hpp"
 
 namespace stillpoint::testing {
 namespace {

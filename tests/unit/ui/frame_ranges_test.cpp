@@ -1,4 +1,4 @@
-#include "ui/session/frame_ranges.hpp"
+#include "core/inspect/frame_ranges.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "ui/session/lane_figures.hpp"
+#include "core/inspect/lane_figures.hpp"
 
 namespace stillpoint {
 namespace {

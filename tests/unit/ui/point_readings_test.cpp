@@ -1,10 +1,10 @@
-#include "ui/session/point_readings.hpp"
+#include "core/inspect/point_readings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/pins.hpp"
 #include "tests/unit/ui/inspect_scene.hpp"
-#include "ui/session/pins.hpp"
 
 namespace stillpoint::testing {
 namespace {

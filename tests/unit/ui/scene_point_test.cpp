@@ -1,4 +1,4 @@
-#include "ui/session/scene_point.hpp"
+#include "core/inspect/scene_point.hpp"
 
 #include <gtest/gtest.h>
 

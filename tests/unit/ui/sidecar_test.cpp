@@ -1,4 +1,4 @@
-#include "ui/session/sidecar.hpp"
+#include "core/inspect/sidecar.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,10 @@
-#include "ui/session/stages.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/frame_neighbours.hpp"
+#include "core/inspect/frame_stages.hpp"
+#include "core/inspect/stage_change.hpp"
 #include "tests/unit/ui/inspect_scene.hpp"
-#include "ui/session/frame_neighbours.hpp"
-#include "ui/session/stage_pictures.hpp"
 
 namespace stillpoint::testing {
 namespace {

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/motion/stage_log.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/frame.hpp"
+
+namespace stillpoint {
+
+/// One frame as it is looked at: its images, read or computed again, and its record. Images a sequence lacks
+/// are empty.
+struct FrameView {
+  int index = 0;
+  Frame frame;  ///< t
+  Frame
+      reference;  ///< what it is compared with: StageLog::reference, or the frame before; empty for the first
+  std::shared_ptr<const StageLog> motion;         ///< the run's method's stages; never null
+  std::shared_ptr<const StageLog> motion_beside;  ///< another method's, where these were asked for; else null
+  cv::Mat mask;                                   ///< CV_8UC1: what the method removed; empty = nothing
+  FrameTruth truth;                               ///< for display and evaluation only
+  const FrameRecord* record = nullptr;            ///< null while the frame has not been processed
+  /// Records of the frames right before, newest first, with their features where these are kept.
+  std::vector<std::shared_ptr<const FrameRecord>> history;
+  /// The frame before, to be compared with; null where none was asked for or is known. Has none of its own.
+  std::shared_ptr<const FrameView> before;
+};
+
+/// The stages that hold a layer: the run's own, else those laid beside; null where neither do.
+[[nodiscard]] inline const StageLog* stages_with(const FrameView& view, const std::string& layer) {
+  for (const auto* log : {&view.motion, &view.motion_beside})
+    if (*log && (*log)->layer(layer) != nullptr) return log->get();
+  return nullptr;
+}
+
+/// A run as far as it has come.
+struct RunView {
+  std::string name;                  ///< "none", "paper", …
+  std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
+  std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
+  Trajectory trajectory;             ///< estimated poses so far
+  TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
+};
+
+}  // namespace stillpoint

@@ -1,0 +1,55 @@
+// The part of RunTrack that has a finished run: all that its records hold at once, and what they do not hold
+// once odometry has seen the frames again.
+#include "core/inspect/run_track.hpp"
+
+namespace stillpoint {
+
+RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
+                   const RunTrackOptions& options)
+    : source_(&source),
+      options_(options),
+      recorded_(std::move(recorded)),
+      odometry_(source.camera(), recorded_->run.config) {
+  scores_ = recorded_->run.scores;
+  scores_.resize(recorded_->run.records.size());
+  for (const FrameRecord& record : recorded_->run.records) {
+    hash_.add(record);
+    features_.push_back(options_.keep_features
+                            ? std::make_shared<const std::vector<FeatureRecord>>(record.features)
+                            : nullptr);
+    records_.push_back(record);
+    records_.back().features = {};
+  }
+}
+
+void RunTrack::catch_up_one(const ReadFrame& read) {
+  if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();
+  keep_motion_state();
+  const Frame frame = read(seen_);
+  (void)process(odometry_, seen_, [&frame](int) { return frame; });
+  ++seen_;
+  if (seen_ == source_->size()) odometry_.finish();
+}
+
+bool RunTrack::is_as_recorded() const {
+  return recorded_ && records_.size() == recorded_->run.records.size();
+}
+
+std::vector<SavedKeyframe> RunTrack::keyframes() const {
+  return is_as_recorded() ? recorded_->run.keyframes : saved_keyframes(odometry_.map());
+}
+
+std::vector<SavedPoint> RunTrack::points() const {
+  const bool recorded = is_as_recorded();
+  std::vector<SavedPoint> points = recorded ? recorded_->run.points : saved_points(odometry_.map());
+  const std::vector<SavedPoint> moved = recorded ? recorded_->run.moved : moved_points(odometry_.map());
+  points.insert(points.end(), moved.begin(), moved.end());
+  return points;
+}
+
+cv::Mat RunTrack::recorded_mask(int index) const {
+  const auto at = static_cast<std::size_t>(index);
+  return recorded_ && at < recorded_->masks.size() ? unpack_mask(recorded_->masks[at]) : cv::Mat();
+}
+
+}  // namespace stillpoint

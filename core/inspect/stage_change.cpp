@@ -1,0 +1,208 @@
+#include "core/inspect/stage_change.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+#include "core/inspect/scene_point.hpp"
+
+namespace stillpoint {
+namespace {
+
+cv::Mat as_float(const cv::Mat& image) {
+  cv::Mat floats;
+  image.convertTo(floats, CV_32F);
+  return floats;
+}
+
+bool is_grey(const Layer& layer) {
+  return layer.kind == LayerKind::kPhoto || layer.kind == LayerKind::kLevels;
+}
+
+/// An image of the frame before in this frame's pixels, by depth and both poses; without these as it is.
+cv::Mat warped_here(const FrameView& view, const Camera& camera, const Layer& old, int factor) {
+  if (old.space != FrameSpace::kTarget && old.space != FrameSpace::kSmall) return old.image;
+  if (view.frame.depth.empty() || view.record == nullptr || view.before->record == nullptr ||
+      !view.record->estimated || !view.before->record->estimated)
+    return old.image;
+  PairGeometry pair;
+  pair.camera = camera;
+  pair.target_depth = view.frame.depth;
+  pair.reference_from_target =
+      view.before->record->world_from_camera.inverse() * view.record->world_from_camera;
+  const double f = old.space == FrameSpace::kSmall ? factor : 1.0;
+  cv::Mat places(old.image.size(), CV_32FC2);
+  for (int y = 0; y < places.rows; ++y)
+    for (int x = 0; x < places.cols; ++x) {
+      const Eigen::Vector2d here(f * (x + 0.5) - 0.5, f * (y + 0.5) - 0.5);
+      const auto there = scene_point_in(pair, FrameSpace::kReference, here);
+      const Eigen::Vector2d from = there ? there->pixel : here;
+      places.at<cv::Vec2f>(y, x) = {static_cast<float>((from.x() + 0.5) / f - 0.5),
+                                    static_cast<float>((from.y() + 0.5) / f - 0.5)};
+    }
+  cv::Mat warped;
+  cv::remap(old.image, warped, places, cv::Mat(), is_grey(old) ? cv::INTER_LINEAR : cv::INTER_NEAREST);
+  return warped;
+}
+
+std::optional<StageChange> compare_images(const Layer& before, const Layer& now) {
+  if (before.image.empty() || now.image.empty() || before.image.size() != now.image.size() ||
+      before.image.type() != now.image.type() || now.image.channels() != 1)
+    return std::nullopt;
+  StageChange change;
+  change.layer = now;
+  change.layer.marks.clear();
+  if (now.kind == LayerKind::kMask) {
+    change.layer.image = mask_change(before.image, now.image);
+    change.layer.kind = LayerKind::kMaskChange;
+    const auto count = [&](MaskChange kind) { return cv::countNonZero(change.layer.image == kind); };
+    change.text =
+        fmt::format("{} px gained, {} px lost, {} px stay", count(kGained), count(kLost), count(kStays));
+    return change;
+  }
+  change.layer.kind = LayerKind::kSigned;
+  change.layer.image = as_float(now.image) - as_float(before.image);
+  change.layer.range = is_grey(now) ? 40.0 : now.range;
+  if (is_grey(now)) change.layer.unit = std::string("grey levels");
+  const cv::Mat known = change.layer.image == change.layer.image;
+  change.text = fmt::format("mean change {:.2f} {}", cv::mean(cv::abs(change.layer.image), known)[0],
+                            change.layer.unit);
+  return change;
+}
+
+bool speaks_for(MarkKind kind) { return kind == MarkKind::kInlier || kind == MarkKind::kKept; }
+
+/// Marks that are inliers, or kept, now and were not, and the other way. Both lists are of the same points.
+std::optional<StageChange> compare_marks(const Layer& before, const Layer& now) {
+  if (now.marks.empty() || before.marks.size() != now.marks.size()) return std::nullopt;
+  StageChange change;
+  change.layer = now;
+  change.layer.marks.clear();
+  int gained = 0, lost = 0;
+  for (std::size_t i = 0; i < now.marks.size(); ++i) {
+    const bool was = speaks_for(before.marks[i].kind), is = speaks_for(now.marks[i].kind);
+    if (was == is) continue;
+    ++(is ? gained : lost);
+    change.layer.marks.push_back(
+        {now.marks[i].at, now.marks[i].from, is ? MarkKind::kGained : MarkKind::kLost});
+  }
+  change.text = fmt::format("{} inliers gained, {} lost", gained, lost);
+  return change;
+}
+
+/// Map points seen now and not in the frame before, and the other way.
+StageChange compare_features(const FrameRecord& before, const FrameRecord& now, const Layer& ground) {
+  std::map<int, cv::Point2f> old;
+  for (const FeatureRecord& feature : before.features)
+    if (feature.fate == FeatureFate::inlier) old.emplace(feature.map_point, feature.pixel);
+  StageChange change;
+  change.layer = ground;
+  change.layer.marks.clear();
+  int gained = 0, stays = 0;
+  for (const FeatureRecord& feature : now.features) {
+    if (feature.fate != FeatureFate::inlier) continue;
+    if (old.erase(feature.map_point) > 0) {
+      ++stays;
+      continue;
+    }
+    ++gained;
+    change.layer.marks.push_back({feature.pixel, std::nullopt, MarkKind::kGained});
+  }
+  for (const auto& [point, pixel] : old) change.layer.marks.push_back({pixel, std::nullopt, MarkKind::kLost});
+  change.text =
+      fmt::format("{} map points gained, {} lost, {} seen in both frames", gained, old.size(), stays);
+  return change;
+}
+
+std::optional<StageChange> against_stage_before(const StageSide& side) {
+  if (side.inputs.empty()) return std::nullopt;
+  const Layer& before = side.inputs.front();
+  const Layer& now = side.output;
+  const bool comparable = before.kind == now.kind && before.space == now.space && before.unit == now.unit &&
+                          before.marks.empty() && now.marks.empty() && !before.elsewhere;
+  if (!comparable) return std::nullopt;
+  std::optional<StageChange> change = compare_images(before, now);
+  if (change) change->against = before.name;
+  return change;
+}
+
+const Stage* same_stage(const std::vector<Stage>& stages, const Stage& wanted, int round) {
+  const auto it = std::find_if(stages.begin(), stages.end(), [&](const Stage& one) {
+    return one.id == wanted.id && one.reference == wanted.reference && one.round == round;
+  });
+  return it == stages.end() ? nullptr : &*it;
+}
+
+std::optional<StageChange> against_round_before(const std::vector<Stage>& stages, const Stage& stage,
+                                                std::size_t side) {
+  if (stage.round < 1) return std::nullopt;
+  const Stage* old = same_stage(stages, stage, stage.round - 1);
+  if (old == nullptr || side >= old->sides.size()) return std::nullopt;
+  const Layer &before = old->sides[side].output, &now = stage.sides[side].output;
+  std::optional<StageChange> change =
+      now.marks.empty() ? compare_images(before, now) : compare_marks(before, now);
+  if (change) change->against = fmt::format("Round {}", stage.round);
+  return change;
+}
+
+std::optional<StageChange> against_frame_before(const FrameView& view, const Camera& camera,
+                                                const Stage& stage, std::size_t side) {
+  // Frames of unlike gaps differ by their references: what changes from one to the other would be these.
+  constexpr int kFrames = 2;  // as many may be missing
+  if (view.before == nullptr) return std::nullopt;
+  const Layer& now = stage.sides[side].output;
+  std::optional<StageChange> change;
+  if (of_odometry(stage)) {
+    if (view.before->record == nullptr || view.record == nullptr) return std::nullopt;
+    change = compare_features(*view.before->record, *view.record, now);
+  } else {
+    if (!view.before->motion || !now.marks.empty()) return std::nullopt;
+    const Stage* old = same_stage(view.before->motion->stages, stage, stage.round);
+    if (old == nullptr || side >= old->sides.size() ||
+        std::abs(old->frames_back - stage.frames_back) > kFrames)
+      return std::nullopt;
+    Layer before = old->sides[side].output;
+    if (before.image.empty()) return std::nullopt;
+    before.image = warped_here(view, camera, before, view.motion->small_factor);
+    change = compare_images(before, now);
+  }
+  if (change) change->against = fmt::format("Frame {}", view.before->index);
+  return change;
+}
+
+}  // namespace
+
+std::optional<StageChange> stage_change(const FrameView& view, const Camera& camera,
+                                        const std::vector<Stage>& stages, std::size_t index, std::size_t side,
+                                        ChangeAgainst against) {
+  const Stage& stage = stages[index];
+  if (side >= stage.sides.size()) return std::nullopt;
+  switch (against) {
+    case ChangeAgainst::kStageBefore:
+      return against_stage_before(stage.sides[side]);
+    case ChangeAgainst::kRoundBefore:
+      return against_round_before(stages, stage, side);
+    case ChangeAgainst::kFrameBefore:
+      return against_frame_before(view, camera, stage, side);
+  }
+  return std::nullopt;
+}
+
+cv::Mat mask_change(const cv::Mat& before, const cv::Mat& after) {
+  if (after.empty()) return {};
+  cv::Mat change(after.size(), CV_8UC1, cv::Scalar(kClear));
+  const cv::Mat old = before.empty() ? cv::Mat::zeros(after.size(), CV_8UC1) : before;
+  for (int y = 0; y < after.rows; ++y)
+    for (int x = 0; x < after.cols; ++x) {
+      const bool was = old.at<std::uint8_t>(y, x) != 0, is = after.at<std::uint8_t>(y, x) != 0;
+      change.at<std::uint8_t>(y, x) = was ? (is ? kStays : kLost) : (is ? kGained : kClear);
+    }
+  return change;
+}
+
+}  // namespace stillpoint
