@@ -52,7 +52,7 @@ Table details_table(const std::vector<RunReport>& reports) {
         {r.sequence, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4), cell(rpe, 4),
          cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
          masks ? cell(r.scores.mask.precision(), 3) : "-", masks ? cell(r.scores.mask.recall(), 3) : "-",
-         masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.forward_mask.recall(), 3) : "-",
+         masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.partial_mask.recall(), 3) : "-",
          masks ? std::to_string(r.scores.removal.removed_rightly) : "-",
          masks ? std::to_string(r.scores.removal.removed_wrongly) : "-",
          fmt::format("{:.1f}", r.speed.median_ms), fmt::format("{:.1f}", r.speed.p99_ms),

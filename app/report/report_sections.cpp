@@ -66,22 +66,23 @@ std::string gain_text(const ReportRun& run, const ReportRun* baseline) {
 
 std::string hex_of(Rgb colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b); }
 
-struct Stage {
+struct TimedStage {
   const char* name;
   double StageTimes::*ms;
   Rgb colour;
 };
 
-constexpr std::array<Stage, 6> kStages{{{"Motion", &StageTimes::motion, okabe_ito::kPurple},
-                                        {"Features", &StageTimes::features, okabe_ito::kSkyBlue},
-                                        {"Matching", &StageTimes::matching, okabe_ito::kGreen},
-                                        {"Pose", &StageTimes::pose, okabe_ito::kBlue},
-                                        {"Mapping", &StageTimes::mapping, okabe_ito::kOrange},
-                                        {"Bundle adjustment", &StageTimes::bundle, okabe_ito::kVermillion}}};
+constexpr std::array<TimedStage, 6> kStages{
+    {{"Motion", &StageTimes::motion, okabe_ito::kPurple},
+     {"Features", &StageTimes::features, okabe_ito::kSkyBlue},
+     {"Matching", &StageTimes::matching, okabe_ito::kGreen},
+     {"Pose", &StageTimes::pose, okabe_ito::kBlue},
+     {"Mapping", &StageTimes::mapping, okabe_ito::kOrange},
+     {"Bundle adjustment", &StageTimes::bundle, okabe_ito::kVermillion}}};
 
 double sum_of(const StageTimes& ms) {
   double sum = 0.0;
-  for (const Stage& stage : kStages) sum += ms.*stage.ms;
+  for (const TimedStage& stage : kStages) sum += ms.*stage.ms;
   return sum;
 }
 
@@ -164,20 +165,21 @@ std::string stage_timings(const ReportGroup& group) {
       "<p class=\"dim\">Mean milliseconds a frame, decoding excluded. Motion detection of method "
       "paper goes on beside feature extraction, so the stages may add up to more than the frame "
       "takes.</p>\n<p>";
-  for (const Stage& stage : kStages)
+  for (const TimedStage& stage : kStages)
     html += fmt::format("<span class=\"key\" style=\"background:{}\"></span>{}", hex_of(stage.colour),
                         stage.name);
   html += "</p>\n<div class=\"scroll\"><table><thead><tr><th>Run</th><th>Stages</th>";
-  for (const Stage& stage : kStages) html += fmt::format("<th>{}</th>", stage.name);
+  for (const TimedStage& stage : kStages) html += fmt::format("<th>{}</th>", stage.name);
   html += "<th>Frame, mean</th></tr></thead><tbody>\n";
   for (const ReportRun& run : group.runs) {
     const StageTimes& ms = run.report.speed.mean;
     html += fmt::format("<tr><td>{}</td><td style=\"width:36%\"><div class=\"bar\">", escaped(run.label));
-    for (const Stage& stage : kStages)
+    for (const TimedStage& stage : kStages)
       html += fmt::format("<span style=\"width:{:.2f}%;background:{}\"></span>",
                           100.0 * (ms.*stage.ms) / widest, hex_of(stage.colour));
     html += "</div></td>";
-    for (const Stage& stage : kStages) html += fmt::format("<td class=\"number\">{:.2f}</td>", ms.*stage.ms);
+    for (const TimedStage& stage : kStages)
+      html += fmt::format("<td class=\"number\">{:.2f}</td>", ms.*stage.ms);
     html += fmt::format("<td class=\"number\">{:.2f}</td></tr>\n", ms.total);
   }
   return html + "</tbody></table></div>\n";

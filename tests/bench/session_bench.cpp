@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/motion/paper/paper_config.hpp"
+#include "core/motion/stillpoint/stillpoint_config.hpp"
 #include "core/run/run_report.hpp"
 #include "core/stopwatch.hpp"
 #include "ui/session/session.hpp"
@@ -52,8 +54,8 @@ void measure_previews(Session& session, Config config, int count) {
     while (!session.idle() || session.view()->current->index != frame)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (int step = 0; step < 6; ++step) {
-      config.motion.ransac_threshold_px = 1.0 + 0.1 * step;
-      config.depth_motion.moving_log_odds = 0.2 + 0.01 * step;
+      config.of<PaperConfig>().ransac_threshold_px = 1.0 + 0.1 * step;
+      config.of<StillpointConfig>().moving_log_odds = 0.2 + 0.01 * step;
       const auto before = session.view()->debug.preview;
       session.request(request::Preview{config});
       (step == 0 ? first : later).push_back(shown_after([&](const DebugView& debug) {

@@ -117,7 +117,7 @@ TEST(View, ComesBackAsItWasLeft) {
     EXPECT_FALSE(result.by_signal);
     const std::string now = sequence.folder.read("config/stillpoint/settings.json");
     EXPECT_THAT(now, HasSubstr(sequence.path()));
-    EXPECT_THAT(now, HasSubstr("depth_motion"));
+    EXPECT_THAT(now, HasSubstr("\"motion\""));
     if (!left.empty()) {
       EXPECT_EQ(now, left);
     }

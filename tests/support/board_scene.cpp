@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/config.hpp"
+#include "core/motion/stillpoint/stillpoint_config.hpp"
 
 namespace stillpoint {
 namespace {

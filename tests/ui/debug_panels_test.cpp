@@ -1,6 +1,7 @@
 // The panels of debugging: what they show of a session put together by hand, and what they ask of it.
 #include <set>
 
+#include "core/motion/paper/paper_config.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
@@ -253,7 +254,7 @@ TEST(Removal, IsCheckedWhenAskedFor) {
   session.debug.removal.clear();
   session.ground_truth.push_back({0.0, Pose::Identity()});
   PanelStage stage("removal", {}, kWidth, kHeight);
-  EXPECT_EQ(only<request::RunAll>(stage.click(session, 0.06, 0.05)).config.run.check_removal, 1);
+  EXPECT_EQ(only<request::RunAll>(stage.click(session, 0.06, 0.05)).config.run.check_removal, true);
 }
 
 TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
@@ -265,24 +266,24 @@ TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
   ASSERT_FALSE(moved.requests.empty());
   const auto preview = std::get<request::Preview>(moved.requests.back());
   ASSERT_TRUE(preview.config);
-  EXPECT_NE(preview.config->motion.border_px, session.config.motion.border_px);
+  EXPECT_NE(preview.config->of<PaperConfig>().border_px, session.config.of<PaperConfig>().border_px);
   // A bar with what can be done has come above the rows.
   const auto ghost = only<request::AddGhost>(stage.click(session, 0.08, kRunFromHereY));
   EXPECT_EQ(ghost.from, 24);
-  EXPECT_EQ(ghost.config.motion.border_px, preview.config->motion.border_px);
-  EXPECT_THAT(ghost.name, ::testing::StartsWith("motion.border_px"));
+  EXPECT_EQ(ghost.config.of<PaperConfig>().border_px, preview.config->of<PaperConfig>().border_px);
+  EXPECT_THAT(ghost.name, ::testing::StartsWith("paper.border_px"));
   EXPECT_FALSE(only<request::Preview>(stage.click(session, kDiscardX, kRunFromHereY)).config);
 }
 
 TEST(ParametersPanel, ResetGoesBackToTheDefault) {
   SessionView session = debug_example();
-  session.config.motion.border_px = 9;
+  session.config.of<PaperConfig>().border_px = 9;
   PanelStage stage("parameters", {}, kWidth, kHeight);
   stage.click(session, 0.1, kFilterY);
   stage.play(session, typed("border_px"));
   const auto preview = only<request::Preview>(stage.click(session, kResetX, kSliderY));
   ASSERT_TRUE(preview.config);
-  EXPECT_EQ(preview.config->motion.border_px, Config().motion.border_px);
+  EXPECT_EQ(preview.config->of<PaperConfig>().border_px, Config().of<PaperConfig>().border_px);
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ TEST_F(Inspecting, AClickedFeatureIsExplainedAndStaysChosen) {
 }
 
 TEST_F(Inspecting, LargePixelsCarryTheirNumbers) {
-  workbench_.set_layout(columns({"depth_motion"}));
+  workbench_.set_layout(columns({"motion"}));
   render();
   point(300, 300);
   for (int i = 0; i < 16; ++i) offscreen_.send(MouseWheel{0.0F, 1.0F, {}});

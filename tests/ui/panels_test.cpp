@@ -22,12 +22,12 @@ std::vector<std::string> panel_names() {
   return names;
 }
 
-/// The example without depth: of the frame, and of what was made of it.
-SessionView without_depth() {
+/// The example without what the method saw.
+SessionView without_stages() {
   SessionView view = generated_example();
   auto current = std::make_shared<FrameView>(*view.current);
-  current->frame.depth = current->reference.depth = cv::Mat();
-  current->depth_motion = {};
+  current->motion =
+      std::make_shared<const StageLog>(StageLog{.method = "stillpoint", .stages = {}, .note = "none"});
   view.current = current;
   return view;
 }
@@ -302,7 +302,7 @@ TEST(Panels, WhatIsMissingIsSaidInstead) {
     EXPECT_LT(ground_share(stage.render(generated_example())), 0.8) << name;
     EXPECT_GT(ground_share(stage.render(lacking)), 0.95) << name;
   };
-  expect_sentence("depth_motion", without_depth());
+  expect_sentence("motion", without_stages());
   expect_sentence("errors", without_truth());
   expect_sentence("features_after", not_processed());
   expect_sentence("union_mask", unreadable());

@@ -4,7 +4,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "core/motion/paper/detect_motion.hpp"
+#include "core/inspect/motion_replay.hpp"
+#include "core/motion/paper/paper_config.hpp"
+#include "core/motion/paper/paper_stages.hpp"
+#include "core/motion/stillpoint/stillpoint_stages.hpp"
 #include "core/run/run_sequence.hpp"
 
 namespace stillpoint::testing {
@@ -23,18 +26,31 @@ std::shared_ptr<RunView> run_view(const RunResult& run, const Trajectory& truth,
 
 }  // namespace
 
+/// Another method's stages of a frame, as a session lays them beside.
+static std::shared_ptr<const StageLog> stages_beside(const FrameSource& source, const char* method,
+                                                     int index) {
+  Config config;
+  config.run.method = method;
+  const auto read = [&source](int i) { return source.read(i); };
+  MotionReplay replay(source.camera(), config, MotionStage(source.camera(), config), index, index, read);
+  const Frame frame = source.read(index);
+  const MotionAgain again = replay.repeat(frame, nullptr);
+  return std::make_shared<const StageLog>(replay.describe(frame, again.motion));
+}
+
 SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, double rpe_delta_s) {
   SessionExample example;
   SessionView& view = example.view;
   Config config;
   config.run.method = "stillpoint";
   auto current = std::make_shared<FrameView>();
+  MotionResult motion;
   RunOptions options;
   options.count = frames;
   options.keep_features = true;
   options.on_frame = [&](const FrameResult& result) {
     if (result.record.index != frames - 1) return;
-    current->depth_motion = result.depth_motion;
+    motion = result.motion;
     current->mask = result.mask;
   };
   const RunResult run = run_sequence(*source, config, options);
@@ -47,7 +63,9 @@ SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, doub
   current->index = frames - 1;
   current->frame = source->read(frames - 1);
   current->reference = source->read(frames - 2);
-  current->motion = detect_motion(current->reference.gray, current->frame.gray, run.config.motion);
+  current->motion = std::make_shared<const StageLog>(
+      MotionStage(source->camera(), run.config).describe(current->frame, motion));
+  current->motion_beside = stages_beside(*source, "paper", frames - 1);
   current->truth = source->truth(frames - 1);
   current->record = &view.run->records.back();
   view.title = source->name();
@@ -257,9 +275,23 @@ SessionView handmade_example() {
   round.labels(cv::Rect(30, 180, 50, 24)) = 2;
   round.regions = {{{150, 70, 81, 81}, {190, 110}, 5025}, {{30, 180, 50, 24}, {55, 192}, 1200}};
   round.mask_share = 6225.0 / (320.0 * 240.0);
-  current->motion.rounds.push_back(round);
-  current->depth_motion = handmade_depth_motion();
-  current->mask = current->depth_motion.mask;
+  PaperMotionTrace paper;
+  paper.reference = 23;
+  paper.reference_gray = current->reference.gray;
+  paper.pair.rounds.push_back(round);
+  StageLog beside = describe_paper(current->frame, &paper);
+  beside.method = "paper";
+  current->motion_beside = std::make_shared<const StageLog>(std::move(beside));
+  StillpointMotionTrace own;
+  own.judged = handmade_depth_motion();
+  Camera small;
+  small.width = 320, small.height = 240, small.fx = small.fy = 260.0, small.cx = 159.5, small.cy = 119.5;
+  own.view =
+      std::make_shared<const RgbdView>(make_rgbd_view(current->frame.gray, current->frame.depth, small, 2));
+  StageLog log = describe_stillpoint(current->frame, own, StillpointConfig());
+  log.method = "stillpoint";
+  current->motion = std::make_shared<const StageLog>(std::move(log));
+  current->mask = own.judged.mask;
   current->truth.moving = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(current->truth.moving, {196, 120}, 45, 255, cv::FILLED);
   current->record = &run->records[24];
@@ -290,7 +322,7 @@ namespace {
 GhostView handmade_ghost(const SessionView& session, const std::string& name, int parts, double millimetres) {
   GhostView ghost;
   ghost.name = name;
-  ghost.config.motion.border_px = 7;
+  ghost.config.of<PaperConfig>().border_px = 7;
   auto run = handmade_run("stillpoint", millimetres);
   run->records = session.run->records;
   for (FrameRecord& record : run->records) {

@@ -91,7 +91,8 @@ TEST_F(WorkbenchTest, ColourAloneIsEnoughForMotion) {
   std::filesystem::remove(colour_only.path("depth.txt"));
   std::filesystem::remove(colour_only.path("groundtruth.txt"));
   const auto session = session_at(colour_only, 3);
-  EXPECT_FALSE(session->view()->current->motion.rounds.empty());
+  session->request(request::StagesBeside{"paper"});
+  EXPECT_FALSE(session->view()->current->motion_beside->stages.empty());
   Workbench workbench(make_panels());
   EXPECT_FALSE(is_blank(render(workbench, *session), 50));
 }
@@ -164,7 +165,7 @@ TEST_F(WorkbenchTest, PanelsAreHiddenMaximisedAndBroughtBack) {
   render(workbench, *session);
   strike(offscreen_, Key::kM);
   render(workbench, *session);
-  EXPECT_EQ(workbench.maximised(), "depth_motion");
+  EXPECT_EQ(workbench.maximised(), "motion");
   strike(offscreen_, Key::kM);
   render(workbench, *session);
   EXPECT_EQ(workbench.maximised(), "");

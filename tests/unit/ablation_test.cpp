@@ -16,9 +16,11 @@ AblationCell cell(std::optional<double> rpe_m, std::optional<double> iou, double
 
 TEST(Ablation, EveryIngredientChangesTheConfigAndNothingElse) {
   const Config whole = ablated({}, nullptr);
-  EXPECT_EQ(whole.run.method, "stillpoint");
+  const MethodInfo& method = method_of(whole);
   std::set<std::string> names;
-  for (const Ingredient& one : ingredients()) {
+  const std::vector<Ingredient> all = ingredients(method);
+  ASSERT_EQ(all.size(), 20U);
+  for (const Ingredient& one : all) {
     const Config without = ablated({}, &one);
     EXPECT_FALSE(without == whole) << one.name;
     EXPECT_EQ(without.run, whole.run) << one.name;
@@ -29,15 +31,15 @@ TEST(Ablation, EveryIngredientChangesTheConfigAndNothingElse) {
     other.features.count = 321;
     EXPECT_EQ(ablated(other, &one).features.count, 321);
   }
-  EXPECT_THROW((void)ingredient_by_name("luck"), InputError);
-  EXPECT_EQ(ingredient_by_name("memory").name, "memory");
+  EXPECT_THROW((void)ingredient_by_name(method, "luck"), InputError);
+  EXPECT_EQ(ingredient_by_name(method, "memory").name, "memory");
 }
 
 TEST(Ablation, ChangesAreAgainstTheWholeMethod) {
   const AblationRow whole{
-      "", {cell(0.010, 0.8, 10, "a"), cell(0.020, std::nullopt, 12, "b"), cell({}, 0.5, 14, "c")}};
+      "", {}, {cell(0.010, 0.8, 10, "a"), cell(0.020, std::nullopt, 12, "b"), cell({}, 0.5, 14, "c")}};
   const AblationRow without{
-      "memory", {cell(0.020, 0.6, 8, "x"), cell(0.010, std::nullopt, 8, "b"), cell(0.5, 0.4, 8, "z")}};
+      "memory", {}, {cell(0.020, 0.6, 8, "x"), cell(0.010, std::nullopt, 8, "b"), cell(0.5, 0.4, 8, "z")}};
   const AblationChange change = change_of(without, whole);
   // Twice and half: the geometric mean is no change at all.
   ASSERT_TRUE(change.mean && change.worst && change.mask_iou);
@@ -51,18 +53,18 @@ TEST(Ablation, ChangesAreAgainstTheWholeMethod) {
 }
 
 TEST(Ablation, NothingToCompareIsSaidSo) {
-  const AblationRow whole{"", {cell({}, {}, 1, "a")}}, without{"memory", {cell({}, {}, 1, "b")}};
+  const AblationRow whole{"", {}, {cell({}, {}, 1, "a")}}, without{"memory", {}, {cell({}, {}, 1, "b")}};
   const AblationChange change = change_of(without, whole);
   EXPECT_FALSE(change.mean || change.worst || change.mask_iou);
-  const Table table = ablation_summary({whole, without}, {"room"});
+  const Table table = ablation_summary("stillpoint", {whole, without}, {"room"});
   EXPECT_THAT(table.rows.at(1),
               ::testing::ElementsAre("without memory", "–", "–", "–", "–", "–", "100.0 %", "1.0", "0 of 1"));
-  EXPECT_TRUE(ablation_summary({{"", {}}, {"memory", {}}}, {}).rows.size() == 2);
+  EXPECT_TRUE(ablation_summary("stillpoint", {{"", {}, {}}, {"memory", {}, {}}}, {}).rows.size() == 2);
 }
 
 TEST(Ablation, TablesHoldEveryRun) {
-  const std::vector<AblationRow> rows = {{"", {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
-                                         {"memory", {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+  const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
+                                         {"memory", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
   const std::vector<std::string> sequences = {"one", "two"};
   const Table errors = ablation_errors(rows, sequences);
   EXPECT_THAT(errors.header, ::testing::ElementsAre("RPE 1 s, RMSE [m]", "whole method", "without memory"));
@@ -72,7 +74,7 @@ TEST(Ablation, TablesHoldEveryRun) {
   for (const auto& row : list.rows) EXPECT_EQ(row.size(), list.header.size());
   EXPECT_THAT(list.rows.at(2),
               ::testing::ElementsAre("one", "memory", "0.030000", "0.6000", "1.0000", "8.00", "x"));
-  const auto json = ablation_json(rows, sequences);
+  const auto json = ablation_json("stillpoint", rows, sequences);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
   EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_1s_m"], 0.04);
   EXPECT_TRUE(json["variants"][1]["runs"][1]["mask_iou"].is_null());

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/assets.hpp"
+#include "core/motion/paper/paper_config.hpp"
 #include "core/text_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -19,6 +20,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 std::string value_of(const Parameter& p) {
+  if (const auto* flag = std::get_if<bool*>(&p.value)) return **flag ? "1" : "0";
   if (const auto* integer = std::get_if<int*>(&p.value)) return std::to_string(**integer);
   if (const auto* text = std::get_if<std::string*>(&p.value)) return **text;
   char digits[40];
@@ -79,6 +81,7 @@ TEST(Parameters, DefaultsLieInTheirRanges) {
 TEST_F(ConfigFile, EveryParameterComesBackAsWritten) {
   Config config;
   for (const Parameter& p : parameters(config)) {
+    if (auto* flag = std::get_if<bool*>(&p.value)) **flag = !**flag;
     if (auto* integer = std::get_if<int*>(&p.value)) **integer = static_cast<int>(p.min) + 1;
     if (auto* real = std::get_if<double*>(&p.value)) **real = p.min + (p.max - p.min) / 3.0;
     if (auto* text = std::get_if<std::string*>(&p.value)) **text = p.choices.back();
@@ -90,11 +93,23 @@ TEST_F(ConfigFile, EveryParameterComesBackAsWritten) {
 
 TEST_F(ConfigFile, KeysNotGivenKeepTheirDefault) {
   EXPECT_THAT(differences(read(""), Config{}), IsEmpty());
-  EXPECT_THAT(differences(read("# nothing\n\n[motion]\n"), Config{}), IsEmpty());
+  EXPECT_THAT(differences(read("# nothing\n\n[paper]\n"), Config{}), IsEmpty());
   const Config config = read("[features]\ncount = 123\n[bundle]\niterations = 7\n");
   EXPECT_EQ(config.features.count, 123);
   EXPECT_EQ(config.bundle.iterations, 7);
   EXPECT_THAT(differences(config, Config{}), testing::ElementsAre("features.count", "bundle.iterations"));
+}
+
+TEST_F(ConfigFile, SectionsAndSwitchesOfEarlierVersionsAreStillRead) {
+  EXPECT_EQ(read("[motion]\nmax_corners = 123\n").of<PaperConfig>().max_corners, 123);
+  EXPECT_FALSE(read("[tracking]\nsoft_weights = 0\n").tracking.soft_weights);
+  EXPECT_TRUE(read("[tracking]\nsoft_weights = 1\n").tracking.soft_weights);
+  EXPECT_FALSE(read("[tracking]\nsoft_weights = false\n").tracking.soft_weights);
+  EXPECT_THAT(error("[tracking]\nsoft_weights = 2\n"),
+              HasSubstr("tracking.soft_weights takes true or false"));
+  Config config;
+  set_parameter(config, "motion.max_corners=99");
+  EXPECT_EQ(config.of<PaperConfig>().max_corners, 99);
 }
 
 TEST_F(ConfigFile, WholeNumbersServeAsReals) {
@@ -102,34 +117,34 @@ TEST_F(ConfigFile, WholeNumbersServeAsReals) {
 }
 
 TEST_F(ConfigFile, FaultsAreToldWithFileAndLine) {
-  EXPECT_THAT(error("[motion]\n\nmax_corner = 5\n"),
-              EndsWith("mine.toml:3: there is no parameter 'motion.max_corner'"));
+  EXPECT_THAT(error("[paper]\n\nmax_corner = 5\n"),
+              EndsWith("mine.toml:3: there is no parameter 'paper.max_corner'"));
   EXPECT_THAT(error("[colour]\nred = 5\n"), EndsWith("mine.toml:2: there is no parameter 'colour.red'"));
   EXPECT_THAT(error("max_corners = 5\n"), HasSubstr("mine.toml:1: 'max_corners' stands outside a section"));
-  EXPECT_THAT(error("[motion]\nmax_corners = 3.5\n"),
-              HasSubstr("mine.toml:2: motion.max_corners takes a whole number from 16"));
-  EXPECT_THAT(error("[motion]\nmax_corners = \"many\"\n"),
-              HasSubstr("mine.toml:2: motion.max_corners takes a whole number"));
+  EXPECT_THAT(error("[paper]\nmax_corners = 3.5\n"),
+              HasSubstr("mine.toml:2: paper.max_corners takes a whole number from 16"));
+  EXPECT_THAT(error("[paper]\nmax_corners = \"many\"\n"),
+              HasSubstr("mine.toml:2: paper.max_corners takes a whole number"));
   EXPECT_THAT(error("[map]\nfar_depth_m = true\n"),
               HasSubstr("mine.toml:2: map.far_depth_m takes a number from 0.1 to 50 m"));
   EXPECT_THAT(error("[run]\nmethod = 3\n"),
               HasSubstr("mine.toml:2: run.method takes one of: stillpoint, paper, none"));
   EXPECT_THAT(error("[run]\nmethod = \"magic\"\n"),
               HasSubstr("mine.toml:2: run.method takes one of: stillpoint, paper, none"));
-  EXPECT_THAT(error("[motion\nmax_corners = 100\n"), HasSubstr("mine.toml:1: not valid TOML"));
-  EXPECT_THAT(error("[motion]\nmax_corners = 100\nmax_corners = 200\n"),
+  EXPECT_THAT(error("[paper\nmax_corners = 100\n"), HasSubstr("mine.toml:1: not valid TOML"));
+  EXPECT_THAT(error("[paper]\nmax_corners = 100\nmax_corners = 200\n"),
               HasSubstr("mine.toml:3: not valid TOML"));
   EXPECT_THAT(error("[run]\nmethod = \"\xff\"\n"), HasSubstr("mine.toml:2: not valid TOML"));
 }
 
 TEST_F(ConfigFile, ValuesOutOfRangeAreRefused) {
-  EXPECT_THAT(error("[motion]\nmax_corners = 15\n"),
-              HasSubstr("mine.toml:2: motion.max_corners = 15 is out of range: it takes a number from 16 to "
+  EXPECT_THAT(error("[paper]\nmax_corners = 15\n"),
+              HasSubstr("mine.toml:2: paper.max_corners = 15 is out of range: it takes a number from 16 to "
                         "20000 corners"));
-  EXPECT_EQ(read("[motion]\nmax_corners = 16\n").motion.max_corners, 16);
-  EXPECT_EQ(read("[motion]\nmax_corners = 20000\n").motion.max_corners, 20000);
+  EXPECT_EQ(read("[paper]\nmax_corners = 16\n").of<PaperConfig>().max_corners, 16);
+  EXPECT_EQ(read("[paper]\nmax_corners = 20000\n").of<PaperConfig>().max_corners, 20000);
   for (const char* value : {"20001", "-1", "5000000000", "-9223372036854775808"})
-    EXPECT_THAT(error(std::string("[motion]\nmax_corners = ") + value + "\n"), HasSubstr("is out of range"))
+    EXPECT_THAT(error(std::string("[paper]\nmax_corners = ") + value + "\n"), HasSubstr("is out of range"))
         << value;
   for (const char* value : {"nan", "inf", "-inf", "0", "1e300"})
     EXPECT_THAT(error(std::string("[map]\nfar_depth_m = ") + value + "\n"), HasSubstr("is out of range"))
@@ -203,7 +218,7 @@ TEST(PresetFolder, HoldsThePresetsTestedHere) {
 TEST(PresetFolder, MethodsShareTheirOdometry) {
   Config none = load_config("none"), paper = load_config("paper");
   none.run.method = paper.run.method;
-  none.motion = paper.motion;
+  none.methods = paper.methods;
   EXPECT_THAT(differences(none, paper), IsEmpty());
   EXPECT_THAT(differences(load_config("default"), Config{}), IsEmpty());
 }
@@ -211,11 +226,11 @@ TEST(PresetFolder, MethodsShareTheirOdometry) {
 TEST(PresetFolder, PaperHasThePapersConstants) {
   const Config paper = load_config("paper");
   EXPECT_EQ(paper.run.method, "paper");
-  EXPECT_EQ(paper.motion.erode_kernel_px, 4);
-  EXPECT_EQ(paper.motion.erode_iterations, 2);
-  EXPECT_EQ(paper.motion.dilate_kernel_px, 16);
-  EXPECT_EQ(paper.motion.dilate_iterations, 1);
-  EXPECT_EQ(paper.motion.reference_gap, 1);
+  EXPECT_EQ(paper.of<PaperConfig>().erode_kernel_px, 4);
+  EXPECT_EQ(paper.of<PaperConfig>().erode_iterations, 2);
+  EXPECT_EQ(paper.of<PaperConfig>().dilate_kernel_px, 16);
+  EXPECT_EQ(paper.of<PaperConfig>().dilate_iterations, 1);
+  EXPECT_EQ(paper.of<PaperConfig>().reference_gap, 1);
 }
 
 TEST(PresetFolder, UnknownPresetsAreToldWithThoseThereAre) {

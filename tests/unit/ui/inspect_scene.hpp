@@ -3,6 +3,9 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/motion/epipolar/epipolar_stages.hpp"
+#include "core/motion/paper/paper_stages.hpp"
+#include "core/motion/stillpoint/stillpoint_stages.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint::testing {
@@ -32,9 +35,12 @@ struct InspectScene {
     view.index = 5;
     view.frame = frame(5);
     view.reference = frame(4);
-    for (int i = 0; i < 2; ++i) view.motion.rounds.push_back(round(i));
-    view.mask = view.motion.mask();
+    paper.reference = 4;
+    paper.reference_gray = view.reference.gray;
+    for (int i = 0; i < 2; ++i) paper.pair.rounds.push_back(round(i));
+    view.mask = paper.pair.mask();
     view.record = &record();
+    describe();
   }
   InspectScene(const InspectScene&) = delete;
   InspectScene& operator=(const InspectScene&) = delete;
@@ -45,6 +51,21 @@ struct InspectScene {
     record().features.push_back(
         {pixel, static_cast<float>(kDepth), residual_px, map_point, std::uint8_t{0}, fate});
     return static_cast<int>(record().features.size()) - 1;
+  }
+
+  /// Works the stages of the scene's method out anew.
+  void describe() {
+    const std::string& method = config.run.method;
+    StageLog log;
+    if (method == "paper") log = describe_paper(view.frame, &paper);
+    if (method == "stillpoint" && view.frame.has_depth()) {
+      own.view = std::make_shared<RgbdView>(make_rgbd_view(view.frame.gray, view.frame.depth, camera, 4));
+      log = describe_stillpoint(view.frame, own, config.of<StillpointConfig>());
+    }
+    if (method == "stillpoint" && !view.frame.has_depth())
+      log = describe_epipolar(view.frame, colour, config.of<EpipolarConfig>());
+    log.method = method;
+    view.motion = std::make_shared<const StageLog>(std::move(log));
   }
 
   /// What panels take, sharing nothing with this.
@@ -65,6 +86,9 @@ struct InspectScene {
   Config config;
   RunView run;
   FrameView view;
+  PaperMotionTrace paper;
+  StillpointMotionTrace own;
+  EpipolarTrace colour;
 
  private:
   static Frame frame(int index) {
@@ -122,7 +146,7 @@ struct InspectScene {
 inline void without_depth(InspectScene& scene) {
   scene.config.run.method = "stillpoint";
   scene.view.frame.depth.release();
-  EpipolarTrace& trace = scene.view.colour_motion;
+  EpipolarTrace& trace = scene.colour;
   trace.points = {{{50.0F, 40.0F}, 9, 0.2F, 0.8F}, {{120.0F, 90.0F}, 12, -0.4F, -0.4F}, {{10.0F, 10.0F}, 1}};
   ColourReference reference;
   reference.gap = 6;
@@ -138,6 +162,7 @@ inline void without_depth(InspectScene& scene) {
   trace.regions = {{{30, 25, 40, 40}, {}, 1600}};
   trace.mask_share = 1600.0 / (160 * 120);
   scene.view.mask = trace.mask;
+  scene.describe();
 }
 
 }  // namespace stillpoint::testing

@@ -111,8 +111,8 @@ TEST(Layout, ANewPanelHalvesTheLargestTile) {
 TEST(Layout, ComesBackFromItsFile) {
   EXPECT_EQ(from(to_json(from(kThree))), from(kThree));
   const LayoutNode standard = default_layout("stillpoint");
-  EXPECT_TRUE(contains(standard, "depth_motion"));
-  EXPECT_FALSE(contains(default_layout("paper"), "depth_motion"));
+  EXPECT_TRUE(contains(standard, "motion"));
+  EXPECT_FALSE(contains(default_layout("paper"), "motion"));
   EXPECT_EQ(parse_layout(to_json(standard), "file.json", panels_of(standard)), standard);
 }
 

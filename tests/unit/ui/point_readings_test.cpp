@@ -20,8 +20,7 @@ Reading reading(const std::vector<ReadingGroup>& groups, const std::string& grou
 
 std::vector<ReadingGroup> read(const InspectScene& scene, double x, double y) {
   const SessionView session = scene.session();
-  return read_point(session, pair_geometry(*session.current, *session.run, session.camera, session.config),
-                    {x, y});
+  return read_point(*session.current, pair_geometry(*session.current, *session.run, session.camera), {x, y});
 }
 
 TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
@@ -35,13 +34,14 @@ TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
   // 40 + (110 + 25) % 100, and the same point of the wall 5 px further right in frame 4.
   EXPECT_EQ(reading(groups, "Brightness", "Frame t").value, "75 of 255");
   EXPECT_EQ(reading(groups, "Brightness", "Frame 4, same scene point").value, "75 of 255");
-  const Reading difference = reading(groups, "Paper, round 2 of 2", "Forward difference");
-  EXPECT_EQ(difference.value, "50 > 20");
+  const Reading difference = reading(groups, "paper: Round 2", "Difference, Forward");
+  EXPECT_EQ(difference.value, "50 > 20 grey levels");
   EXPECT_TRUE(difference.speaks);
-  EXPECT_EQ(reading(groups, "Paper, round 1 of 2", "Forward difference").value, "0 ≤ 20");
-  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Forward mask, raw → clean").value, "yes → yes");
-  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Union").value, "region 2, 256 px");
-  EXPECT_EQ(reading(groups, "Paper, round 1 of 2", "Union").value, "no");
+  EXPECT_EQ(reading(groups, "paper: Round 1", "Difference, Forward").value, "0 ≤ 20 grey levels");
+  EXPECT_EQ(reading(groups, "paper: Round 2", "Threshold, Forward").value, "yes");
+  EXPECT_EQ(reading(groups, "paper: Round 2", "Clean-up, Forward").value, "yes");
+  EXPECT_EQ(reading(groups, "paper: Round 2", "Union and regions").value, "yes");
+  EXPECT_EQ(reading(groups, "paper: Round 1", "Union and regions").value, "no");
   EXPECT_EQ(reading(groups, "Result", "Removed").value, "yes");
   EXPECT_EQ(reading(groups, "Result", "Feature near it").value, "3.0 px off, removed");
 }
@@ -49,40 +49,41 @@ TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
 TEST(PointReadings, ReadWhatFollowedPointsSayWithoutDepth) {
   InspectScene scene;
   without_depth(scene);
-  const std::string group = "Stillpoint, colour alone";
+  const std::string points = "stillpoint: Judgement", back = "stillpoint: 6 frames back";
   const auto moving = read(scene, 53, 44);
-  EXPECT_EQ(reading(moving, group, "Followed point").value, "5.0 px off, for 9 frames");
-  EXPECT_EQ(reading(moving, group, "… its own evidence").value, "+0.20 ≤ 0.30");
-  EXPECT_EQ(reading(moving, group, "… with neighbours'").value, "+0.80 > 0.30");
-  EXPECT_TRUE(reading(moving, group, "Unexplained, 6 back").speaks);
-  EXPECT_EQ(reading(moving, group, "Spread evidence").value, "+0.50 > 0.30");
-  EXPECT_EQ(reading(moving, group, "Mask").value, "yes");
+  EXPECT_EQ(reading(moving, points, "Evidence").value, "5.0 px off, dynamic");
+  EXPECT_TRUE(reading(moving, back, "Epipolar residual").speaks);
+  EXPECT_EQ(reading(moving, points, "Propagation").value, "+0.50 > 0.30");
+  EXPECT_EQ(reading(moving, points, "Mask").value, "yes");
   const auto nothing = read(scene, 150, 10);
-  EXPECT_EQ(reading(nothing, group, "Followed point").value, "–");
-  EXPECT_EQ(reading(nothing, group, "Unexplained, 6 back").value, "–");
-  EXPECT_EQ(reading(nothing, group, "Mask").value, "no");
+  EXPECT_EQ(reading(nothing, points, "Evidence").value, "–");
+  EXPECT_EQ(reading(nothing, back, "Epipolar residual").value, "–");
+  EXPECT_EQ(reading(nothing, points, "Mask").value, "no");
 }
 
 TEST(PointReadings, SayWhereALayerHasNothing) {
   InspectScene scene;
   scene.view.frame.depth.setTo(0.0);
-  scene.view.motion.rounds[1].forward.valid.setTo(0);
+  scene.paper.pair.rounds[1].forward.valid.setTo(0);
+  scene.describe();
   const auto groups = read(scene, 20, 20);
   EXPECT_EQ(reading(groups, "Place", "Depth").value, "not measured");
   EXPECT_EQ(reading(groups, "Place", "In the world").value, "–");
   EXPECT_THAT(reading(groups, "Place", "… in frame 4").value, HasSubstr("by homography"));
-  EXPECT_EQ(reading(groups, "Paper, round 2 of 2", "Forward difference").value, "no data");
+  EXPECT_EQ(reading(groups, "paper: Round 2", "Difference, Forward").value, "no data");
 }
 
 TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
   InspectScene scene;
-  StillpointTrace& trace = scene.view.depth_motion;
+  scene.config.run.method = "stillpoint";
+  StillpointTrace& trace = scene.own.judged;
   trace.log_odds = trace.prior = cv::Mat(30, 40, CV_32FC1, cv::Scalar(0.5));
   trace.labels = cv::Mat(30, 40, CV_32SC1, cv::Scalar(-1));
   trace.labels.at<int>(5, 5) = 0;
   trace.segments = {{{}, 2.0F, 12, 0.1F, 0.9F, true}};
   trace.small_mask = cv::Mat::zeros(30, 40, CV_8UC1);
   trace.mask = cv::Mat::zeros(120, 160, CV_8UC1);
+  scene.describe();
   const auto one = read(scene, 21.5, 21.5), other = read(scene, 158, 119);
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t g = 0; g < one.size(); ++g) {
@@ -91,9 +92,9 @@ TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
     for (std::size_t r = 0; r < one[g].readings.size(); ++r)
       EXPECT_EQ(one[g].readings[r].name, other[g].readings[r].name);
   }
-  EXPECT_EQ(reading(one, "Stillpoint", "Patch").value, "0, 12 px, moves");
-  EXPECT_EQ(reading(other, "Stillpoint", "Patch").value, "–");
-  EXPECT_EQ(reading(one, "Stillpoint", "Memory").value, "+0.50 log-odds");
+  EXPECT_EQ(reading(one, "stillpoint: Judgement", "Patches").value, "+0.90 > 0.35 log-odds");
+  EXPECT_EQ(reading(other, "stillpoint: Judgement", "Patches").value, "–");
+  EXPECT_EQ(reading(one, "stillpoint: Judgement", "Prior").value, "+0.50 > 0.35 log-odds");
 }
 
 TEST(Pins, AreSetTakenOutAndNamed) {

@@ -6,6 +6,7 @@
 #include "core/run/open_run.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/same_stages.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {
@@ -79,12 +80,7 @@ TEST_P(RecordedSession, CaughtUpHasTheStagesToo) {
   Session live(source_, config_), session(run.source, config_, options);
   live.go_to(6);
   session.go_to(6);
-  const cv::Mat &expected = live.view()->current->depth_motion.log_odds,
-                &again = session.view()->current->depth_motion.log_odds;
-  ASSERT_EQ(again.empty(), expected.empty());
-  if (!expected.empty()) {
-    EXPECT_EQ(cv::norm(again, expected, cv::NORM_INF), 0.0);
-  }
+  expect_same_stages(*session.view()->current->motion, *live.view()->current->motion);
 }
 
 TEST_P(RecordedSession, ARunThatWasStoppedGoesOnAsIfItHadNotBeen) {

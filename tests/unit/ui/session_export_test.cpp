@@ -1,3 +1,4 @@
+#include "core/motion/paper/paper_config.hpp"
 #include "core/run/open_run.hpp"
 #include "tests/unit/ui/session_debug.hpp"
 
@@ -123,7 +124,7 @@ TEST_F(SessionDebug, ASessionIsHandedOnAsOneFolder) {
 TEST_F(SessionDebug, SavedPresetsAreRead) {
   const auto s = session();
   const TemporaryFolder out;
-  config_.motion.max_rounds = 2;
+  config_.of<PaperConfig>().max_rounds = 2;
   s->request(request::SavePreset{config_, out.path("mine.toml")});
   EXPECT_EQ(read_config(out.path("mine.toml")), config_);
   s->request(request::SavePreset{config_, out.path("no/such/folder/mine.toml")});

@@ -1,6 +1,8 @@
 // Frames had again, and under other parameters: the same as a batch run has them.
 #include <random>
 
+#include "core/motion/stillpoint/stillpoint_config.hpp"
+#include "tests/support/same_stages.hpp"
 #include "tests/unit/ui/session_debug.hpp"
 
 namespace stillpoint {
@@ -54,7 +56,8 @@ TEST_F(SessionDebug, APreviewsMotionStagesComeFirstAndAreThoseOfTheWhole) {
     }
     const auto whole = at.run.preview(index, config_);
     EXPECT_EQ(cv::norm(motion->mask, whole->mask, cv::NORM_INF), 0.0) << index;
-    EXPECT_EQ(cv::norm(motion->depth_motion.log_odds, whole->depth_motion.log_odds, cv::NORM_INF), 0.0);
+    ASSERT_FALSE(motion->motion->stages.empty());
+    expect_same_stages(*motion->motion, *whole->motion);
     EXPECT_EQ(bytes_of(*motion->record), bytes_of(*whole->record)) << index;
     EXPECT_TRUE(computed_alike(*whole->record, at.run.track().record(index)));
   }
@@ -63,14 +66,38 @@ TEST_F(SessionDebug, APreviewsMotionStagesComeFirstAndAreThoseOfTheWhole) {
   paper.run.method = "paper";
   const auto other = at.run.motion_preview(5, paper);
   ASSERT_NE(other, nullptr);
-  EXPECT_FALSE(other->motion.rounds.empty());
-  paper.run.method = "oracle";
-  EXPECT_EQ(at.run.motion_preview(5, paper), nullptr);
+  EXPECT_GT(other->motion->rounds(), 0);
+  EXPECT_EQ(other->motion->method, "paper");
+}
+
+TEST_F(SessionDebug, AnotherMethodsStagesAreLaidBesideTheRuns) {
+  config_.run.method = "stillpoint";
+  const auto s = session();
+  s->request(request::GoTo{6});
+  EXPECT_EQ(s->view()->current->motion_beside, nullptr);
+  s->request(request::StagesBeside{"paper"});
+  const auto view = s->view()->current;
+  EXPECT_EQ(view->motion->method, "stillpoint");
+  ASSERT_NE(view->motion_beside, nullptr);
+  EXPECT_EQ(view->motion_beside->method, "paper");
+  // They are what a run by that method has.
+  config_.run.method = "paper";
+  const auto paper = session();
+  paper->request(request::GoTo{6});
+  ASSERT_FALSE(paper->view()->current->motion->stages.empty());
+  expect_same_stages(*view->motion_beside, *paper->view()->current->motion);
+  // And the other way: a method with memory has the frames right before alone to go by.
+  paper->request(request::StagesBeside{"stillpoint"});
+  EXPECT_FALSE(paper->view()->current->motion_beside->stages.empty());
+  s->request(request::StagesBeside{});
+  EXPECT_EQ(s->view()->current->motion_beside, nullptr);
+  s->request(request::StagesBeside{"magic"});
+  EXPECT_THAT(s->view()->message, ::testing::HasSubstr("there is no method 'magic'"));
 }
 
 TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   config_.run.method = "stillpoint";
-  config_.depth_motion.moving_log_odds = -3.9;  // all moves: what is left is too little
+  config_.of<StillpointConfig>().moving_log_odds = -3.9;  // all moves: what is left is too little
   RunTrack track(*source_, config_);
   const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
@@ -79,44 +106,46 @@ TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   for (int index = 1; index < kFrames; ++index) {
     const FrameResult& first = results[static_cast<std::size_t>(index)];
     harmed += first.record.note.find("too little") != std::string::npos ? 1 : 0;
-    if (!track.frames_to_repeat(index)) continue;
-    const FrameResult again = track.repeat_motion(index, read);
+    ASSERT_TRUE(track.can_repeat_motion(index)) << index;
+    const MotionAgain again = track.motion_before(index, read).repeat(read(index), &first.record);
     ASSERT_EQ(again.mask.empty(), first.mask.empty()) << index;
     if (!first.mask.empty()) {
       EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
     }
-    EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
+    EXPECT_TRUE(same_bytes(again.motion.log_odds, first.motion.log_odds)) << index;
   }
   EXPECT_GT(harmed, 0);
 }
 
 TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
   config_.run.method = "stillpoint";
-  config_.depth_motion.far_reference = 9;  // old enough for patches' shifts
-  config_.depth_motion.slow_reference = 4;
+  config_.of<StillpointConfig>().far_reference = 9;  // old enough for patches' shifts
+  config_.of<StillpointConfig>().slow_reference = 4;
   RunTrack track(*source_, config_);
   const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
   for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
-  EXPECT_FALSE(track.frames_to_repeat(0).has_value());
+  const MotionStage describer(source_->camera(), config_);
   for (const int index : {11, 1, 7, 4, 5, 10}) {
-    const auto frames = track.frames_to_repeat(index);
-    ASSERT_TRUE(frames.has_value()) << index;
-    EXPECT_EQ(*frames->rbegin(), index);
+    ASSERT_TRUE(track.can_repeat_motion(index)) << index;
+    const std::set<int> frames = track.frames_to_repeat(index);
+    const FrameResult& first = results[static_cast<std::size_t>(index)];
     std::set<int> used;
-    const FrameResult again = track.repeat_motion(index, [&](int i) {
+    MotionReplay replay = track.motion_before(index, [&](int i) {
       used.insert(i);
       return source_->read(i);
     });
-    EXPECT_EQ(used, *frames);
-    const FrameResult& first = results[static_cast<std::size_t>(index)];
-    EXPECT_EQ(cv::norm(again.mask, first.mask, cv::NORM_INF), 0.0) << index;
-    EXPECT_EQ(cv::norm(again.depth_motion.log_odds, first.depth_motion.log_odds, cv::NORM_INF), 0.0) << index;
-    EXPECT_EQ(cv::norm(again.depth_motion.prior, first.depth_motion.prior, cv::NORM_INF), 0.0) << index;
-    ASSERT_EQ(again.depth_motion.references.size(), first.depth_motion.references.size()) << index;
-    for (std::size_t i = 0; i < first.depth_motion.references.size(); ++i)
-      EXPECT_EQ(again.depth_motion.references[i].reference.frames_back,
-                first.depth_motion.references[i].reference.frames_back);
+    EXPECT_EQ(used, frames) << index;
+    const Frame frame = source_->read(index);
+    const MotionAgain again = replay.repeat(frame, &first.record);
+    EXPECT_TRUE(same_bytes(again.mask, first.mask)) << index;
+    EXPECT_TRUE(same_bytes(again.motion.log_odds, first.motion.log_odds)) << index;
+    const StageLog now = describer.describe(frame, again.motion),
+                   then = describer.describe(frame, first.motion);
+    ASSERT_FALSE(then.stages.empty()) << index;
+    for (std::size_t i = 0; i < then.stages.size(); ++i)
+      EXPECT_EQ(now.stages[i].frames_back, then.stages[i].frames_back);
+    expect_same_stages(now, then);
   }
 }
 
@@ -132,7 +161,7 @@ TEST_F(SessionDebug, PreviewsTheFrameShownAndLeavesTheRunAlone) {
     ASSERT_NE(debug(*s).preview, nullptr);
     ASSERT_NE(debug(*s).preview->record, nullptr);
     EXPECT_TRUE(computed_alike(*debug(*s).preview->record, *s->view()->current->record));
-    EXPECT_EQ(debug(*s).preview->motion.rounds.size(), s->view()->current->motion.rounds.size());
+    expect_same_stages(*debug(*s).preview->motion, *s->view()->current->motion);
     other.features.count = 200;
     s->request(request::Preview{other});
     EXPECT_LT(debug(*s).preview->record->features_found, s->view()->current->record->features_found);
