@@ -6,7 +6,7 @@
 
 #include "core/motion/stage_log.hpp"
 
-namespace stillpoint::testing {
+namespace stillpoint {
 
 /// Whether two images have the same bytes, those of unknown values too.
 inline bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
@@ -31,4 +31,4 @@ inline void expect_same_stages(const StageLog& a, const StageLog& b) {
   }
 }
 
-}  // namespace stillpoint::testing
+}  // namespace stillpoint

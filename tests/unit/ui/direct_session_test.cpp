@@ -68,9 +68,9 @@ TEST_F(DirectSession, StagesShowItWhereItWasCalledFor) {
   const auto direct_stage = [&](int frame) {
     session.go_to(frame);
     const auto view = session.view();
-    for (const StageInfo& stage : stages_of(*view->current, config_))
-      if (stage.kind == StageKind::kDirectRefinement) return std::optional(stage);
-    return std::optional<StageInfo>();
+    for (const Stage& stage : stages_of(*view->current))
+      if (stage.id == "direct_refinement") return std::optional(stage);
+    return std::optional<Stage>();
   };
   EXPECT_FALSE(direct_stage(kBlurred - 4).has_value());
   const auto stage = direct_stage(kBlurred);
@@ -78,13 +78,12 @@ TEST_F(DirectSession, StagesShowItWhereItWasCalledFor) {
   EXPECT_EQ(stage->name, "Direct refinement");
   const auto view = session.view();
   const DirectRecord& direct = view->current->record->direct;
-  const StagePictures pictures = stage_pictures(*view->current, view->camera, config_, *stage, false);
-  EXPECT_EQ(pictures.output.image.size(), view->current->frame.gray.size());
+  const cv::Mat& image = stage->sides.at(0).output.image;
+  EXPECT_EQ(image.size(), view->current->frame.gray.size());
   // Each patch is a square of its residual; of two that overlap the later one lies on top.
   const DirectPatch& last = direct.seen->back();
-  EXPECT_EQ(pictures.output.image.at<float>(cv::Point(cvRound(last.pixel.x), cvRound(last.pixel.y))),
-            last.residual);
-  const cv::Mat known = pictures.output.image == pictures.output.image;
+  EXPECT_EQ(image.at<float>(cv::Point(cvRound(last.pixel.x), cvRound(last.pixel.y))), last.residual);
+  const cv::Mat known = image == image;
   EXPECT_GT(cv::countNonZero(known), 40 * direct.patches);
   EXPECT_LT(cv::countNonZero(known), 82 * direct.patches);
 }
