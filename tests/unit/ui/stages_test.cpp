@@ -223,7 +223,9 @@ TEST(StagePictures, ShowWhatChangedAgainstStageRoundAndFrame) {
 TEST(StagePictures, HaveInputsAndAnOutputForEveryStage) {
   InspectScene scene;
   scene.add_feature({10, 10}, FeatureFate::inlier, 1);
-  for (const StageInfo& stage : stages_of(scene.view, scene.config))
+  const auto stages = stages_of(scene.view, scene.config);
+  ASSERT_GE(stages.size(), 5U);
+  for (const StageInfo& stage : stages)
     for (const bool backward : {false, true}) {
       const StagePictures pictures = stage_pictures(scene.view, scene.camera, scene.config, stage, backward);
       EXPECT_FALSE(pictures.inputs.empty()) << stage.name;
