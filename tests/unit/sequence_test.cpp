@@ -350,7 +350,7 @@ TEST(TumFolder, CameraFilesHoldTheBuiltInCameras) {
     EXPECT_EQ(std::tie(read.k1, read.k2, read.p1, read.p2, read.k3),
               std::tie(built_in.k1, built_in.k2, built_in.p1, built_in.p2, built_in.k3));
   }
-  EXPECT_EQ(compared, 5) << "freiburg1, 2 and 3, bonn, icl";
+  EXPECT_GE(compared, 5) << "freiburg1, 2 and 3, bonn, icl at the least";
 }
 
 TEST(TumFolder, RealClipGivesAllItsFrames) {
