@@ -19,6 +19,8 @@ TEST_F(SessionDebug, TheHashIsTheBatchRunsHoweverOneCameThere) {
 }
 
 TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
+  write_masks(folder_);  // what oracle is told
+  source_ = open_sequence(folder_.path());
   for (const char* method : {"none", "paper", "stillpoint", "oracle"}) {
     config_.run.method = method;
     std::vector<FrameResult> expected;
