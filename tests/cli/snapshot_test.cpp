@@ -123,6 +123,7 @@ TEST(View, ComesBackAsItWasLeft) {
     }
     left = now;
   }
+  EXPECT_FALSE(left.empty());
   ::unsetenv("XDG_CONFIG_HOME");
 }
 

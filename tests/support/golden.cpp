@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -27,6 +28,33 @@ bool wants_update() {
   return update != nullptr && std::string_view(update) == "1";
 }
 
+::testing::AssertionResult compare_with_golden(
+    const cv::Mat& actual, const std::string& name,
+    const std::function<::testing::AssertionResult(const cv::Mat& expected)>& compare) {
+  const std::filesystem::path golden =
+      std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
+  if (wants_update()) {
+    std::filesystem::create_directories(golden.parent_path());
+    // Golden images are kept in the repository, so they are packed as small as PNG goes.
+    if (!cv::imwrite(golden.string(), actual, {cv::IMWRITE_PNG_COMPRESSION, 9}))
+      return ::testing::AssertionFailure() << "cannot write " << golden;
+    return ::testing::AssertionSuccess();
+  }
+  const cv::Mat expected = cv::imread(golden.string(), cv::IMREAD_COLOR);
+  ::testing::AssertionResult result =
+      expected.empty()
+          ? ::testing::AssertionFailure() << golden << " is missing; STILLPOINT_UPDATE_GOLDEN=1 writes it"
+          : compare(expected);
+  if (result) return result;
+  const std::filesystem::path place = std::filesystem::path(STILLPOINT_TEST_OUTPUT_DIR) / name;
+  std::filesystem::create_directories(place.parent_path());
+  cv::imwrite(place.string() + ".actual.png", actual);
+  if (expected.size() == actual.size() && expected.type() == actual.type()) {
+    cv::imwrite(place.string() + ".diff.png", largest_difference(actual, expected) * 8);
+  }
+  return result << "; see " << place.string() << ".actual.png and .diff.png beside it";
+}
+
 }  // namespace
 
 ::testing::AssertionResult images_agree(const cv::Mat& actual, const cv::Mat& expected,
@@ -47,30 +75,31 @@ bool wants_update() {
                                        << " (at most " << allowed << " may), the worst by " << most;
 }
 
+::testing::AssertionResult images_agree_but_scene(const cv::Mat& actual, const cv::Mat& expected,
+                                                  const cv::Rect& scene) {
+  if (actual.size() != expected.size() || actual.type() != expected.type())
+    return images_agree(actual, expected, kInterfaceTolerance);
+  const cv::Rect part = scene & cv::Rect({0, 0}, actual.size());
+  if (part.empty()) return ::testing::AssertionFailure() << "the scene lies outside the image: " << scene;
+  cv::Mat actual_around = actual.clone(), expected_around = expected.clone();
+  actual_around(part).setTo(cv::Scalar::all(0));
+  expected_around(part).setTo(cv::Scalar::all(0));
+  ::testing::AssertionResult around = images_agree(actual_around, expected_around, kInterfaceTolerance);
+  if (!around) return around << " around the scene";
+  ::testing::AssertionResult within = images_agree(actual(part), expected(part), kSceneTolerance);
+  return within ? within : within << " in the scene";
+}
+
 ::testing::AssertionResult matches_golden(const cv::Mat& actual, const std::string& name,
                                           const ImageTolerance& tolerance) {
-  const std::filesystem::path golden =
-      std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
-  if (wants_update()) {
-    std::filesystem::create_directories(golden.parent_path());
-    // Golden images are kept in the repository, so they are packed as small as PNG goes.
-    if (!cv::imwrite(golden.string(), actual, {cv::IMWRITE_PNG_COMPRESSION, 9}))
-      return ::testing::AssertionFailure() << "cannot write " << golden;
-    return ::testing::AssertionSuccess();
-  }
-  const cv::Mat expected = cv::imread(golden.string(), cv::IMREAD_COLOR);
-  ::testing::AssertionResult result =
-      expected.empty()
-          ? ::testing::AssertionFailure() << golden << " is missing; STILLPOINT_UPDATE_GOLDEN=1 writes it"
-          : images_agree(actual, expected, tolerance);
-  if (result) return result;
-  const std::filesystem::path place = std::filesystem::path(STILLPOINT_TEST_OUTPUT_DIR) / name;
-  std::filesystem::create_directories(place.parent_path());
-  cv::imwrite(place.string() + ".actual.png", actual);
-  if (expected.size() == actual.size() && expected.type() == actual.type()) {
-    cv::imwrite(place.string() + ".diff.png", largest_difference(actual, expected) * 8);
-  }
-  return result << "; see " << place.string() << ".actual.png and .diff.png beside it";
+  return compare_with_golden(
+      actual, name, [&](const cv::Mat& expected) { return images_agree(actual, expected, tolerance); });
+}
+
+::testing::AssertionResult matches_golden_but_scene(const cv::Mat& actual, const std::string& name,
+                                                    const cv::Rect& scene) {
+  return compare_with_golden(
+      actual, name, [&](const cv::Mat& expected) { return images_agree_but_scene(actual, expected, scene); });
 }
 
 bool is_blank(const cv::Mat& image, int colours) {

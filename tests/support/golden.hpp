@@ -22,11 +22,23 @@ inline constexpr ImageTolerance kSceneTolerance{2, 0.0, 0.0005};
 [[nodiscard]] ::testing::AssertionResult images_agree(const cv::Mat& actual, const cv::Mat& expected,
                                                       const ImageTolerance& tolerance);
 
+/// The same of an image that shows three dimensions in one part: there kSceneTolerance holds, of that part's
+/// own pixels, and kInterfaceTolerance everywhere else.
+/// @param scene px, clipped to the image
+[[nodiscard]] ::testing::AssertionResult images_agree_but_scene(const cv::Mat& actual,
+                                                                const cv::Mat& expected,
+                                                                const cv::Rect& scene);
+
 /// Compares with tests/golden/NAME.png. On failure NAME.actual.png and NAME.diff.png (differences made
 /// bright) are written beside the build. With STILLPOINT_UPDATE_GOLDEN=1 in the environment the golden image
 /// is written anew.
 [[nodiscard]] ::testing::AssertionResult matches_golden(
     const cv::Mat& actual, const std::string& name, const ImageTolerance& tolerance = kInterfaceTolerance);
+
+/// The same by images_agree_but_scene.
+[[nodiscard]] ::testing::AssertionResult matches_golden_but_scene(const cv::Mat& actual,
+                                                                  const std::string& name,
+                                                                  const cv::Rect& scene);
 
 /// Whether an image shows nothing: fewer than `colours` different colours.
 [[nodiscard]] bool is_blank(const cv::Mat& image, int colours = 4);

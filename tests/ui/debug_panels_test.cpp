@@ -131,9 +131,11 @@ TEST_F(DebugKeys, ANoteIsNotThrownAway) {
 
 TEST_F(DebugKeys, LayoutsForEachKindOfWork) {
   Key key = Key::k1;
+  ASSERT_GE(named_layouts().size(), 2U);
   for (const NamedLayout& layout : named_layouts()) {
     for (const char* method : {"paper", "stillpoint"}) {
       const std::vector<std::string> panels = panels_of(layout.make(method));
+      EXPECT_THAT(panels, ::testing::Not(IsEmpty())) << layout.name;
       EXPECT_EQ(std::set<std::string>(panels.begin(), panels.end()).size(), panels.size()) << layout.name;
       EXPECT_THAT(workbench_.panel_names(), IsSupersetOf(panels)) << layout.name;
     }

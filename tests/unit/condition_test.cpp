@@ -173,6 +173,7 @@ TEST(ConditionLimits, HostileTextsAreRefused) {
 
 TEST(FrameFigures, NamesAreUniqueAndExplained) {
   std::set<std::string_view> names;
+  ASSERT_FALSE(frame_figure_infos().empty());
   for (const FigureInfo& info : frame_figure_infos()) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.help.empty()) << info.name;

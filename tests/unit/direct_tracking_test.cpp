@@ -58,8 +58,10 @@ TEST_F(DirectTracking, KeepsFramesThatAreLostWithoutIt) {
     EXPECT_EQ(lost(now), 0) << method;
     EXPECT_GE(directly(now), lost(before)) << method;
     EXPECT_LT(worst_step_m(now), 0.03) << method;
+    int starved = 0;
     for (const FrameRecord& record : now.records) {
       if (record.inliers >= 20 || record.status == FrameStatus::initialised) continue;
+      ++starved;
       EXPECT_EQ(record.pose_start, PoseStart::direct) << record.index;
       EXPECT_FALSE(record.keyframe) << record.index;
       EXPECT_EQ(record.new_points, 0) << record.index;
@@ -67,6 +69,7 @@ TEST_F(DirectTracking, KeepsFramesThatAreLostWithoutIt) {
       ASSERT_NE(record.direct.seen, nullptr);
       EXPECT_EQ(static_cast<int>(record.direct.seen->size()), record.direct.patches);
     }
+    EXPECT_GE(starved, 3) << method;
   }
 }
 
@@ -74,6 +77,7 @@ TEST_F(DirectTracking, IsNoPartOfThePapersOdometry) {
   for (const char* method : {"paper", "none"}) {
     const RunResult run = run_sequence(*source_, config_of(method));
     EXPECT_EQ(directly(run), 0) << method;
+    ASSERT_EQ(run.records.size(), static_cast<std::size_t>(source_->size())) << method;
     for (const FrameRecord& record : run.records) EXPECT_EQ(record.direct.reference_frame, kNone);
   }
 }

@@ -84,6 +84,7 @@ TEST(OrbExtractor, KeepsNothingOfTheImageBefore) {
     const cv::Mat image = textured(size.width, size.height, 9);
     OrbExtractor copy = used;
     const OrbFeatures fresh = OrbExtractor({}).extract(image);
+    ASSERT_GT(fresh.keypoints.size(), 100U) << size;
     for (const OrbFeatures& again : {used.extract(image, 2), copy.extract(image)}) {
       ASSERT_EQ(again.keypoints.size(), fresh.keypoints.size());
       EXPECT_EQ(again.descriptors, fresh.descriptors);
@@ -202,6 +203,7 @@ TEST(FeatureSet, FindsWhatASearchOfAllFinds) {
   for (int i = 0; i < 60; ++i) pixels.emplace_back(x(random), y(random)), octaves.push_back(i % 8);
   const FeatureSet set = features_at(pixels, octaves);
   std::vector<int> found;
+  int with_some = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const cv::Point2f centre(x(random), y(random));
     const float radius = 5.0F + static_cast<float>(trial % 60);
@@ -216,7 +218,9 @@ TEST(FeatureSet, FindsWhatASearchOfAllFinds) {
         expected.push_back(i);
     }
     EXPECT_EQ(found, expected);
+    with_some += expected.empty() ? 0 : 1;
   }
+  EXPECT_GE(with_some, 50);
 }
 
 TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {

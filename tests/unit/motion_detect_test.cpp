@@ -103,6 +103,7 @@ TEST(DetectMotion, UnionCoversThePatchAndHardlyAnythingElse) {
 TEST(DetectMotion, UnionHoldsBothDirectionsAndForwardAloneIsLess) {
   const PlaneAndPatch scene = walking_patch();
   const PaperTrace trace = detect_motion(scene.reference, scene.target, PaperConfig{});
+  ASSERT_FALSE(trace.rounds.empty());
   for (const MotionRound& round : trace.rounds) {
     expect_equal_images(round.mask, round.forward.mask | round.backward_mask_in_target, "union");
     EXPECT_GT(cv::countNonZero(round.mask), cv::countNonZero(round.forward.mask));
@@ -141,8 +142,10 @@ TEST(DetectMotion, RoundsImproveAHomographyThatACoherentPatchPulls) {
 TEST(DetectMotion, NothingInTheBorderWithoutData) {
   const PlaneAndPatch scene = walking_patch();
   const PaperTrace trace = detect_motion(scene.reference, scene.target, PaperConfig{});
+  ASSERT_FALSE(trace.rounds.empty());
   for (const MotionRound& round : trace.rounds) {
     EXPECT_GT(cv::countNonZero(~round.forward.valid), 2000);
+    EXPECT_GT(cv::countNonZero(round.mask), 0);
     EXPECT_EQ(cv::countNonZero(round.forward.mask & ~round.forward.valid), 0);
     EXPECT_EQ(cv::countNonZero(round.forward.difference & ~round.forward.valid), 0);
     EXPECT_EQ(cv::countNonZero(round.backward.mask & ~round.backward.valid), 0);

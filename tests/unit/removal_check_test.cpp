@@ -97,10 +97,11 @@ TEST_F(RemovalErrors, RemovalHurtsOnlyBeyondTheNoiseOfTheRun) {
   add(0, std::nullopt);
   // Removal makes steps 0.1 mm better or worse, by turns.
   for (int i = 1; i <= 20; ++i) add(10.0 * i, 10.0 * i + (i % 2 == 0 ? 0.1 : 0.0));
-  add(10.0 * 21 + 5.0, 10.0 * 21);        // 5 mm worse
-  add(10.0 * 22 + 5.8, 10.0 * 22 + 5.0);  // 0.8 mm worse: not to be noticed
+  add(10.0 * 21 + 5.0, 10.0 * 21);         // 5 mm worse
+  add(10.0 * 22 + 5.8, 10.0 * 22 + 5.0);   // 0.8 mm worse: not to be noticed
   add(10.0 * 23 + 5.8, 10.0 * 23 + 10.8);  // right, where 5 mm would be amiss without it
   const auto errors = removal_errors(records_, evaluation_);
+  ASSERT_EQ(errors.size(), 23U);
   for (const RemovalError& error : errors) {
     EXPECT_EQ(error.hurt, error.frame == 21) << error.frame;
     EXPECT_EQ(error.helped, error.frame == 23) << error.frame;

@@ -21,10 +21,17 @@ TEST(Segments, NeverCrossADepthEdge) {
         r.first = std::min(r.first, view.depth.at<float>(y, x));
         r.second = std::max(r.second, view.depth.at<float>(y, x));
       }
+  int with_pixels = 0;
   for (const auto& r : range)
     if (r.second > 0) {
       EXPECT_LT(r.second - r.first, 0.5F);
+      ++with_pixels;
     }
+  EXPECT_GE(with_pixels, 10);
+  // The scene has an edge to cross.
+  double nearest = 0.0, farthest = 0.0;
+  cv::minMaxLoc(view.depth, &nearest, &farthest, nullptr, nullptr, view.depth > 0);
+  EXPECT_GT(farthest - nearest, 0.5);
 }
 
 /// All pairs that touch, found the plain way, and their boundaries.
@@ -65,6 +72,7 @@ TEST(Segments, ContactsAreAllPairsThatTouchOnASurface) {
         ++contact;
       }
       if (side <= 13) {
+        EXPECT_GT(expected.size(), 0U);
         EXPECT_GE(expected.size() + 1, segments.size()) << "one column at the least hangs together";
       }
     }
@@ -87,6 +95,7 @@ TEST(Segments, EvenTheSmallestViewHasAPatch) {
 TEST(RgbdView, ASmallMaskIsEnlargedByBlocks) {
   const cv::Mat small = (cv::Mat_<uchar>(2, 3) << 255, 0, 255, 0, 255, 0);
   const cv::Mat full = enlarged(small, 4, {14, 9});  // 2 columns and a row that no block covers
+  ASSERT_EQ(full.size(), cv::Size(14, 9));
   for (int y = 0; y < full.rows; ++y)
     for (int x = 0; x < full.cols; ++x)
       EXPECT_EQ(full.at<uchar>(y, x), small.at<uchar>(std::min(y / 4, 1), std::min(x / 4, 2)));

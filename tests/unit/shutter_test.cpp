@@ -103,6 +103,7 @@ TEST(CameraTurn, KnowsWhatLiesBehindInfinity) {
   const int moving = 60;
   const std::vector<BearingPair> pairs = room(kTurned, kWent, Eigen::Vector3d::Zero(), moving);
   const CameraTurn motion = estimate_camera_turn(pairs, {});
+  ASSERT_GT(pairs.size(), static_cast<std::size_t>(moving)) << "some move and some do not";
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     double sigma = 0.0;
     const double near = nearness(motion, pairs[i], sigma);

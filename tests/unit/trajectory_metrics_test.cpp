@@ -106,6 +106,7 @@ TEST(Alignment, LaysALineOnALineWhateverTheOrientationsSay) {
   std::vector<Pose> truth = poses_of(straight(1.0)), estimate = truth;
   for (Pose& pose : estimate) pose.translation() = Eigen::Vector3d(0, pose.translation().x(), 0);
   const Pose a = align(estimate, truth).truth_from_estimate;
+  ASSERT_GE(truth.size(), 2U);
   for (std::size_t i = 0; i < truth.size(); ++i)
     EXPECT_LT((a * estimate[i].translation() - truth[i].translation()).norm(), 1e-9);
 }

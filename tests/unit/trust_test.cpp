@@ -22,7 +22,7 @@ TEST(Trust, IsHalfAtItsLogOddsAndFallsBeyond) {
 }
 
 TEST(Trust, IsWholeWhereNothingIsKnown) {
-  for (const float trust : trust_at({{0, 0}, {639, 479}}, {}, {640, 480}, -2.0)) EXPECT_EQ(trust, 1.0F);
+  EXPECT_EQ(trust_at({{0, 0}, {639, 479}}, {}, {640, 480}, -2.0), (std::vector<float>{1.0F, 1.0F}));
 }
 
 TEST(Trust, PixelsAtTheRimAreReadAtTheRim) {

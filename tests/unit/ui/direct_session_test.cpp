@@ -53,6 +53,7 @@ TEST_F(DirectSession, AFrameGoneBackToIsAlignedAsItWas) {
       ASSERT_EQ(first.direct.seen == nullptr, again.direct.seen == nullptr);
       if (!first.direct.believed) continue;
       ++directly;
+      ASSERT_FALSE(first.direct.seen->empty()) << method << ' ' << i;
       ASSERT_EQ(first.direct.seen->size(), again.direct.seen->size());
       for (std::size_t k = 0; k < first.direct.seen->size(); ++k) {
         EXPECT_EQ((*first.direct.seen)[k].pixel, (*again.direct.seen)[k].pixel);

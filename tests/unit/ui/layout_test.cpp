@@ -50,6 +50,7 @@ TEST(Layout, LeavesNoPixelUnused) {
   for (float width = 100; width < 140; ++width) {
     const PlacedLayout placed = arrange(root, {0, 0, width, 50}, 3);
     float x = 0;
+    ASSERT_EQ(placed.panels.size(), 3U);
     for (const PlacedPanel& panel : placed.panels) {
       EXPECT_EQ(panel.rect.x, x);
       EXPECT_EQ(panel.rect.width, std::round(panel.rect.width));

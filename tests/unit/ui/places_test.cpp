@@ -41,6 +41,7 @@ TEST(LaneFigures, ErrorsStandAtTheEndOfTheirMotion) {
 }
 
 TEST(LaneFigures, KeysAndNamesAreTheirOwn) {
+  ASSERT_GE(lane_infos().size(), 2U);
   for (const LaneInfo& a : lane_infos()) {
     EXPECT_EQ(&info_of(a.figure), &a);
     for (const LaneInfo& b : lane_infos()) {

@@ -91,6 +91,7 @@ TEST(ParameterChanges, AreListedAndNamed) {
 
 TEST(ParameterRows, AreFoundByKeyLabelAndHelp) {
   Config config;
+  ASSERT_FALSE(parameters(config).empty());
   for (const Parameter& parameter : parameters(config)) {
     EXPECT_TRUE(matches(parameter, parameter.key));
     EXPECT_TRUE(matches(parameter, parameter.help));

@@ -156,6 +156,7 @@ TEST_F(SessionDebug, AGhostMayBeAnotherMethodFromTheMiddleOn) {
     const GhostView ghost = debug(*s).ghosts[0];
     EXPECT_EQ(ghost.from, 6);
     EXPECT_EQ(ghost.run->name, to);
+    ASSERT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
     for (const FrameRecord& record : ghost.run->records) EXPECT_TRUE(record.estimated) << record.index;
   }
 }
