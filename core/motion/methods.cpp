@@ -13,7 +13,8 @@
   METHOD(paper)                    \
   METHOD(none)                     \
   METHOD(oracle)                   \
-  METHOD(epipolar)
+  METHOD(epipolar)                 \
+  METHOD(yi2013)
 
 namespace stillpoint {
 
