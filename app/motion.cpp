@@ -1,27 +1,25 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
-#include "app/motion_colour.hpp"
-#include "app/motion_figures.hpp"
-#include "app/motion_pictures.hpp"
+#include "app/motion_output.hpp"
 #include "app/progress.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
-#include "core/motion/epipolar/colour_motion.hpp"
-#include "core/motion/paper/detect_motion.hpp"
-#include "core/out_folder.hpp"
+#include "core/inspect/motion_replay.hpp"
+#include "core/motion/methods.hpp"
+#include "core/motion/motion_stage.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/source.hpp"
 
@@ -36,7 +34,7 @@ struct MotionOptions {
   std::string out;
   ConfigArguments config;
   std::string frames;  ///< A:B:STEP
-  std::string method = "paper";
+  std::string method;  ///< empty = the first that keeps no state
   bool all_rounds = false;
   bool force = false;
 };
@@ -75,87 +73,58 @@ FrameRange parse_range(const std::string& text, int size) {
   return range;
 }
 
-/// Whether all of `text` from `first` on is digits, at least one.
-bool is_number_from(const std::string& text, std::size_t first) {
-  return text.size() > first && std::all_of(text.begin() + static_cast<std::ptrdiff_t>(first), text.end(),
-                                            [](unsigned char letter) { return std::isdigit(letter) != 0; });
+/// Whether a method judges frames by their images alone: without poses, features and true masks.
+bool judges_images(const MethodInfo& method) {
+  const MotionNeeds& needs = method.needs;
+  return !method.baseline && !needs.first_pose && !needs.matches && !needs.true_mask;
 }
 
-/// Removes an earlier result's pictures, those of each pair and of each round, and the folders that are empty
-/// then.
-void clear_earlier(const fs::path& folder) {
-  remove_round_pictures(folder);
-  remove_colour_motion_pictures(folder);
-  std::vector<fs::path> below;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_directory() &&
-        (is_number_from(name, 0) || (name.starts_with("round_") && is_number_from(name, 6))))
-      below.push_back(entry.path());
-  }
-  for (const fs::path& one : below) {
-    clear_earlier(one);
-    fs::remove(one, ignored);  // which leaves a folder that is not empty
-  }
+/// The method that judges here in the name of one: its stand-in for frames without depth, where it has one.
+const MethodInfo& judging_method(const MethodInfo& method) {
+  return method.without_depth.empty() ? method : method_named(method.without_depth);
 }
 
-/// The out folder with its two lists; pictures go beside them.
-class MotionOutput {
- public:
-  MotionOutput(const fs::path& folder, bool force, bool all_rounds)
-      : folder_(folder), all_rounds_(all_rounds), pairs_(nlohmann::json::array()) {
-    prepare_out_folder(folder, {"motion.csv", "motion.json"}, force);
-    if (fs::exists(folder / "motion.csv")) clear_earlier(folder);
-    csv_.open(folder / "motion.csv");
-    csv_ << motion_csv_heading() << '\n' << std::flush;
-    if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder / "motion.csv").string()));
+/// The methods that can be named here, each with what there is to say of it.
+std::vector<std::string> described_methods() {
+  std::vector<std::string> all;
+  for (const MethodInfo& named : methods()) {
+    const MethodInfo& method = judging_method(named);
+    if (!judges_images(method)) continue;
+    if (&method != &named)
+      all.push_back(fmt::format("{} (stands for {} here)", named.name, method.name));
+    else
+      all.push_back(named.name + (method.needs.keeps_state ? " (over several frames, for sequences)" : ""));
   }
+  return all;
+}
 
-  /// @param subfolder of the pair's pictures; empty = the out folder itself
-  void add(const std::string& subfolder, const std::string& reference_name, const std::string& target_name,
-           const PaperTrace& trace, const cv::Mat& reference, const cv::Mat& target) {
-    const fs::path folder = folder_ / subfolder;
-    prepare_out_folder(folder, {}, true);
-    if (all_rounds_) {
-      for (std::size_t i = 0; i < trace.rounds.size(); ++i) {
-        const fs::path round_folder = folder / fmt::format("round_{}", i + 1);
-        prepare_out_folder(round_folder, {}, true);
-        write_round_pictures(round_folder, trace.rounds[i], reference, target);
-      }
-    } else if (!trace.rounds.empty()) {
-      write_round_pictures(folder, trace.rounds.back(), reference, target);
-    }
-    add_figures(reference_name, target_name, trace);
+/// The method the user named, or the first that judges images and keeps no state.
+const MethodInfo& method_named_by(const MotionOptions& options) {
+  for (const MethodInfo& method : methods()) {
+    const MethodInfo& judge = judging_method(method);
+    if (!judges_images(judge)) continue;
+    if (options.method.empty() ? !judge.needs.keeps_state : method.name == options.method) return method;
   }
+  throw InputError(fmt::format("--method {}: is none that judges images alone; those are: {}", options.method,
+                               fmt::join(described_methods(), "; ")));
+}
 
-  /// A pair's figures alone.
-  void add_figures(const std::string& reference_name, const std::string& target_name,
-                   const PaperTrace& trace) {
-    csv_ << motion_csv_row(reference_name, target_name, trace) << '\n' << std::flush;
-    if (!csv_) throw InputError(fmt::format("{}: cannot be written", (folder_ / "motion.csv").string()));
-    pairs_.push_back(motion_json(reference_name, target_name, trace));
-  }
+void tell_stand_in(const MotionOptions& options, const MethodInfo& method) {
+  if (!options.method.empty() && options.method != method.name)
+    std::printf("method %s judges frames without depth by %s, which is what runs here\n",
+                options.method.c_str(), method.name.c_str());
+}
 
-  void finish(const Config& config) {
-    const nlohmann::json figures = {{"reference_gap", config.motion.reference_gap}, {"pairs", pairs_}};
-    write_text_file(folder_ / "motion.json", figures.dump(1) + '\n');
-    write_text_file(folder_ / "config.toml", to_toml(config));
-  }
-
- private:
-  fs::path folder_;
-  bool all_rounds_;
-  std::ofstream csv_;
-  nlohmann::json pairs_;
-};
-
-void print_pair(const std::string& reference, const std::string& target, const PaperTrace& trace) {
-  std::string line = fmt::format("{} -> {}: ", reference, target);
-  if (!trace.mask().empty())
-    line += fmt::format("{:.1f} % moves, {} regions, {} rounds", 100.0 * trace.rounds.back().mask_share,
-                        trace.rounds.back().regions.size(), trace.rounds.size());
-  if (!trace.note.empty()) line += (trace.mask().empty() ? "" : "; ") + trace.note;
+void print_frame(const JudgedFrame& frame) {
+  std::string line = frame.reference.empty() ? frame.target + ": "
+                                             : fmt::format("{} -> {}: ", frame.reference, frame.target);
+  const MotionResult& result = frame.result;
+  const bool judged = !result.mask.empty();
+  if (judged)
+    line += fmt::format("{:.1f} % dynamic, {} regions", 100.0 * result.mask_share, frame.regions.size());
+  if (judged && result.rounds > 0) line += fmt::format(", {} rounds", result.rounds);
+  if (!frame.note().empty()) line += (judged ? "; " : "") + frame.note();
+  if (!judged && frame.note().empty()) line += "no mask";
   std::printf("%s\n", line.c_str());
 }
 
@@ -172,7 +141,30 @@ cv::Mat read_whole_image(const std::string& path) {
   return to_8bit(read.image);
 }
 
-void run_pair(const MotionOptions& options, const Config& config) {
+Frame frame_of_image(const cv::Mat& image, int index) {
+  Frame frame;
+  frame.index = index;
+  frame.timestamp = index / 30.0;  // s; nothing tells when it was taken
+  if (image.channels() == 3) frame.colour = image;
+  frame.gray = to_gray(image);
+  return frame;
+}
+
+cv::Mat picture_of(const Frame& frame) { return to_colour(frame.colour.empty() ? frame.gray : frame.colour); }
+
+void judge_frame(const Frame& frame, MotionReplay& replay, JudgedFrame& judged) {
+  judged.result = replay.repeat(frame, nullptr).motion;
+  judged.log = replay.describe(frame, judged.result);
+  if (!judged.result.mask.empty()) judged.regions = find_regions(judged.result.mask).regions;
+  judged.picture = picture_of(frame);
+}
+
+void run_pair(const MotionOptions& options, const Config& config, const MethodInfo& method) {
+  if (method.needs.keeps_state)
+    throw InputError(fmt::format("--method {} follows what moves over several frames: give it a sequence",
+                                 options.method));
+  if (method.needs.depth)
+    throw InputError(fmt::format("--method {} needs depth: give it a sequence that has it", method.name));
   if (!options.frames.empty())
     throw InputError("--frames chooses among a sequence's frames, and two images were given");
   const cv::Mat reference = read_whole_image(options.first), target = read_whole_image(options.second);
@@ -180,98 +172,117 @@ void run_pair(const MotionOptions& options, const Config& config) {
     throw InputError(fmt::format("{} is {}x{} and {} is {}x{}: the two images must be of one size",
                                  options.first, reference.cols, reference.rows, options.second, target.cols,
                                  target.rows));
-  const PaperTrace trace =
-      detect_motion(to_gray(reference), to_gray(target), config.motion, config.run.threads);
-  MotionOutput output(options.out, options.force, options.all_rounds);
-  output.add("", options.first, options.second, trace, to_colour(reference), to_colour(target));
+  const Camera camera = Camera().scaled_to(target.cols, target.rows);
+  MotionReplay replay(camera, config);
+  (void)replay.repeat(frame_of_image(reference, 0), nullptr);
+  const Frame frame = frame_of_image(target, 1);
+  JudgedFrame judged{options.first, options.second};
+  judge_frame(frame, replay, judged);
+  MotionOutput output(options.out, options.force, options.all_rounds, method,
+                      MotionStage(camera, config).frames_back());
+  tell_stand_in(options, method);
+  output.add(judged);
   output.finish(config);
-  print_pair(options.first, options.second, trace);
+  print_frame(judged);
 }
 
-cv::Mat picture_of(const Frame& frame) { return to_colour(frame.colour.empty() ? frame.gray : frame.colour); }
+/// Judges frames of a sequence, in ascending order.
+class SequenceJudge {
+ public:
+  SequenceJudge(const FrameSource& source, const Config& config)
+      : source_(source),
+        config_(config),
+        frames_back_(MotionStage(source.camera(), config).frames_back()),
+        frames_prepared_back_(MotionPreparer(source.camera(), config).frames_back()),
+        running_(source.camera(), config) {}
 
-/// What is wrong with a pair of frames before motion detection sees them; empty when all is well.
-std::string problem_of(const Frame& reference, const Frame& target) {
-  for (const Frame* frame : {&reference, &target})
-    if (!frame->readable()) return "no mask: " + frame->problem;
-  if (reference.gray.size() != target.gray.size())
-    return fmt::format("no mask: frame {} is {}x{} and frame {} is {}x{}", reference.index,
-                       reference.gray.cols, reference.gray.rows, target.index, target.gray.cols,
-                       target.gray.rows);
-  return {};
-}
+  [[nodiscard]] int frames_back() const { return frames_back_; }
+  [[nodiscard]] bool sees_every_frame() const { return method_of(config_).needs.keeps_state; }
 
-void run_sequence(const MotionOptions& options, const Config& config) {
+  /// A frame after those it saw before, with sees_every_frame(); any frame otherwise.
+  [[nodiscard]] JudgedFrame judge(int index) {
+    const Frame frame = source_.read(index);
+    Frame reference;
+    JudgedFrame judged{"", std::to_string(index), fmt::format("{:06d}", index)};
+    if (!sees_every_frame() && frames_back_ > 0) {
+      reference = source_.read(index - frames_back_);
+      judged.reference = std::to_string(index - frames_back_);
+      if (!reference.readable()) judged.result.note = "no mask: " + reference.problem;
+    }
+    if (judged.result.note.empty()) judged.result.note = problem_of(frame);
+    if (!judged.result.note.empty()) return judged;
+    std::optional<MotionReplay> fresh;
+    MotionReplay& replay = sees_every_frame() ? running_ : fresh.emplace(before(index, reference));
+    judge_frame(frame, replay, judged);
+    if (judged.log.reference >= 0) judged.reference = std::to_string(judged.log.reference);
+    return judged;
+  }
+
+  /// Takes a frame into the state, with sees_every_frame().
+  void see(int index) {
+    const Frame frame = source_.read(index);
+    if (problem_of(frame).empty()) (void)running_.repeat(frame, nullptr);
+  }
+
+ private:
+  /// Why a frame cannot be judged; empty when all is well.
+  [[nodiscard]] std::string problem_of(const Frame& frame) const {
+    if (!frame.readable()) return "no mask: " + frame.problem;
+    if (method_of(config_).needs.depth && !frame.has_depth())
+      return fmt::format("no mask: {}", frame.problem.empty() ? "the frame has no depth" : frame.problem);
+    return {};
+  }
+
+  /// The place before a frame, of a method without state. @param earliest the first frame it needs
+  [[nodiscard]] MotionReplay before(int index, const Frame& earliest) const {
+    const int first = index - frames_back_;
+    // What lies farther back must not stand in for a frame between that cannot be read.
+    const auto read = [&](int i) { return i < first ? Frame{} : i == first ? earliest : source_.read(i); };
+    // What is not prepared is taken in frame by frame.
+    const int start = frames_prepared_back_ < frames_back_ ? first : index;
+    MotionReplay replay(source_.camera(), config_, MotionStage(source_.camera(), config_), start, index,
+                        read);
+    for (int i = start; i < index; ++i) (void)replay.repeat(read(i), nullptr);
+    return replay;
+  }
+
+  const FrameSource& source_;
+  const Config& config_;
+  int frames_back_, frames_prepared_back_;
+  MotionReplay running_;
+};
+
+void run_sequence(const MotionOptions& options, const Config& config, const MethodInfo& method) {
   // Its warnings are about cameras and times, which images alone do without.
   OpenOptions open;
   open.seed = static_cast<unsigned>(config.run.seed);
   const std::unique_ptr<FrameSource> source = open_sequence(options.first, open);
-  const int gap = config.motion.reference_gap;
+  if (method.needs.depth && !source->has_depth())
+    throw InputError(
+        fmt::format("{}: has colour frames only, and --method {} needs depth", options.first, method.name));
+  SequenceJudge judge(*source, config);
   FrameRange range = parse_range(options.frames, source->size());
+  const bool every = judge.sees_every_frame();
+  const int gap = every ? 0 : judge.frames_back();
   while (range.begin < gap && range.begin < range.end) range.begin += range.step;
   if (range.begin >= range.end)
     throw InputError(fmt::format("{}: of its {} frames none of those chosen has a reference {} frames back",
                                  options.first, source->size(), gap));
-  MotionOutput output(options.out, options.force, options.all_rounds);
-  int pairs = 0, without_mask = 0;
-  for (int index = range.begin; index < range.end && !stop_requested(); index += range.step) {
-    const Frame reference = source->read(index - gap), target = source->read(index);
-    const std::string reference_name = std::to_string(index - gap), target_name = std::to_string(index);
-    PaperTrace trace;
-    trace.note = problem_of(reference, target);
-    if (trace.note.empty()) {
-      trace = detect_motion(reference.gray, target.gray, config.motion, config.run.threads);
-      output.add(fmt::format("{:06d}", index), reference_name, target_name, trace, picture_of(reference),
-                 picture_of(target));
-    } else {
-      output.add_figures(reference_name, target_name, trace);
+  MotionOutput output(options.out, options.force, options.all_rounds, method, judge.frames_back());
+  tell_stand_in(options, method);
+  for (int index = every ? 0 : range.begin; index < range.end && !stop_requested();
+       index += every ? 1 : range.step) {
+    if (index < range.begin || (index - range.begin) % range.step != 0) {
+      judge.see(index);
+      continue;
     }
-    print_pair(reference_name, target_name, trace);
-    ++pairs;
-    if (trace.mask().empty()) ++without_mask;
+    const JudgedFrame frame = judge.judge(index);
+    output.add(frame);
+    print_frame(frame);
   }
   output.finish(config);
-  std::printf("%d pairs, %d of them without a mask; figures in %s\n", pairs, without_mask,
+  std::printf("%d frames, %d of them without a mask; figures in %s\n", output.frames(), output.without_mask(),
               (fs::path(options.out) / "motion.csv").c_str());
-  throw_if_interrupted();
-}
-
-/// Method `stillpoint`: judged over several frames, so all from the first on are seen, and those chosen
-/// written.
-void run_colour_sequence(const MotionOptions& options, const Config& config) {
-  OpenOptions open;
-  open.seed = static_cast<unsigned>(config.run.seed);
-  const std::unique_ptr<FrameSource> source = open_sequence(options.first, open);
-  const FrameRange range = parse_range(options.frames, source->size());
-  const fs::path folder = options.out;
-  prepare_out_folder(folder, {"motion.csv", "motion.json"}, options.force);
-  if (fs::exists(folder / "motion.csv")) clear_earlier(folder);
-  std::string rows = colour_motion_csv_heading() + '\n';
-  nlohmann::json frames = nlohmann::json::array();
-  ColourMotionDetector detector(source->camera(), config.colour_motion);
-  for (int index = 0; index < range.end && !stop_requested(); ++index) {
-    const Frame frame = source->read(index);
-    EpipolarTrace trace;
-    if (frame.readable())
-      trace = detector.next(frame.colour.empty() ? frame.gray : frame.colour, frame.timestamp);
-    else
-      trace.note = "no mask: " + frame.problem;
-    if (index < range.begin || (index - range.begin) % range.step != 0) continue;
-    rows += colour_motion_csv_row(index, trace, config.colour_motion) + '\n';
-    frames.push_back(colour_motion_json(index, trace, config.colour_motion));
-    if (frame.readable()) {
-      const fs::path pictures = folder / fmt::format("{:06d}", index);
-      prepare_out_folder(pictures, {}, true);
-      write_colour_motion_pictures(pictures, trace, picture_of(frame), config.colour_motion);
-    }
-    std::printf("%d: %.1f %% moves, %zu regions%s%s\n", index, 100.0 * trace.mask_share, trace.regions.size(),
-                trace.note.empty() ? "" : "; ", trace.note.c_str());
-  }
-  write_text_file(folder / "motion.csv", rows);
-  write_text_file(folder / "motion.json",
-                  nlohmann::json{{"method", "stillpoint"}, {"frames", frames}}.dump(1) + '\n');
-  write_text_file(folder / "config.toml", to_toml(config));
-  std::printf("%zu frames; figures in %s\n", frames.size(), (folder / "motion.csv").c_str());
   throw_if_interrupted();
 }
 
@@ -279,9 +290,9 @@ void run_colour_sequence(const MotionOptions& options, const Config& config) {
 
 void add_motion_command(CLI::App& app) {
   auto options = std::make_shared<MotionOptions>();
-  CLI::App* command = app.add_subcommand(
-      "motion",
-      "What moves between two images, or along a folder of colour frames: masks, differences and figures");
+  CLI::App* command = app.add_subcommand("motion",
+                                         "What moves between two images, or along a folder of colour frames: "
+                                         "masks, the method's stages, figures");
   command
       ->add_option("first", options->first, "The previous image; or a sequence, when no next image is given")
       ->required();
@@ -290,28 +301,20 @@ void add_motion_command(CLI::App& app) {
   options->config.add_to(*command, false);
   command->add_option(
       "--frames", options->frames,
-      "Target frames A:B:STEP of a sequence, B not among them; references lie motion.reference_gap "
-      "frames back");
-  command
-      ->add_option(
-          "--method", options->method,
-          "paper: a pair of frames after the other; stillpoint: from colour over tenths of a second, "
-          "for sequences")
-      ->check(CLI::IsMember({"paper", "stillpoint"}))
-      ->capture_default_str();
+      "Frames A:B:STEP of a sequence, B not among them; those too near its start to have a reference are "
+      "left out");
+  command->add_option("--method", options->method,
+                      fmt::format("What judges: {}", fmt::join(described_methods(), "; ")));
   command->add_flag("--all-rounds", options->all_rounds, "Pictures of every round, not of the last alone");
   command->add_flag("--force", options->force, "Overwrite earlier results");
   command->callback([options] {
-    const Config config = options->config.config();
-    if (options->method == "stillpoint") {
-      if (!options->second.empty())
-        throw InputError("--method stillpoint follows points over several frames: give it a sequence");
-      run_colour_sequence(*options, config);
-    } else if (options->second.empty()) {
-      run_sequence(*options, config);
-    } else {
-      run_pair(*options, config);
-    }
+    Config config = options->config.config();
+    const MethodInfo& method = judging_method(method_named_by(*options));
+    config.run.method = method.name;
+    if (options->second.empty())
+      run_sequence(*options, config, method);
+    else
+      run_pair(*options, config, method);
   });
 }
 

@@ -29,7 +29,7 @@ void check_range(const Parameter& p, double value, const std::string& where) {
 }
 
 /// Stores a TOML value in the parameter. `where` opens every complaint.
-void assign(Parameter& p, const toml::node& node, const std::string& where) {
+void assign(const Parameter& p, const toml::node& node, const std::string& where) {
   if (auto* flag = std::get_if<bool*>(&p.value)) {
     // Files of earlier versions have 0 and 1.
     const auto value = node.value_exact<bool>();
@@ -65,11 +65,15 @@ std::string current_key(std::string_view key) {
   return std::string(key);
 }
 
-Parameter& find_parameter(std::vector<Parameter>& all, std::string_view wanted, const std::string& where) {
+/// The parameter of that key, under the name it was asked for by: complaints name what was written.
+Parameter find_parameter(const std::vector<Parameter>& all, std::string_view wanted,
+                         const std::string& where) {
   const std::string key = current_key(wanted);
   const auto it = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.key == key; });
   if (it == all.end()) throw InputError(fmt::format("{}there is no parameter '{}'", where, wanted));
-  return *it;
+  Parameter found = *it;
+  found.key = wanted;
+  return found;
 }
 
 std::string toml_value(const Parameter& p) {
@@ -285,7 +289,7 @@ void set_parameter(Config& config, std::string_view assignment) {
     throw InputError(fmt::format("'{}' is no assignment: write section.name=value", assignment));
   const std::string_view key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   std::vector<Parameter> all = parameters(config);
-  Parameter& parameter = find_parameter(all, key, "");
+  const Parameter parameter = find_parameter(all, key, "");
   toml::table table;
   if (std::holds_alternative<std::string*>(parameter.value)) {
     table.insert("value", std::string(value));

@@ -64,38 +64,89 @@ class MotionCommand : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+/// The stage of a frame in motion.json; of round `round` (from 1) where it has rounds.
+nlohmann::json stage_of(const nlohmann::json& frame, const std::string& id, int round = 0) {
+  for (const nlohmann::json& stage : frame["stages"])
+    if (stage["id"] == id && (round == 0 || stage["round"] == round)) return stage;
+  ADD_FAILURE() << "there is no stage " << id;
+  return {};
+}
+
+double figure_of(const nlohmann::json& stage, const std::string& name) {
+  for (const nlohmann::json& figure : stage["figures"])
+    if (figure["name"] == name) return figure["value"];
+  ADD_FAILURE() << "there is no figure " << name;
+  return 0.0;
+}
+
 TEST_F(MotionCommand, TwoGreyImagesLeaveEveryPicture) {
   const CliResult ended = pair("a.png", "b.png");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  for (const char* name : {"compensated_forward", "compensated_backward", "difference_forward",
-                           "difference_backward", "raw_mask_forward", "raw_mask_backward", "mask_forward",
-                           "mask_backward", "mask_backward_in_target", "mask_union"}) {
+  for (const char* name :
+       {"compensated", "compensated_backward", "difference", "difference_backward", "raw_forward_mask",
+        "raw_backward_mask", "forward_mask", "backward_mask", "warped_backward_mask", "union_mask", "mask"}) {
     const cv::Mat picture =
         cv::imread(folder_.path(std::string("out/") + name + ".png"), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(picture.size(), cv::Size(320, 240)) << name;
     EXPECT_EQ(picture.type(), CV_8UC1) << name;
   }
-  for (const char* name : {"overlay", "tracks_forward", "tracks_backward", "features"})
-    EXPECT_EQ(cv::imread(folder_.path(std::string("out/") + name + ".png")).cols, 320) << name;
-  const cv::Mat mask = cv::imread(folder_.path("out/mask_union.png"), cv::IMREAD_UNCHANGED);
+  for (const char* name : {"overlay", "flow_tracks", "flow_tracks_backward"}) {
+    const cv::Mat picture = cv::imread(folder_.path(std::string("out/") + name + ".png"));
+    EXPECT_EQ(picture.cols, 320) << name;
+    EXPECT_GT(picture.rows, 240) << name << " has no legend";
+  }
+  const cv::Mat mask = cv::imread(folder_.path("out/mask.png"), cv::IMREAD_UNCHANGED);
   EXPECT_GT(cv::countNonZero(mask(cv::Rect(130, 60, 60, 110))), 60 * 110 * 8 / 10);
+  EXPECT_EQ(cv::norm(mask, cv::imread(folder_.path("out/union_mask.png"), cv::IMREAD_UNCHANGED)), 0.0);
   EXPECT_EQ(lines_of(folder_.read("out/motion.csv")), 2);
   const auto figures = nlohmann::json::parse(folder_.read("out/motion.json"));
-  EXPECT_GT(figures["pairs"][0]["rounds"][0]["forward"]["inliers"], 50);
+  EXPECT_EQ(figures["method"], "paper");
+  EXPECT_EQ(figures["reference_gap"], 1);
+  const nlohmann::json& frame = figures["pairs"][0];
+  EXPECT_EQ(frame["reference"], folder_.path("a.png"));
+  EXPECT_EQ(frame["target"], folder_.path("b.png"));
+  EXPECT_NEAR(frame["mask_share"].get<double>(), cv::countNonZero(mask) / (320.0 * 240.0), 1e-9);
+  EXPECT_GT(figure_of(stage_of(frame, "homography", 1), "Forward: inliers"), 50);
+  EXPECT_EQ(figure_of(stage_of(frame, "union", 1), "Regions"), frame["regions"].size());
+}
+
+TEST_F(MotionCommand, TheOverlayColoursTheMaskAlone) {
+  ASSERT_EQ(pair("a.png", "b.png").exit_code, 0);
+  const cv::Mat overlay = cv::imread(folder_.path("out/overlay.png"))(cv::Rect(0, 0, 320, 240));
+  const cv::Mat mask = cv::imread(folder_.path("out/mask.png"), cv::IMREAD_UNCHANGED);
+  cv::Mat tinted;
+  std::vector<cv::Mat> channels;
+  cv::split(overlay, channels);
+  cv::compare(channels[0], channels[2], tinted, cv::CMP_NE);
+  EXPECT_GT(cv::countNonZero(tinted), cv::countNonZero(mask) * 8 / 10);  // but for the regions' boxes
+  EXPECT_EQ(cv::countNonZero(tinted & ~mask), 0);
 }
 
 TEST_F(MotionCommand, CsvRowsHaveAsManyFieldsAsTheirHeading) {
-  ASSERT_EQ(pair("a.png", "b.png").exit_code, 0);
-  const std::string csv = folder_.read("out/motion.csv");
-  const std::string heading = csv.substr(0, csv.find('\n')), row = csv.substr(csv.find('\n') + 1);
-  EXPECT_EQ(std::count(heading.begin(), heading.end(), ','), std::count(row.begin(), row.end(), ','));
+  folder_.write("a, \"left\".png", small_scene().reference);
+  for (const char* reference : {"a.png", "a, \"left\".png"}) {
+    ASSERT_EQ(pair(reference, "b.png", {"--force"}).exit_code, 0);
+    const std::string csv = folder_.read("out/motion.csv");
+    const std::string heading = csv.substr(0, csv.find('\n')), row = csv.substr(csv.find('\n') + 1);
+    EXPECT_EQ(heading, "reference,target,mask_share,regions,rounds,static_tracks,homography_rms,note");
+    std::ptrdiff_t fields = 1;
+    bool quoted = false;
+    for (const char letter : row) {
+      if (letter == '"') quoted = !quoted;
+      if (letter == ',' && !quoted) ++fields;
+    }
+    EXPECT_EQ(fields, std::count(heading.begin(), heading.end(), ',') + 1) << row;
+    EXPECT_FALSE(quoted) << row;
+  }
+  EXPECT_THAT(folder_.read("out/motion.csv"), testing::HasSubstr("a, \"\"left\"\".png\","));
 }
 
 TEST_F(MotionCommand, ColourImagesAndOtherFormatsWork) {
   const CliResult ended = pair("a_colour.png", "b_colour.jpg", {"--all-rounds"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_TRUE(fs::exists(folder_.path("out/round_1/mask_union.png")));
-  EXPECT_FALSE(fs::exists(folder_.path("out/mask_union.png")));
+  EXPECT_TRUE(fs::exists(folder_.path("out/round_1/union_mask.png")));
+  EXPECT_FALSE(fs::exists(folder_.path("out/union_mask.png")));
+  EXPECT_TRUE(fs::exists(folder_.path("out/overlay.png")));
 }
 
 TEST_F(MotionCommand, EarlierResultsAreKeptWithoutForce) {
@@ -114,8 +165,10 @@ TEST_F(MotionCommand, ForcedResultsReplaceEarlierOnesWhole) {
     return motion(more).exit_code;
   };
   ASSERT_EQ(forced({"--frames", "1:6", "--all-rounds"}), 0);
-  ASSERT_TRUE(fs::exists(folder_.path("out/000004/round_1/overlay.png")));
+  ASSERT_TRUE(fs::exists(folder_.path("out/000004/round_1/union_mask.png")));
+  ASSERT_TRUE(fs::exists(folder_.path("out/000004/overlay.png")));
   folder_.write("out/000004/notes.txt", std::string("mine"));
+  folder_.write("out/000004/sketch.png", std::string("mine as well"));
   folder_.write("out/figures/overlay.png", std::string("mine too"));
   ASSERT_EQ(forced({"--frames", "1:3"}), 0);
   EXPECT_TRUE(fs::exists(folder_.path("out/000002/overlay.png")));
@@ -123,8 +176,27 @@ TEST_F(MotionCommand, ForcedResultsReplaceEarlierOnesWhole) {
   EXPECT_FALSE(fs::exists(folder_.path("out/000003")));
   // What is not ours stays.
   EXPECT_EQ(folder_.read("out/000004/notes.txt"), "mine");
+  EXPECT_EQ(folder_.read("out/000004/sketch.png"), "mine as well");
   EXPECT_FALSE(fs::exists(folder_.path("out/000004/round_1")));
+  EXPECT_FALSE(fs::exists(folder_.path("out/000004/overlay.png")));
   EXPECT_EQ(folder_.read("out/figures/overlay.png"), "mine too");
+  // Another method's pictures go with the earlier result too.
+  ASSERT_EQ(forced({"--frames", "1:3", "--method", "epipolar"}), 0);
+  EXPECT_TRUE(fs::exists(folder_.path("out/000002/points.png")));
+  EXPECT_FALSE(fs::exists(folder_.path("out/000002/union_mask.png")));
+}
+
+TEST_F(MotionCommand, AListOfPicturesDoesNotLeadElsewhere) {
+  ASSERT_EQ(pair("a.png", "b.png").exit_code, 0);
+  folder_.write("mine.png", std::string("mine"));
+  folder_.write("out/mine.txt", std::string("mine"));
+  folder_.write("out/motion.json",
+                std::string(R"({"pictures": ["../mine.png", "mine.txt", 3, "union_mask.png"]})"));
+  ASSERT_EQ(pair("a.png", "b.png", {"--force"}).exit_code, 0);
+  EXPECT_EQ(folder_.read("mine.png"), "mine");
+  EXPECT_EQ(folder_.read("out/mine.txt"), "mine");
+  folder_.write("out/motion.json", std::string("no json at all"));
+  EXPECT_EQ(pair("a.png", "b.png", {"--force"}).exit_code, 0);
 }
 
 /// Sends the signal once the file `sign` is there, and waits for the end.
@@ -173,6 +245,7 @@ TEST_F(MotionCommand, BadInputIsToldInOneSentence) {
   expect_one_sentence(pair("a.png", "large.png"), "400x300");
   expect_one_sentence(pair("a.png", "b.png", {"--set", "motion.nothing=1"}), "motion.nothing");
   expect_one_sentence(pair("a.png", "b.png", {"--set", "motion.max_rounds=0"}), "motion.max_rounds");
+  expect_one_sentence(pair("a.png", "b.png", {"--set", "paper.max_rounds=0"}), "paper.max_rounds");
   expect_one_sentence(pair("a.png", "b.png", {"--config", "nosuchpreset"}), "nosuchpreset");
   expect_one_sentence(pair("a.png", "b.png", {"--frames", "1:2"}), "--frames");
   EXPECT_FALSE(fs::exists(folder_.path("out")));
@@ -183,13 +256,27 @@ TEST_F(MotionCommand, BadInputIsToldInOneSentence) {
   expect_one_sentence(motion({folder_.path("a.png"), "--out", folder_.path("out")}), "a.png");
 }
 
+TEST_F(MotionCommand, MethodsThatNeedMoreThanImagesAreRefused) {
+  for (const char* method : {"none", "oracle", "nosuchmethod"}) {
+    const CliResult ended = pair("a.png", "b.png", {"--method", method});
+    expect_one_sentence(ended, method);
+    for (const char* other : {"paper", "epipolar", "stillpoint"})
+      EXPECT_THAT(ended.err, testing::HasSubstr(other));
+  }
+  for (const char* method : {"epipolar", "stillpoint"})
+    expect_one_sentence(pair("a.png", "b.png", {"--method", method}),
+                        std::string(method) + " follows what moves over several frames");
+  EXPECT_FALSE(fs::exists(folder_.path("out")));
+}
+
 TEST_F(MotionCommand, ImagesWithoutTextureEndWellWithANote) {
   for (const cv::Size size : {cv::Size(1, 1), cv::Size(200, 100)}) {
     folder_.write("blank.png", cv::Mat(cv::Mat::zeros(size, CV_8UC3)));
     const CliResult ended = pair("blank.png", "blank.png", {"--force"});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
     EXPECT_THAT(ended.out, testing::HasSubstr("no mask"));
-    EXPECT_FALSE(fs::exists(folder_.path("out/mask_union.png")));
+    EXPECT_FALSE(fs::exists(folder_.path("out/union_mask.png")));
+    EXPECT_FALSE(fs::exists(folder_.path("out/mask.png")));
   }
 }
 
@@ -212,6 +299,59 @@ TEST_F(MotionCommand, SequencesOfColourFramesAlone) {
   for (const char* wrong : {"x", "3:2", "1:2:0", "1:2:3:4", "9:12"})
     expect_one_sentence(sequence("out3", {"--frames", wrong}), "--frames");
   expect_one_sentence(sequence("out3", {"--set", "motion.reference_gap=6"}), "6 frames back");
+  EXPECT_FALSE(fs::exists(folder_.path("out3")));
+}
+
+TEST_F(MotionCommand, FramesJudgedAloneAreAsOnTheWayThrough) {
+  write_sequence(5);
+  const auto sequence = [this](const std::string& out, const std::string& frames) {
+    return motion({folder_.path("frames"), "--out", folder_.path(out), "--frames", frames}).exit_code;
+  };
+  ASSERT_EQ(sequence("all", "0:5"), 0);
+  ASSERT_EQ(sequence("one", "3"), 0);
+  EXPECT_EQ(folder_.read("one/000003/mask.png"), folder_.read("all/000003/mask.png"));
+  EXPECT_EQ(folder_.read("one/000003/flow_tracks.png"), folder_.read("all/000003/flow_tracks.png"));
+}
+
+TEST_F(MotionCommand, MethodsWithStateSeeEveryFrameAndWriteThoseChosen) {
+  write_sequence(10);
+  folder_.truncate("frames/rgb/8.png", 0.5);
+  const auto sequence = [this](const std::string& out, std::vector<std::string> more) {
+    more.insert(more.begin(), {folder_.path("frames"), "--out", folder_.path(out)});
+    return motion(more);
+  };
+  const CliResult all = sequence("all", {"--method", "epipolar"});
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const CliResult some = sequence("some", {"--method", "stillpoint", "--frames", "6:10:2"});
+  ASSERT_EQ(some.exit_code, 0) << some.err;
+  EXPECT_THAT(some.out, testing::HasSubstr("stillpoint judges frames without depth by epipolar"));
+  EXPECT_THAT(all.out, testing::Not(testing::HasSubstr("without depth")));
+
+  const auto figures = nlohmann::json::parse(folder_.read("all/motion.json")),
+             chosen = nlohmann::json::parse(folder_.read("some/motion.json"));
+  EXPECT_EQ(chosen["method"], "epipolar");
+  ASSERT_EQ(figures["pairs"].size(), 10U);
+  ASSERT_EQ(chosen["pairs"].size(), 2U);  // 6 and 8
+  EXPECT_EQ(chosen["pairs"][0]["target"], "6");
+  EXPECT_TRUE(chosen["pairs"][0]["reference"].is_null());
+  EXPECT_EQ(chosen["pairs"][0]["mask_share"], figures["pairs"][6]["mask_share"]);
+  EXPECT_EQ(figure_of(stage_of(chosen["pairs"][0], "points"), "Points"),
+            figure_of(stage_of(figures["pairs"][6], "points"), "Points"));
+  EXPECT_THAT(chosen["pairs"][1]["note"].get<std::string>(), testing::HasSubstr("8.png"));
+  EXPECT_TRUE(chosen["pairs"][1]["mask_share"].is_null());
+  EXPECT_FALSE(fs::exists(folder_.path("some/000005")));
+  EXPECT_FALSE(fs::exists(folder_.path("some/000008")));
+
+  for (const char* name : {"mask", "evidence"}) {
+    const cv::Mat picture =
+        cv::imread(folder_.path(std::string("some/000006/") + name + ".png"), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(picture.size(), cv::Size(320, 240)) << name;
+    EXPECT_EQ(picture.type(), CV_8UC1) << name;
+    EXPECT_EQ(folder_.read(std::string("some/000006/") + name + ".png"),
+              folder_.read(std::string("all/000006/") + name + ".png"));
+  }
+  EXPECT_GT(cv::imread(folder_.path("some/000006/points.png")).rows, 240);
+  EXPECT_EQ(lines_of(folder_.read("some/motion.csv")), 3);
 }
 
 TEST_F(MotionCommand, ADamagedFrameIsMarkedAndTheRestGoesOn) {
@@ -225,6 +365,18 @@ TEST_F(MotionCommand, ADamagedFrameIsMarkedAndTheRestGoesOn) {
   EXPECT_NE(figures["pairs"][1]["note"].get<std::string>().find("2.png"), std::string::npos);
   EXPECT_NE(figures["pairs"][2]["note"].get<std::string>().find("2.png"), std::string::npos);
   EXPECT_EQ(figures["pairs"][3]["note"], "");
+  EXPECT_FALSE(fs::exists(folder_.path("out/000002")));
+
+  // Only the frame itself and its reference count: between them lies nothing that is looked at.
+  const CliResult wide = motion({folder_.path("frames"), "--out", folder_.path("wide"), "--set",
+                                 "paper.reference_gap=2", "--frames", "2:5"});
+  ASSERT_EQ(wide.exit_code, 0) << wide.err;
+  const auto wider = nlohmann::json::parse(folder_.read("wide/motion.json"));
+  ASSERT_EQ(wider["pairs"].size(), 3U);
+  EXPECT_EQ(wider["pairs"][1]["note"], "");
+  EXPECT_EQ(wider["pairs"][1]["reference"], "1");
+  EXPECT_TRUE(fs::exists(folder_.path("wide/000003/overlay.png")));
+  EXPECT_NE(wider["pairs"][2]["note"].get<std::string>().find("2.png"), std::string::npos);
 }
 
 }  // namespace

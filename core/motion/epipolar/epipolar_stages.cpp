@@ -130,7 +130,8 @@ class EpipolarStages {
   }
 
   void add_evidence() {
-    const Layer shared = judged_layer("With their neighbours", &ColourPoint::shared);
+    Layer shared = judged_layer("With their neighbours", &ColourPoint::shared);
+    shared.id = "points";
     Stage& evidence =
         log_.add("point_evidence", kJudgement, "Evidence",
                  "Adds up the points' residuals, frame by frame, and smooths them over neighbours "
@@ -144,8 +145,9 @@ class EpipolarStages {
     cv::Mat large;
     if (!trace_.evidence.empty())
       cv::resize(trace_.evidence, large, frame_.image.size(), 0, 0, cv::INTER_NEAREST);
-    const Layer spread_layer =
+    Layer spread_layer =
         signed_layer("Evidence", large, 1.0, "", FrameSpace::kTarget, config_.moving_evidence);
+    spread_layer.id = "evidence";
     Stage& spread = log_.add("propagation", kJudgement, "Propagation",
                              "Each pixel takes the evidence of the point it reaches over the least change of "
                              "colour.");
