@@ -4,9 +4,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <opencv2/calib3d.hpp>
 
 #include "core/error.hpp"
+#include "core/geometry/camera_yaml.hpp"
 
 namespace stillpoint {
 namespace {
@@ -29,6 +31,21 @@ Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2
 Camera with_kinect_readout(Camera camera) {
   camera.readout_s = 0.030;
   return camera;
+}
+
+bool is_yaml(std::string_view path) { return path.ends_with(".yaml") || path.ends_with(".yml"); }
+
+/// A name's words in small letters: runs of letters and digits.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
 }
 
 std::vector<double> distortion(const Camera& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
@@ -89,24 +106,33 @@ Camera camera_by_name(std::string_view name) {
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  throw InputError(fmt::format("there is no camera '{}'; the cameras are: {} (or give a .toml file)", name,
-                               fmt::join(names, ", ")));
+  throw InputError(fmt::format("there is no camera '{}'; the cameras are: {} (or give a .toml or .yaml file)",
+                               name, fmt::join(names, ", ")));
 }
 
 std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
-  std::string lower(folder_name);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const auto speaks_of = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  const std::vector<std::string> words = words_of(folder_name);
+  const auto has = [&](const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
   for (const char* digit : {"1", "2", "3"})
-    if (speaks_of((std::string("freiburg") + digit).c_str()) || lower.starts_with(std::string("fr") + digit))
-      return camera_by_name(std::string("freiburg") + digit);
-  if (speaks_of("bonn")) return camera_by_name("bonn");
-  if (speaks_of("icl") || speaks_of("living_room") || speaks_of("office_room") || speaks_of("traj"))
+    for (const std::string& word : words)
+      for (const std::string& name : {std::string("freiburg") + digit, std::string("fr") + digit})
+        if (word == name ||
+            (word.starts_with(name) && std::isdigit(static_cast<unsigned char>(word[name.size()])) == 0))
+          return camera_by_name(std::string("freiburg") + digit);
+  if (has("bonn")) return camera_by_name("bonn");
+  // ICL-NUIM's own names: living_room_traj2_frei_png, office_room_traj0_loop, traj3_frei_png.
+  const bool is_trajectory = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return word.size() == 5 && word.starts_with("traj") && word[4] >= '0' && word[4] <= '3';
+  });
+  if (has("icl") || has("iclnuim") || (is_trajectory && (has("room") || has("frei"))))
     return camera_by_name("icl_nuim");
   return std::nullopt;
 }
 
 Camera read_camera(const std::string& path) {
+  if (is_yaml(path)) return read_yaml_camera(path);
   toml::table table;
   try {
     table = toml::parse_file(path);
@@ -153,6 +179,11 @@ Camera read_camera(const std::string& path) {
   }
   for (const char* needed : {"fx", "fy", "cx", "cy"})
     if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));
+  if (camera.fy < 0 && camera.fx > 0)
+    throw InputError(
+        fmt::format("{}: fy is negative, as in ICL-NUIM's own calibration: give it without the sign, and "
+                    "`--truth mirrored-y` for its poses",
+                    path));
   if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
   if (std::abs(camera.readout_s) > 0.2)
@@ -161,7 +192,7 @@ Camera read_camera(const std::string& path) {
 }
 
 Camera camera_from_argument(const std::string& argument) {
-  return argument.ends_with(".toml") ? read_camera(argument) : camera_by_name(argument);
+  return argument.ends_with(".toml") || is_yaml(argument) ? read_camera(argument) : camera_by_name(argument);
 }
 
 }  // namespace stillpoint

@@ -54,16 +54,17 @@ struct Camera {
 /// @throws InputError naming the known ones.
 [[nodiscard]] Camera camera_by_name(std::string_view name);
 
-/// The camera a folder's name speaks of ("…freiburg1…", "fr2_desk", …), or nothing.
+/// The camera a folder's name speaks of by a whole word ("…_freiburg1_…", "fr2_desk", "rgbd_bonn_…",
+/// "living_room_traj2_…"), or nothing: a part of a word ("vehicle", "particles") says nothing.
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
 /// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
-/// readout_s.
+/// readout_s; or, by the file's ending, from YAML (camera_yaml.hpp).
 /// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);
 
-/// `NAME|FILE.toml` as given on the command line.
+/// `NAME|FILE.toml|FILE.yaml` as given on the command line.
 /// @throws InputError as camera_by_name and read_camera do.
 [[nodiscard]] Camera camera_from_argument(const std::string& argument);
 
