@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
-#include <opencv2/calib3d.hpp>
 
 #include "core/error.hpp"
 #include "core/geometry/camera_yaml.hpp"
@@ -48,7 +48,24 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
-std::vector<double> distortion(const Camera& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
+constexpr int kNewtonRounds = 30, kHalvings = 8;
+constexpr double kNewtonResidual = 1e-13;  // of the image plane one focal length away
+
+/// Brown and Conrady's distortion of a point of the image plane one focal length away, as OpenCV has it, and
+/// its derivative.
+Eigen::Vector2d distorted_point(const Camera& c, const Eigen::Vector2d& point, Eigen::Matrix2d* derivative) {
+  const double x = point.x(), y = point.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  if (derivative != nullptr) {
+    const double slope = 2.0 * (c.k1 + r2 * (2.0 * c.k2 + 3.0 * r2 * c.k3));  // of radial, by r2, times 2
+    const double mixed = x * y * slope + 2.0 * c.p1 * x + 2.0 * c.p2 * y;
+    *derivative << radial + x * x * slope + 2.0 * c.p1 * y + 6.0 * c.p2 * x, mixed, mixed,
+        radial + y * y * slope + 6.0 * c.p1 * y + 2.0 * c.p2 * x;
+  }
+  return {x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
+          y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
+}
 
 }  // namespace
 
@@ -56,20 +73,45 @@ bool Camera::has_distortion() const { return k1 != 0 || k2 != 0 || p1 != 0 || p2
 
 cv::Matx33d Camera::matrix() const { return {fx, 0, cx, 0, fy, cy, 0, 0, 1}; }
 
+Eigen::Vector2d Camera::undistorted(const Eigen::Vector2d& pixel) const {
+  if (!has_distortion()) return pixel;
+  const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+  Eigen::Vector2d point = target;
+  Eigen::Matrix2d jacobian;
+  Eigen::Vector2d residual = distorted_point(*this, point, &jacobian) - target;
+  for (int round = 0; round < kNewtonRounds && residual.norm() > kNewtonResidual; ++round) {
+    const Eigen::Vector2d step = jacobian.inverse() * residual;
+    if (!step.allFinite()) break;
+    // A full step may leap over a fold; half of it, and half again, then does not.
+    double share = 1.0;
+    bool nearer = false;
+    for (int halving = 0; halving < kHalvings && !nearer; ++halving, share *= 0.5) {
+      Eigen::Matrix2d there;
+      const Eigen::Vector2d left = distorted_point(*this, point - share * step, &there) - target;
+      nearer = left.norm() < residual.norm();
+      if (nearer) point -= share * step, residual = left, jacobian = there;
+    }
+    if (!nearer) break;
+  }
+  return {fx * point.x() + cx, fy * point.y() + cy};
+}
+
 std::vector<cv::Point2f> Camera::undistort(const std::vector<cv::Point2f>& pixels) const {
-  if (!has_distortion() || pixels.empty()) return pixels;
+  if (!has_distortion()) return pixels;
   std::vector<cv::Point2f> result;
-  cv::undistortPoints(pixels, result, matrix(), distortion(*this), cv::noArray(), matrix());
+  result.reserve(pixels.size());
+  for (const cv::Point2f& pixel : pixels) {
+    const Eigen::Vector2d straight = undistorted({pixel.x, pixel.y});
+    result.emplace_back(static_cast<float>(straight.x()), static_cast<float>(straight.y()));
+  }
   return result;
 }
 
-Eigen::Vector2d Camera::distort(const Eigen::Vector2d& undistorted) const {
-  if (!has_distortion()) return undistorted;
-  const double x = (undistorted.x() - cx) / fx, y = (undistorted.y() - cy) / fy;
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  return {fx * (x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)) + cx,
-          fy * (y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y) + cy};
+Eigen::Vector2d Camera::distort(const Eigen::Vector2d& undistorted_pixel) const {
+  if (!has_distortion()) return undistorted_pixel;
+  const Eigen::Vector2d point =
+      distorted_point(*this, {(undistorted_pixel.x() - cx) / fx, (undistorted_pixel.y() - cy) / fy}, nullptr);
+  return {fx * point.x() + cx, fy * point.y() + cy};
 }
 
 Camera Camera::scaled_to(int new_width, int new_height) const {

@@ -37,10 +37,15 @@ struct Camera {
     return {(pixel.x() - cx) / fx * z, (pixel.y() - cy) / fy * z, z};
   }
 
-  /// Image pixels carried to where an ideal pinhole of the same matrix would see them.
+  /// The pixel where an ideal pinhole of the same matrix would see what an image pixel shows, by Newton's
+  /// method: distort leads back within 1e-6 px. Where distortion folds the image over, and no pixel is the
+  /// right one, the nearest found.
+  [[nodiscard]] Eigen::Vector2d undistorted(const Eigen::Vector2d& pixel) const;
+
+  /// The same of many, in single precision.
   [[nodiscard]] std::vector<cv::Point2f> undistort(const std::vector<cv::Point2f>& pixels) const;
 
-  /// The image pixel of an undistorted pixel: the inverse of undistort.
+  /// The image pixel of an undistorted pixel: the inverse of undistorted.
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& undistorted) const;
 
   /// The same camera for images of another size: intrinsics scaled, distortion kept.
