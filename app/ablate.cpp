@@ -44,11 +44,8 @@ std::vector<std::optional<Ingredient>> variants_of(const AblateArguments& argume
 
 std::vector<std::unique_ptr<FrameSource>> open_all(const AblateArguments& arguments, const Config& config) {
   std::vector<std::unique_ptr<FrameSource>> sources;
-  for (const std::string& sequence : expanded_sequences(arguments.sequences)) {
-    sources.push_back(arguments.frames.open(sequence, config));
-    if (!sources.back()->has_depth())
-      throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
-  }
+  for (const std::string& sequence : expanded_sequences(arguments.sequences))
+    sources.push_back(arguments.frames.open(sequence, config, {.depth = true}));
   return sources;
 }
 

@@ -1,8 +1,13 @@
 #include "app/arguments.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cstdio>
 
+#include "core/error.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/motion/methods.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 
 namespace stillpoint {
@@ -14,7 +19,7 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
       ->check(CLI::Range(1, 64));
   if (with_method)
     command.add_option("--method", method,
-                       "What is removed: stillpoint, paper, none, or oracle (told the true masks)");
+                       fmt::format("Which method judges what moves: {}", fmt::join(method_names(), ", ")));
 }
 
 Config ConfigArguments::config() const {
@@ -26,10 +31,31 @@ Config ConfigArguments::config() const {
 }
 
 void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
-  command.add_option("--camera", camera, "A camera's name or a TOML file; otherwise the folder tells");
+  command.add_option(
+      "--camera", camera,
+      "A camera's name, or a file: TOML, or YAML of ORB-SLAM, Kalibr or EuRoC; otherwise the folder tells");
   command.add_option(frames_option, frames, "Only so many frames of the sequence, from the first on")
       ->check(CLI::Range(1, 10'000'000));
   command.add_option("--seed", seed, "Seed of a generated sequence")->check(CLI::Range(0, 1'000'000'000));
+  command
+      .add_option("--frame-rate", frame_rate, "Of a folder whose stamps are frame numbers [Hz]; otherwise 30")
+      ->check(CLI::Range(0.01, 1000.0));
+  command
+      .add_option("--depth-scale", depth_scale,
+                  "Depth image units a metre, whatever the camera says: 1000 = millimetres")
+      ->check(CLI::Range(1.0, 1e6));
+  command.add_option("--depth-offset", depth_offset_s, "Added to the stamps of depth images [s]")
+      ->check(CLI::Range(-1e10, 1e10));
+  command.add_option(
+      "--truth", truth,
+      "What a folder's ground truth means by a pose: as-written, inverse, w-first, mirrored-x, "
+      "mirrored-y (ICL-NUIM), mirrored-z, bonn");
+  command.add_flag("--invert-masks", inverted_masks, "White in a folder's masks is what stands still");
+}
+
+bool SequenceArguments::given() const {
+  return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
+         depth_offset_s != 0 || !truth.empty() || inverted_masks;
 }
 
 OpenOptions SequenceArguments::options(const Config& config) const {
@@ -37,14 +63,47 @@ OpenOptions SequenceArguments::options(const Config& config) const {
   if (!camera.empty()) options.camera = camera_from_argument(camera);
   options.frames = frames;
   options.seed = static_cast<unsigned>(seed >= 0 ? seed : config.run.seed);
+  if (frame_rate > 0) options.frame_rate = frame_rate;
+  if (depth_scale > 0) options.depth_scale = depth_scale;
+  options.depth_offset_s = depth_offset_s;
+  options.truth = convention_argument("--truth", truth);
+  options.inverted_masks = inverted_masks;
   return options;
 }
 
-std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config) const {
+std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config,
+                                                     SequenceNeeds needs) const {
   auto source = open_sequence(where, options(config));
+  if (needs.depth && !source->has_depth()) {
+    const std::string why = source->why_not(FramePart::depth);
+    throw InputError(why.empty()
+                         ? fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint "
+                                       "motion` works without",
+                                       where)
+                         : fmt::format("{}: its depth is of no use: {}", where, why));
+  }
+  if (needs.oracle && !source->has_masks()) {
+    const std::string why = source->why_not(FramePart::masks);
+    throw InputError(
+        why.empty()
+            ? fmt::format(
+                  "{}: a method that is given the ground-truth masks needs them, and there is no mask.txt",
+                  where)
+            : fmt::format("{}: a method that is given the ground-truth masks needs them, and the masks are "
+                          "of no use: {}",
+                          where, why));
+  }
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   return source;
+}
+
+PoseConvention convention_argument(const char* option, const std::string& name) {
+  if (name.empty()) return PoseConvention::as_written;
+  if (const auto convention = convention_by_name(name)) return *convention;
+  std::string names(to_string(PoseConvention::as_written));
+  for (const PoseConvention other : other_conventions()) names += fmt::format(", {}", to_string(other));
+  throw InputError(fmt::format("{} {}: expected one of {}", option, name, names));
 }
 
 std::vector<std::string> expanded_sequences(const std::vector<std::string>& sequences) {

@@ -24,21 +24,39 @@ struct ConfigArguments {
   [[nodiscard]] Config config() const;
 };
 
-/// The options that say which frames.
+/// What a command cannot do without.
+struct SequenceNeeds {
+  bool depth = false;   ///< odometry
+  bool oracle = false;  ///< ground-truth masks
+};
+
+/// The options that say which frames, and how they are to be read.
 struct SequenceArguments {
-  std::string camera;  ///< NAME|FILE.toml; empty = the folder tells
-  int frames = 0;      ///< 0 = all
-  int seed = -1;       ///< of generated sequences; negative = the config's
+  std::string camera;        ///< NAME|FILE; empty = the folder tells
+  int frames = 0;            ///< 0 = all
+  int seed = -1;             ///< of generated sequences; negative = the config's
+  double frame_rate = 0.0;   ///< Hz, of stamps that are frame numbers; 0 = 30
+  double depth_scale = 0.0;  ///< units a metre; 0 = the camera's
+  double depth_offset_s = 0.0;
+  std::string truth;  ///< a PoseConvention's name; empty = as written
+  bool inverted_masks = false;
 
   /// @param frames_option what sets `frames`, where --frames means something else
   void add_to(CLI::App& command, const char* frames_option = "--frames");
   /// Whether any was given.
-  [[nodiscard]] bool given() const { return !camera.empty() || frames > 0 || seed >= 0; }
+  [[nodiscard]] bool given() const;
   /// What open_sequence is given.
+  /// @throws InputError for a camera or a convention that is none
   [[nodiscard]] OpenOptions options(const Config& config) const;
   /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
-  [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config) const;
+  /// @throws InputError also where it lacks what is needed, with the reason
+  [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config,
+                                                  SequenceNeeds needs = {}) const;
 };
+
+/// A convention by its name; empty = as written.
+/// @throws InputError naming the option and all conventions
+[[nodiscard]] PoseConvention convention_argument(const char* option, const std::string& name);
 
 /// The sequences named, with every kind in place of `generated:all`.
 [[nodiscard]] std::vector<std::string> expanded_sequences(const std::vector<std::string>& sequences);

@@ -79,29 +79,18 @@ void write_tables(const std::filesystem::path& folder, const Table& table_1, con
   write_text_file(folder / "details.csv", to_csv(details));
 }
 
-/// Opens a sequence that odometry can run on.
-std::unique_ptr<FrameSource> open_with_depth(const std::string& sequence, const BenchmarkArguments& arguments,
-                                             const Config& config) {
-  auto source = arguments.frames.open(sequence, config);
-  if (!source->has_depth())
-    throw InputError(fmt::format("{}: has colour frames only, and odometry needs depth", sequence));
-  for (const std::string& method : arguments.methods)
-    if (method_named(method).needs.true_mask && !source->has_masks())
-      throw InputError(
-          fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt", sequence));
-  return source;
-}
-
 /// Everything that can be known to be wrong is told before the first frame, not hours later.
 std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arguments, Config config) {
   std::set<std::string> methods;
+  bool wants_masks = false;
   for (const std::string& method : arguments.methods) {
     set_parameter(config, "run.method=" + method);
+    wants_masks = wants_masks || method_of(config).needs.true_mask;
     if (!methods.insert(method).second) throw InputError(fmt::format("--methods names {} twice", method));
   }
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
-    sources.push_back(open_with_depth(sequence, arguments, config));
+    sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .oracle = wants_masks}));
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
   return sources;

@@ -5,6 +5,7 @@ namespace stillpoint {
 void add_commands(CLI::App& app) {
   add_run_command(app);
   add_evaluate_command(app);
+  add_check_command(app);
   add_benchmark_command(app);
   add_ablate_command(app);
   add_generate_command(app);

@@ -17,6 +17,7 @@ void add_commands(CLI::App& app);
 
 void add_run_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
+void add_check_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
 void add_ablate_command(CLI::App& app);
 void add_generate_command(CLI::App& app);

@@ -6,18 +6,23 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "core/error.hpp"
+#include "core/evaluation/clocks.hpp"
 #include "core/evaluation/evaluation_json.hpp"
+#include "core/evaluation/suspicion.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
+#include "core/geometry/trajectory_file.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {
 
 struct EvaluateArguments {
-  std::string truth, estimate, sequence;
+  std::string truth, estimate, sequence, quaternion, truth_convention, estimate_convention;
   bool json = false;
+  double time_offset_s = 0.0, frame_rate = kFrameNumberRate;
   EvaluationOptions options;
 };
 
@@ -32,45 +37,121 @@ void tell(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
 }
 
-Trajectory read_truth(const EvaluateArguments& arguments, int& frames, std::vector<std::string>& warnings) {
-  if (!is_sequence(arguments.truth)) return read_tum_trajectory(arguments.truth, &warnings);
-  const auto source = open_sequence(arguments.truth);
-  if (source->ground_truth().empty())
-    throw InputError(
-        fmt::format("{}: the sequence has no ground truth, expected a groundtruth.txt", arguments.truth));
-  if (frames == 0) frames = source->size();
-  return source->ground_truth();
-}
-
 std::string span_of(const Trajectory& trajectory) {
   return fmt::format("{:.3f} s to {:.3f} s", trajectory.front().timestamp, trajectory.back().timestamp);
 }
 
-void evaluate(EvaluateArguments arguments) {
+void convert(Trajectory& trajectory, PoseConvention convention) {
+  for (StampedPose& pose : trajectory)
+    pose.world_from_camera = camera_pose(pose.world_from_camera, convention);
+}
+
+/// Both trajectories on one clock, and what was mended on the way.
+struct Compared {
+  Trajectory truth, estimate;
   std::vector<std::string> warnings;
-  EvaluationOptions& options = arguments.options;
-  if (!arguments.sequence.empty()) options.expected_frames = open_sequence(arguments.sequence)->size();
-  const Trajectory truth = read_truth(arguments, options.expected_frames, warnings);
-  const Trajectory estimate = read_tum_trajectory(arguments.estimate, &warnings);
-  const TrajectoryEvaluation evaluation = evaluate_trajectory(truth, estimate, options);
-  if (evaluation.matched.empty())
-    throw InputError(fmt::format("{}: none of its poses ({}) is closer than {} s to one of {} ({})",
-                                 arguments.estimate, span_of(estimate), options.max_difference_s,
-                                 arguments.truth, span_of(truth)));
-  if (options.expected_frames > 0 && evaluation.estimated_poses > options.expected_frames)
+  ClockOptions clocks;
+};
+
+std::unique_ptr<FrameSource> open_frames(const std::string& where, const EvaluateArguments& arguments) {
+  OpenOptions options;
+  options.frame_rate = arguments.frame_rate;
+  return open_sequence(where, options);
+}
+
+void read_truth(const EvaluateArguments& arguments, int& frames, Compared& compared) {
+  if (!is_sequence(arguments.truth)) {
+    TrajectoryFile file = read_trajectory_file(arguments.truth);
+    compared.truth = std::move(file.poses);
+    compared.warnings = std::move(file.warnings);
+    return;
+  }
+  const auto source = open_frames(arguments.truth, arguments);
+  if (source->ground_truth().empty()) {
+    const std::string why = source->why_not(FramePart::truth);
+    throw InputError(
+        why.empty()
+            ? fmt::format("{}: the sequence has no ground truth, expected a groundtruth.txt", arguments.truth)
+            : fmt::format("{}: its ground truth is of no use: {}", arguments.truth, why));
+  }
+  if (frames == 0) frames = source->size();
+  compared.truth = source->ground_truth();
+  compared.clocks.truth_in_seconds = true;
+  for (int i = 0; i < source->size(); ++i) compared.clocks.frame_stamps.push_back(source->timestamp(i));
+}
+
+void read_estimate(const EvaluateArguments& arguments, Compared& compared) {
+  std::optional<QuaternionOrder> order;
+  if (!arguments.quaternion.empty())
+    order = arguments.quaternion == "wxyz" ? QuaternionOrder::wxyz : QuaternionOrder::xyzw;
+  TrajectoryFile file = read_trajectory_file(arguments.estimate, order);
+  compared.estimate = std::move(file.poses);
+  compared.warnings.insert(compared.warnings.end(), file.warnings.begin(), file.warnings.end());
+}
+
+Compared read_both(const EvaluateArguments& arguments, EvaluationOptions& options) {
+  Compared compared;
+  ClockOptions& clocks = compared.clocks;
+  clocks.truth_name = arguments.truth, clocks.estimate_name = arguments.estimate;
+  clocks.frame_rate = arguments.frame_rate, clocks.tolerance_s = options.max_difference_s;
+  clocks.estimate_offset_s = arguments.time_offset_s;
+  if (!arguments.sequence.empty()) {
+    const auto source = open_frames(arguments.sequence, arguments);
+    options.expected_frames = source->size();
+    for (int i = 0; i < source->size(); ++i) clocks.frame_stamps.push_back(source->timestamp(i));
+  }
+  read_truth(arguments, options.expected_frames, compared);
+  read_estimate(arguments, compared);
+  const auto notes = settle_clocks(compared.truth, compared.estimate, clocks);
+  compared.warnings.insert(compared.warnings.end(), notes.begin(), notes.end());
+  convert(compared.truth, convention_argument("--truth", arguments.truth_convention));
+  convert(compared.estimate, convention_argument("--estimate", arguments.estimate_convention));
+  return compared;
+}
+
+/// What makes the figures doubtful.
+void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& arguments,
+              std::vector<std::string>& warnings) {
+  const int matched = static_cast<int>(evaluation.matched.size());
+  if (2 * matched < evaluation.estimated_poses)
+    warnings.push_back(
+        fmt::format("{}: only {} of {} poses meet the ground truth in time; the figures are of these alone",
+                    arguments.estimate, matched, evaluation.estimated_poses));
+  if (evaluation.expected_frames > 0 && evaluation.estimated_poses > evaluation.expected_frames)
     warnings.push_back(fmt::format("{}: holds {} poses, more than the {} frames", arguments.estimate,
-                                   evaluation.estimated_poses, options.expected_frames));
-  tell(warnings);
+                                   evaluation.estimated_poses, evaluation.expected_frames));
+  if (const auto suspicion = suspect_convention(evaluation.matched, true))
+    warnings.push_back(suspicion->sentence());
+  else if (const std::string scale = scale_sentence(evaluation);
+           !scale.empty() && !arguments.options.with_scale)
+    warnings.push_back(fmt::format("{}: {} (`--scale` does so)", arguments.estimate, scale));
+}
+
+void evaluate(EvaluateArguments arguments) {
+  EvaluationOptions& options = arguments.options;
+  Compared compared = read_both(arguments, options);
+  const TrajectoryEvaluation evaluation = evaluate_trajectory(compared.truth, compared.estimate, options);
+  if (evaluation.matched.empty())
+    throw InputError(fmt::format("{}: none of its poses ({}) is closer than {} s to one of {} ({}); {}",
+                                 arguments.estimate, span_of(compared.estimate), options.max_difference_s,
+                                 arguments.truth, span_of(compared.truth),
+                                 why_apart(compared.truth, compared.estimate, compared.clocks)));
+  question(evaluation, arguments, compared.warnings);
+  tell(compared.warnings);
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::json(evaluation);
     json["max_difference_s"] = options.max_difference_s;
     json["ground_truth"] = arguments.truth;
     json["estimate"] = arguments.estimate;
+    json["warnings"] = compared.warnings;
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
     fmt::print("Estimate  {}\nTruth     {}\n{}", arguments.estimate, arguments.truth,
                to_text(evaluation, options));
   }
+  if (!evaluation.has_figures())
+    throw InputError(
+        fmt::format("{}: there is nothing to measure: {}", arguments.estimate, evaluation.ate.why_none));
 }
 
 }  // namespace
@@ -79,15 +160,37 @@ void add_evaluate_command(CLI::App& app) {
   const auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare an estimated trajectory with ground truth: ATE and RPE");
-  command->add_option("GROUNDTRUTH", arguments->truth, "TUM trajectory, or a sequence that has ground truth")
+  command
+      ->add_option(
+          "GROUNDTRUTH", arguments->truth,
+          "Trajectory (TUM, EuRoC's csv, KITTI, any table with a header), or a sequence that has ground "
+          "truth")
       ->required();
-  command->add_option("ESTIMATE", arguments->estimate, "TUM trajectory: timestamp tx ty tz qx qy qz qw")
+  command
+      ->add_option("ESTIMATE", arguments->estimate,
+                   "Trajectory: timestamp tx ty tz qx qy qz qw, or another of these formats")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON");
   command
       ->add_option("--max-difference", arguments->options.max_difference_s,
                    "Poses belong together when strictly closer in time than this [s]")
       ->check(CLI::Range(1e-6, 10.0))
+      ->capture_default_str();
+  command->add_flag("--scale", arguments->options.with_scale,
+                    "Align with scale (Sim(3)), as monocular estimates need; the scale is told");
+  command
+      ->add_option("--quaternion", arguments->quaternion,
+                   "Order of the estimate's quaternions, where no header tells")
+      ->check(CLI::IsMember({"xyzw", "wxyz"}));
+  command->add_option(
+      "--truth", arguments->truth_convention,
+      "What the ground truth's poses mean: as-written, inverse, w-first, mirrored-x, mirrored-y, "
+      "mirrored-z, bonn");
+  command->add_option("--estimate", arguments->estimate_convention, "The same of the estimate's poses");
+  command->add_option("--time-offset", arguments->time_offset_s, "Added to the estimate's stamps [s]")
+      ->check(CLI::Range(-1e10, 1e10));
+  command->add_option("--frame-rate", arguments->frame_rate, "Of stamps that are frame numbers [Hz]")
+      ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   auto* frames = command
                      ->add_option("--frames", arguments->options.expected_frames,

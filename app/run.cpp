@@ -57,14 +57,8 @@ void run(const RunArguments& arguments) {
   }
   const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
-  const auto source = arguments.frames.open(arguments.sequence, config);
-  if (!source->has_depth())
-    throw InputError(
-        fmt::format("{}: has colour frames only, and odometry needs depth; `stillpoint motion` works without",
-                    arguments.sequence));
-  if (method_of(config).needs.true_mask && !source->has_masks())
-    throw InputError(fmt::format("{}: method oracle needs to be told what moves, and there is no mask.txt",
-                                 arguments.sequence));
+  const auto source = arguments.frames.open(arguments.sequence, config,
+                                            {.depth = true, .oracle = method_of(config).needs.true_mask});
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -14,12 +15,23 @@ namespace stillpoint {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
-constexpr std::string_view kSeparators = " \t,";
+constexpr std::string_view kSeparators = " \t,;";
+constexpr std::string_view kSeparatorsBesideCommas = " \t;";
 
 std::string_view without_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
     if (at == 0 || kBlanks.find(text[at - 1]) != std::string_view::npos) return text.substr(0, at);
   return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> columns;
+  for (auto first = text.find_first_not_of(separators); first != std::string_view::npos;) {
+    const auto end = std::min(text.find_first_of(separators, first), text.size());
+    columns.push_back(text.substr(first, end - first));
+    first = text.find_first_not_of(separators, end);
+  }
+  return columns;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -30,7 +42,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-std::vector<TextLine> read_text_lines(const std::string& path) {
+std::vector<TextLine> read_text_lines(const std::string& path, std::vector<TextLine>* comments) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(fmt::format("{}: a folder, where a text file was expected", path));
@@ -44,20 +56,32 @@ std::vector<TextLine> read_text_lines(const std::string& path) {
   for (int number = 1; std::getline(file, raw); ++number) {
     std::string_view text = raw;
     if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const std::string_view whole = trimmed(text);
     text = trimmed(without_comment(text));
-    if (!text.empty()) lines.push_back({number, std::string(text)});
+    if (!text.empty())
+      lines.push_back({number, std::string(text)});
+    else if (comments != nullptr && !whole.empty())
+      comments->push_back({number, std::string(trimmed(whole.substr(1)))});
   }
   if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
   return lines;
 }
 
-std::vector<std::string_view> split_columns(std::string_view text) {
-  std::vector<std::string_view> columns;
-  for (auto first = text.find_first_not_of(kSeparators); first != std::string_view::npos;) {
-    const auto end = std::min(text.find_first_of(kSeparators, first), text.size());
-    columns.push_back(text.substr(first, end - first));
-    first = text.find_first_not_of(kSeparators, end);
+std::vector<std::string_view> split_columns(std::string_view text) { return split(text, kSeparators); }
+
+std::vector<std::string_view> split_decimal_comma_columns(std::string_view text) {
+  const auto is_digit = [&](std::size_t at) {
+    return at < text.size() && text[at] >= '0' && text[at] <= '9';
+  };
+  bool any = false;
+  for (std::size_t at = text.find(','); at != std::string_view::npos; at = text.find(',', at + 1)) {
+    if (at == 0 || !is_digit(at - 1) || !is_digit(at + 1)) return {};
+    any = true;
   }
+  if (!any || text.find('.') != std::string_view::npos) return {};
+  std::vector<std::string_view> columns = split(text, kSeparatorsBesideCommas);
+  for (const std::string_view column : columns)
+    if (column.find(',') != column.rfind(',')) return {};
   return columns;
 }
 
@@ -67,6 +91,12 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::optional<double> parse_comma_number(std::string_view text) {
+  std::string point(text);
+  std::replace(point.begin(), point.end(), ',', '.');
+  return parse_number(point);
 }
 
 std::string in_quotes(std::string_view text) {

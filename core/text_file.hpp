@@ -15,11 +15,20 @@ struct TextLine {
 
 /// The lines of a small text file. `#` at the start of a line or after a blank begins a comment; blank lines
 /// are left out; LF and CRLF line ends and a byte order mark are understood.
+/// @param comments receives, where given, the lines that are nothing but a comment, without their `#`
 /// @throws InputError when the file cannot be read.
-[[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path);
+[[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path,
+                                                    std::vector<TextLine>* comments = nullptr);
 
-/// The columns of a line, parted by blanks, tabs or commas.
+/// The columns of a line, parted by blanks, tabs, commas or semicolons.
 [[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
+
+/// The columns of a line of numbers with decimal commas, parted by blanks, tabs or semicolons. Nothing when
+/// a comma parts columns there, or none is in the line.
+[[nodiscard]] std::vector<std::string_view> split_decimal_comma_columns(std::string_view text);
+
+/// parse_number of a text with a comma for the decimal point.
+[[nodiscard]] std::optional<double> parse_comma_number(std::string_view text);
 
 /// The whole text as a number written in the C manner, whatever the locale is; nothing when it is not one.
 /// May be NaN or infinite.

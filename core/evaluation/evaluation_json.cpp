@@ -7,6 +7,10 @@ nlohmann::json or_null(const std::optional<double>& value) {
   return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
+nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
 }  // namespace
 
 void to_json(nlohmann::json& json, const ErrorStatistics& s) {
@@ -20,9 +24,13 @@ void to_json(nlohmann::json& json, const ErrorStatistics& s) {
 }
 
 void to_json(nlohmann::json& json, const AbsoluteTrajectoryError& error) {
-  json = {{"translation_m", error.translation_m},
-          {"rotation_deg", error.rotation_deg},
-          {"alignment_degenerate", error.alignment.degenerate}};
+  json = {
+      {"translation_m", error.translation_m},
+      {"rotation_deg", error.rotation_deg},
+      {"alignment_degenerate", error.alignment.degenerate},
+      {"scale", error.similarity ? nlohmann::json(error.similarity->scale) : nlohmann::json()},
+      {"rmse_with_scale_m", error.similarity ? nlohmann::json(error.similarity->rmse_m) : nlohmann::json()},
+      {"why_none", text_or_null(error.why_none)}};
 }
 
 void to_json(nlohmann::json& json, const RelativePoseError& error) {
@@ -31,7 +39,8 @@ void to_json(nlohmann::json& json, const RelativePoseError& error) {
           {"dropped", error.dropped},
           {"limit_s", error.limit_s},
           {"translation_m", error.translation_m},
-          {"rotation_deg", error.rotation_deg}};
+          {"rotation_deg", error.rotation_deg},
+          {"why_none", text_or_null(error.why_none)}};
 }
 
 void to_json(nlohmann::json& json, const TrajectoryEvaluation& e) {
@@ -40,6 +49,9 @@ void to_json(nlohmann::json& json, const TrajectoryEvaluation& e) {
           {"truth_poses", e.truth_poses},
           {"expected_frames", e.expected_frames > 0 ? nlohmann::json(e.expected_frames) : nlohmann::json()},
           {"coverage", or_null(e.coverage)},
+          {"truth_span_s", e.truth_span_s},
+          {"matched_span_s", e.matched_span_s},
+          {"applied_scale", e.applied_scale},
           {"ate", e.ate},
           {"rpe_time", e.rpe_time},
           {"rpe_frame", e.rpe_frame}};

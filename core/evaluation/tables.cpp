@@ -11,6 +11,7 @@ namespace stillpoint {
 namespace {
 
 constexpr const char* kNothing = "–";
+constexpr double kLostCoverage = 0.5;  // share of frames with a pose
 
 /// Columns a text takes up: UTF-8 continuation bytes take none.
 std::size_t width_of(const std::string& text) {
@@ -37,7 +38,9 @@ std::string percent(const std::optional<double>& share) {
 
 std::string cell_text(const BenchmarkCell* cell) {
   if (cell == nullptr) return kNothing;
-  if (!cell->rpe_m) return "lost";
+  // Lost is who has no pose to speak of; without ground truth, or over less than a second, there is just no
+  // figure.
+  if (!cell->rpe_m) return cell->coverage < kLostCoverage ? "lost" : kNothing;
   if (cell->coverage >= 1.0) return metres(cell->rpe_m);
   // Rounded down, so that a frame lost never reads as 100 %.
   return fmt::format("{} ({:.1f} % of frames)", metres(cell->rpe_m),

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,6 +32,26 @@ RelativeError relative_error(const MatchedPose& i, const MatchedPose& j) {
   const Pose estimated_motion = i.estimate.inverse() * j.estimate;
   const Pose error = truth_motion.inverse() * estimated_motion;
   return {i.timestamp, j.timestamp, error.translation().norm(), degrees(rotation_angle(error.linear()))};
+}
+
+/// Below three poses an alignment leaves nothing over to be an error.
+constexpr std::size_t kFewestToAlign = 3;
+
+/// Umeyama's similarity of positions.
+std::optional<SimilarityFit> similarity_fit(const std::vector<MatchedPose>& matched) {
+  Eigen::Matrix3Xd from(3, matched.size()), to(3, matched.size());
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    from.col(static_cast<Eigen::Index>(i)) = matched[i].estimate.translation();
+    to.col(static_cast<Eigen::Index>(i)) = matched[i].truth.translation();
+  }
+  const Eigen::Matrix4d fit = Eigen::umeyama(from, to, true);
+  SimilarityFit result;
+  result.scale = std::cbrt(fit.topLeftCorner<3, 3>().determinant());
+  if (!std::isfinite(result.scale) || result.scale <= 0) return std::nullopt;
+  const Eigen::Matrix3Xd left =
+      ((fit.topLeftCorner<3, 3>() * from).colwise() + fit.topRightCorner<3, 1>()) - to;
+  result.rmse_m = std::sqrt(left.colwise().squaredNorm().mean());
+  return result;
 }
 
 }  // namespace
@@ -81,7 +102,13 @@ AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched) 
     result.errors.push_back({pose.timestamp, (aligned.translation() - pose.truth.translation()).norm(),
                              degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
   }
+  if (matched.size() < kFewestToAlign) {
+    result.why_none =
+        fmt::format("{} matched pose(s), and an alignment needs {}", matched.size(), kFewestToAlign);
+    return result;
+  }
   summarise(result, result.errors);
+  if (!result.alignment.degenerate) result.similarity = similarity_fit(matched);
   return result;
 }
 
@@ -103,6 +130,7 @@ RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& match
       result.errors.push_back(relative_error(matched[i], *j));
   }
   summarise(result, result.errors);
+  if (result.errors.empty()) result.why_none = fmt::format("no two matched poses are {} apart", result.delta);
   return result;
 }
 
@@ -120,6 +148,7 @@ RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& match
       result.errors.push_back(relative_error(matched[i], matched[i + 1]));
   }
   summarise(result, result.errors);
+  if (result.errors.empty()) result.why_none = "no two matched poses follow one another";
   return result;
 }
 
@@ -132,10 +161,22 @@ TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajecto
   if (options.expected_frames > 0)
     result.coverage = std::min(1.0, static_cast<double>(estimate.size()) / options.expected_frames);
   result.matched = match_trajectories(truth, estimate, options.max_difference_s);
+  if (!truth.empty()) result.truth_span_s = truth.back().timestamp - truth.front().timestamp;
+  if (!result.matched.empty())
+    result.matched_span_s = result.matched.back().timestamp - result.matched.front().timestamp;
+  if (options.with_scale && result.matched.size() >= kFewestToAlign)
+    if (const auto fit = similarity_fit(result.matched)) {
+      result.applied_scale = fit->scale;
+      for (MatchedPose& pose : result.matched) pose.estimate.translation() *= fit->scale;
+    }
   result.ate = absolute_error(result.matched);
   result.rpe_time = relative_error_over_time(result.matched, options.delta_s, options.delta_tolerance_s);
   result.rpe_frame = relative_error_per_frame(result.matched, options.neighbour_gap);
   return result;
+}
+
+std::string figure_text(const ErrorStatistics& statistics, int digits) {
+  return statistics.count > 0 ? fmt::format("{:.{}f}", statistics.rmse, digits) : "–";
 }
 
 std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& options) {
@@ -144,21 +185,36 @@ std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& opti
                   e.matched.size(), e.estimated_poses, e.truth_poses, options.max_difference_s);
   text += e.coverage ? fmt::format("Coverage  {:.1f} %: {} poses for {} frames\n", 100.0 * *e.coverage,
                                    e.estimated_poses, e.expected_frames)
-                     : "Coverage  not known without the number of frames\n";
+                     : "Coverage  not known without the number of frames (--frames, --sequence)\n";
+  if (e.truth_span_s > 0)
+    text += fmt::format("Time      matched poses span {:.3f} s of the truth's {:.3f} s ({:.1f} %)\n",
+                        e.matched_span_s, e.truth_span_s, 100.0 * e.matched_span_s / e.truth_span_s);
+  const char* how = options.with_scale ? "with scale (Sim(3))" : "rigidly, without scale";
   text += fmt::format(
-      "Aligned   rigidly, without scale{}\n\n",
+      "Aligned   {}{}\n", how,
       e.ate.alignment.degenerate ? "; positions on a line or too few, so by orientations too" : "");
-  text += fmt::format("{:<24}{:<5}{:>7}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "unit", "pairs", "RMSE",
+  if (options.with_scale)
+    text += fmt::format("Scale     the estimate's lengths were multiplied by {:.4f}\n", e.applied_scale);
+  else if (e.ate.similarity)
+    text += fmt::format(
+        "Scale     {:.4f} would fit best, and leave an ATE of {:.5f} m (--scale aligns with it)\n",
+        e.ate.similarity->scale, e.ate.similarity->rmse_m);
+  text += fmt::format("\n{:<24}{:<5}{:>7}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "unit", "pairs", "RMSE",
                       "mean", "median", "std", "min", "max");
-  const auto row = [&](const std::string& name, const char* unit, const ErrorStatistics& s) {
+  const auto row = [&](const std::string& name, const char* unit, const ErrorStatistics& s,
+                       const std::string& why) {
+    if (s.count == 0) {
+      text += fmt::format("{:<24}{:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
+      return;
+    }
     text += fmt::format("{:<24}{:<5}{:>7}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}\n", name,
                         unit, s.count, s.rmse, s.mean, s.median, s.stddev, s.min, s.max);
   };
-  row("ATE translation", "m", e.ate.translation_m);
-  row("ATE rotation", "deg", e.ate.rotation_deg);
+  row("ATE translation", "m", e.ate.translation_m, e.ate.why_none);
+  row("ATE rotation", "deg", e.ate.rotation_deg, e.ate.why_none);
   for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame}) {
-    row(fmt::format("RPE {} translation", rpe->delta), "m", rpe->translation_m);
-    row(fmt::format("RPE {} rotation", rpe->delta), "deg", rpe->rotation_deg);
+    row(fmt::format("RPE {} translation", rpe->delta), "m", rpe->translation_m, rpe->why_none);
+    row(fmt::format("RPE {} rotation", rpe->delta), "deg", rpe->rotation_deg, rpe->why_none);
   }
   text += fmt::format(
       "\nRPE {}: each matched pose with the one nearest {} later; {} without one within {} s dropped\n"

@@ -38,12 +38,20 @@ struct AbsoluteError {
   double rotation_deg = 0.0;
 };
 
+/// What a similarity (Sim(3)) instead of a rigid motion would make of the same positions.
+struct SimilarityFit {
+  double scale = 1.0;   ///< the estimate's lengths are multiplied by it
+  double rmse_m = 0.0;  ///< ATE that is left
+};
+
 /// Absolute trajectory error: what is left of the positions after a rigid alignment without scale.
 struct AbsoluteTrajectoryError {
   Alignment alignment;
   std::vector<AbsoluteError> errors;  ///< one a matched pose, by time
-  ErrorStatistics translation_m;      ///< its rmse is the ATE
+  ErrorStatistics translation_m;      ///< its rmse is the ATE; empty where fewer than 3 poses are matched
   ErrorStatistics rotation_deg;       ///< of the same aligned poses
+  std::optional<SimilarityFit> similarity;  ///< nothing where positions do not fix one
+  std::string why_none;                     ///< why there are no statistics; empty where there are
 };
 
 /// The error of one motion, E = (G_i⁻¹ G_j)⁻¹ (P_i⁻¹ P_j).
@@ -62,6 +70,7 @@ struct RelativePoseError {
   double limit_s = 0.0;  ///< s: how far off the delta, or for 1 frame how far apart, pairs may be
   ErrorStatistics translation_m;
   ErrorStatistics rotation_deg;
+  std::string why_none;  ///< why there are no statistics; empty where there are
 };
 
 /// How trajectories are compared. The defaults are the ones all figures of this project are given in.
@@ -74,6 +83,7 @@ struct EvaluationOptions {
                                ///< dropped is bridged, a stretch that was lost is not. The golden figures
                                ///< bridge all gaps, the largest being 2.2 times the median.
   int expected_frames = 0;     ///< frames that should have a pose; 0 = not known
+  bool with_scale = false;     ///< multiply the estimate's lengths by what fits best (Sim(3)) before all else
 };
 
 /// All that is said about an estimate.
@@ -82,10 +92,19 @@ struct TrajectoryEvaluation {
   int estimated_poses = 0;
   int expected_frames = 0;         ///< 0 = not known
   std::optional<double> coverage;  ///< share of the expected frames that have a pose, 0 to 1
+  double truth_span_s = 0.0;       ///< first to last pose of the truth
+  double matched_span_s = 0.0;     ///< first to last matched pose
+  double applied_scale = 1.0;      ///< by which the estimate's lengths were multiplied
   std::vector<MatchedPose> matched;
   AbsoluteTrajectoryError ate;
   RelativePoseError rpe_time;   ///< over EvaluationOptions::delta_s
   RelativePoseError rpe_frame;  ///< from each matched pose to the next
+
+  /// Whether there is any figure at all.
+  [[nodiscard]] bool has_figures() const {
+    return ate.translation_m.count > 0 || rpe_time.translation_m.count > 0 ||
+           rpe_frame.translation_m.count > 0;
+  }
 };
 
 /// Estimated poses with the ground truth that belongs to them: greedy one-to-one, nearest first.
@@ -102,6 +121,9 @@ struct TrajectoryEvaluation {
 /// From each matched pose to the next, where they are at most `neighbour_gap` times the median gap apart.
 [[nodiscard]] RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched,
                                                          double neighbour_gap);
+
+/// A statistic as people read it, or a dash where there is nothing to measure.
+[[nodiscard]] std::string figure_text(const ErrorStatistics& statistics, int digits);
 
 /// Everything at once. Without a single match the figures are empty and `matched` says so.
 [[nodiscard]] TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajectory& estimate,

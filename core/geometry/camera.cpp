@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <Eigen/LU>
 #include <algorithm>
-#include <opencv2/calib3d.hpp>
+#include <cctype>
 
 #include "core/error.hpp"
+#include "core/geometry/camera_yaml.hpp"
 
 namespace stillpoint {
 namespace {
@@ -31,7 +33,39 @@ Camera with_kinect_readout(Camera camera) {
   return camera;
 }
 
-std::vector<double> distortion(const Camera& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
+bool is_yaml(std::string_view path) { return path.ends_with(".yaml") || path.ends_with(".yml"); }
+
+/// A name's words in small letters: runs of letters and digits.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+constexpr int kNewtonRounds = 30, kHalvings = 8;
+constexpr double kNewtonResidual = 1e-13;  // of the image plane one focal length away
+
+/// Brown and Conrady's distortion of a point of the image plane one focal length away, as OpenCV has it, and
+/// its derivative.
+Eigen::Vector2d distorted_point(const Camera& c, const Eigen::Vector2d& point, Eigen::Matrix2d* derivative) {
+  const double x = point.x(), y = point.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  if (derivative != nullptr) {
+    const double slope = 2.0 * (c.k1 + r2 * (2.0 * c.k2 + 3.0 * r2 * c.k3));  // of radial, by r2, times 2
+    const double mixed = x * y * slope + 2.0 * c.p1 * x + 2.0 * c.p2 * y;
+    *derivative << radial + x * x * slope + 2.0 * c.p1 * y + 6.0 * c.p2 * x, mixed, mixed,
+        radial + y * y * slope + 6.0 * c.p1 * y + 2.0 * c.p2 * x;
+  }
+  return {x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
+          y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
+}
 
 }  // namespace
 
@@ -39,20 +73,45 @@ bool Camera::has_distortion() const { return k1 != 0 || k2 != 0 || p1 != 0 || p2
 
 cv::Matx33d Camera::matrix() const { return {fx, 0, cx, 0, fy, cy, 0, 0, 1}; }
 
+Eigen::Vector2d Camera::undistorted(const Eigen::Vector2d& pixel) const {
+  if (!has_distortion()) return pixel;
+  const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+  Eigen::Vector2d point = target;
+  Eigen::Matrix2d jacobian;
+  Eigen::Vector2d residual = distorted_point(*this, point, &jacobian) - target;
+  for (int round = 0; round < kNewtonRounds && residual.norm() > kNewtonResidual; ++round) {
+    const Eigen::Vector2d step = jacobian.inverse() * residual;
+    if (!step.allFinite()) break;
+    // A full step may leap over a fold; half of it, and half again, then does not.
+    double share = 1.0;
+    bool nearer = false;
+    for (int halving = 0; halving < kHalvings && !nearer; ++halving, share *= 0.5) {
+      Eigen::Matrix2d there;
+      const Eigen::Vector2d left = distorted_point(*this, point - share * step, &there) - target;
+      nearer = left.norm() < residual.norm();
+      if (nearer) point -= share * step, residual = left, jacobian = there;
+    }
+    if (!nearer) break;
+  }
+  return {fx * point.x() + cx, fy * point.y() + cy};
+}
+
 std::vector<cv::Point2f> Camera::undistort(const std::vector<cv::Point2f>& pixels) const {
-  if (!has_distortion() || pixels.empty()) return pixels;
+  if (!has_distortion()) return pixels;
   std::vector<cv::Point2f> result;
-  cv::undistortPoints(pixels, result, matrix(), distortion(*this), cv::noArray(), matrix());
+  result.reserve(pixels.size());
+  for (const cv::Point2f& pixel : pixels) {
+    const Eigen::Vector2d straight = undistorted({pixel.x, pixel.y});
+    result.emplace_back(static_cast<float>(straight.x()), static_cast<float>(straight.y()));
+  }
   return result;
 }
 
-Eigen::Vector2d Camera::distort(const Eigen::Vector2d& undistorted) const {
-  if (!has_distortion()) return undistorted;
-  const double x = (undistorted.x() - cx) / fx, y = (undistorted.y() - cy) / fy;
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  return {fx * (x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x)) + cx,
-          fy * (y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y) + cy};
+Eigen::Vector2d Camera::distort(const Eigen::Vector2d& undistorted_pixel) const {
+  if (!has_distortion()) return undistorted_pixel;
+  const Eigen::Vector2d point =
+      distorted_point(*this, {(undistorted_pixel.x() - cx) / fx, (undistorted_pixel.y() - cy) / fy}, nullptr);
+  return {fx * point.x() + cx, fy * point.y() + cy};
 }
 
 Camera Camera::scaled_to(int new_width, int new_height) const {
@@ -89,24 +148,33 @@ Camera camera_by_name(std::string_view name) {
     if (camera.name == name) return camera;
     names.push_back(camera.name);
   }
-  throw InputError(fmt::format("there is no camera '{}'; the cameras are: {} (or give a .toml file)", name,
-                               fmt::join(names, ", ")));
+  throw InputError(fmt::format("there is no camera '{}'; the cameras are: {} (or give a .toml or .yaml file)",
+                               name, fmt::join(names, ", ")));
 }
 
 std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
-  std::string lower(folder_name);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const auto speaks_of = [&](const char* word) { return lower.find(word) != std::string::npos; };
+  const std::vector<std::string> words = words_of(folder_name);
+  const auto has = [&](const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
   for (const char* digit : {"1", "2", "3"})
-    if (speaks_of((std::string("freiburg") + digit).c_str()) || lower.starts_with(std::string("fr") + digit))
-      return camera_by_name(std::string("freiburg") + digit);
-  if (speaks_of("bonn")) return camera_by_name("bonn");
-  if (speaks_of("icl") || speaks_of("living_room") || speaks_of("office_room") || speaks_of("traj"))
+    for (const std::string& word : words)
+      for (const std::string& name : {std::string("freiburg") + digit, std::string("fr") + digit})
+        if (word == name ||
+            (word.starts_with(name) && std::isdigit(static_cast<unsigned char>(word[name.size()])) == 0))
+          return camera_by_name(std::string("freiburg") + digit);
+  if (has("bonn")) return camera_by_name("bonn");
+  // ICL-NUIM's own names: living_room_traj2_frei_png, office_room_traj0_loop, traj3_frei_png.
+  const bool is_trajectory = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return word.size() == 5 && word.starts_with("traj") && word[4] >= '0' && word[4] <= '3';
+  });
+  if (has("icl") || has("iclnuim") || (is_trajectory && (has("room") || has("frei"))))
     return camera_by_name("icl_nuim");
   return std::nullopt;
 }
 
 Camera read_camera(const std::string& path) {
+  if (is_yaml(path)) return read_yaml_camera(path);
   toml::table table;
   try {
     table = toml::parse_file(path);
@@ -153,6 +221,11 @@ Camera read_camera(const std::string& path) {
   }
   for (const char* needed : {"fx", "fy", "cx", "cy"})
     if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));
+  if (camera.fy < 0 && camera.fx > 0)
+    throw InputError(
+        fmt::format("{}: fy is negative, as in ICL-NUIM's own calibration: give it without the sign, and "
+                    "`--truth mirrored-y` for its poses",
+                    path));
   if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
   if (std::abs(camera.readout_s) > 0.2)
@@ -161,7 +234,7 @@ Camera read_camera(const std::string& path) {
 }
 
 Camera camera_from_argument(const std::string& argument) {
-  return argument.ends_with(".toml") ? read_camera(argument) : camera_by_name(argument);
+  return argument.ends_with(".toml") || is_yaml(argument) ? read_camera(argument) : camera_by_name(argument);
 }
 
 }  // namespace stillpoint

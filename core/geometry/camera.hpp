@@ -37,10 +37,15 @@ struct Camera {
     return {(pixel.x() - cx) / fx * z, (pixel.y() - cy) / fy * z, z};
   }
 
-  /// Image pixels carried to where an ideal pinhole of the same matrix would see them.
+  /// The pixel where an ideal pinhole of the same matrix would see what an image pixel shows, by Newton's
+  /// method: distort leads back within 1e-6 px. Where distortion folds the image over, and no pixel is the
+  /// right one, the nearest found.
+  [[nodiscard]] Eigen::Vector2d undistorted(const Eigen::Vector2d& pixel) const;
+
+  /// The same of many, in single precision.
   [[nodiscard]] std::vector<cv::Point2f> undistort(const std::vector<cv::Point2f>& pixels) const;
 
-  /// The image pixel of an undistorted pixel: the inverse of undistort.
+  /// The image pixel of an undistorted pixel: the inverse of undistorted.
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& undistorted) const;
 
   /// The same camera for images of another size: intrinsics scaled, distortion kept.
@@ -54,16 +59,17 @@ struct Camera {
 /// @throws InputError naming the known ones.
 [[nodiscard]] Camera camera_by_name(std::string_view name);
 
-/// The camera a folder's name speaks of ("…freiburg1…", "fr2_desk", …), or nothing.
+/// The camera a folder's name speaks of by a whole word ("…_freiburg1_…", "fr2_desk", "rgbd_bonn_…",
+/// "living_room_traj2_…"), or nothing: a part of a word ("vehicle", "particles") says nothing.
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
 /// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
-/// readout_s.
+/// readout_s; or, by the file's ending, from YAML (camera_yaml.hpp).
 /// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);
 
-/// `NAME|FILE.toml` as given on the command line.
+/// `NAME|FILE.toml|FILE.yaml` as given on the command line.
 /// @throws InputError as camera_by_name and read_camera do.
 [[nodiscard]] Camera camera_from_argument(const std::string& argument);
 

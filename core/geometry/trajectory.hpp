@@ -17,12 +17,9 @@ struct StampedPose {
 /// Poses by strictly increasing time.
 using Trajectory = std::vector<StampedPose>;
 
-/// Reads a TUM trajectory: `timestamp tx ty tz qx qy qz qw`, `#` starts a comment.
-///
-/// Lines out of order are sorted and, of equal stamps, the first is kept; quaternions off unit length by
-/// less than 1 % are normalised. `warnings`, when given, receives a sentence for each such mending.
-/// @throws InputError with file and line for an unreadable file, fewer or more than 8 numbers, NaN or
-///         infinity, or a quaternion that is zero or far from unit length; and for a file without poses.
+/// The poses of read_trajectory_file, with stamps as they are written. `warnings`, when given, receives a
+/// sentence for each mending.
+/// @throws InputError as that does.
 [[nodiscard]] Trajectory read_tum_trajectory(const std::string& path,
                                              std::vector<std::string>* warnings = nullptr);
 

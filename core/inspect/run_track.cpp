@@ -17,8 +17,7 @@ RunTrack::RunTrack(const FrameSource& source, const Config& config, const RunTra
     : source_(&source), options_(options), odometry_(source.camera(), config) {}
 
 bool RunTrack::is_told(const Config& config) const {
-  const RunConfig& run = config.run;
-  return (run.method == "oracle" || run.check_removal != 0) && source_->has_masks();
+  return (method_of(config).needs.true_mask || config.run.check_removal) && source_->has_masks();
 }
 
 FrameResult RunTrack::process(Odometry& odometry, const Frame& frame, const cv::Mat& known_mask) const {

@@ -31,6 +31,10 @@ std::unique_ptr<FrameSource> open_as_it_was(const SequenceOrigin& origin, const 
   options.camera = origin.camera;
   options.frames = origin.frames_asked;
   options.seed = origin.seed;
+  options.frame_rate = origin.frame_rate;
+  options.depth_offset_s = origin.depth_offset_s;
+  options.truth = origin.truth;
+  options.inverted_masks = origin.inverted_masks;
   auto source = open_sequence(where, options);
   if (sequence_fingerprint(*source) != origin.fingerprint)
     throw InputError(fmt::format("{}: is not, or no longer, the sequence that the run in {} was made of",

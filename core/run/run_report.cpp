@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
+#include "core/evaluation/suspicion.hpp"
 #include "core/run/run_hash.hpp"
 
 namespace stillpoint {
@@ -78,6 +79,27 @@ std::string ranges(const std::vector<FrameRecord>& records, Predicate is) {
   return text;
 }
 
+/// Which frames lacked depth, with the first one's reason.
+std::string depth_gaps(const RunResult& run) {
+  if (run.without_depth.empty()) return {};
+  const auto lacks = [&run](const FrameRecord& r) {
+    return std::any_of(run.without_depth.begin(), run.without_depth.end(),
+                       [&r](const DepthGap& gap) { return gap.index == r.index; });
+  };
+  const DepthGap& first = run.without_depth.front();
+  const auto reasons = std::count_if(run.without_depth.begin(), run.without_depth.end(),
+                                     [&first](const DepthGap& gap) { return gap.why != first.why; });
+  return fmt::format("{} of {} frames: {} ({}{})", run.without_depth.size(), run.records.size(),
+                     ranges(run.records, lacks), first.why, reasons > 0 ? ", …" : "");
+}
+
+/// What lets truth and estimate fit far better.
+std::string doubt_of(const TrajectoryEvaluation& evaluation) {
+  if (const auto suspicion = suspect_convention(evaluation.matched, false)) return suspicion->sentence();
+  const std::string scale = scale_sentence(evaluation);
+  return scale.empty() ? scale : scale + ": is the depth scale right?";
+}
+
 std::string share_text(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string("-");
 }
@@ -94,12 +116,16 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   report.coverage = report.frames > 0 ? static_cast<double>(report.tracked) / report.frames : 0.0;
   report.keyframes = static_cast<int>(run.keyframes.size());
   report.map_points = static_cast<int>(run.points.size());
-  if (!source.ground_truth().empty() && !run.trajectory.empty()) {
+  report.has_truth = !source.ground_truth().empty();
+  if (report.has_truth && !run.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = report.frames;
     report.evaluation = evaluate_trajectory(source.ground_truth(), run.trajectory, options);
     report.evaluation_live = evaluate_trajectory(source.ground_truth(), run.live, options);
   }
+  report.truth_why_not = source.why_not(FramePart::truth);
+  report.without_depth = depth_gaps(run);
+  if (report.evaluation) report.doubt = doubt_of(*report.evaluation);
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
@@ -127,6 +153,10 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["lost_frames"] = ranges(run.records, [](const FrameRecord& r) { return !r.estimated; });
   json["unreadable_frames"] =
       ranges(run.records, [](const FrameRecord& r) { return r.status == FrameStatus::unreadable; });
+  json["frames_without_depth"] = report.without_depth;
+  json["ground_truth_unusable"] =
+      report.truth_why_not.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.truth_why_not);
+  json["doubt"] = report.doubt.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.doubt);
   json["keyframes"] = report.keyframes;
   json["map_points"] = report.map_points;
   json["run_hash"] = report.hash;
@@ -154,14 +184,25 @@ std::string to_text(const RunReport& report) {
                   report.keyframes, report.map_points);
   if (report.evaluation && !report.evaluation->matched.empty()) {
     const TrajectoryEvaluation& e = *report.evaluation;
-    text += fmt::format("  ATE           {:.4f} m RMSE over {} poses\n", e.ate.translation_m.rmse,
-                        e.ate.translation_m.count);
+    text += e.ate.translation_m.count > 0 ? fmt::format("  ATE           {:.4f} m RMSE over {} poses\n",
+                                                        e.ate.translation_m.rmse, e.ate.translation_m.count)
+                                          : fmt::format("  ATE           – ({})\n", e.ate.why_none);
     for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame})
-      text += fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta,
-                          rpe->translation_m.rmse, rpe->rotation_deg.rmse, rpe->translation_m.count);
+      text += rpe->translation_m.count > 0
+                  ? fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta,
+                                rpe->translation_m.rmse, rpe->rotation_deg.rmse, rpe->translation_m.count)
+                  : fmt::format("  RPE {:<9} – ({})\n", rpe->delta, rpe->why_none);
+    if (!report.doubt.empty()) text += fmt::format("  doubt         {}\n", report.doubt);
+  } else if (!report.truth_why_not.empty()) {
+    text += fmt::format("  ground truth  is there and of no use: {}\n", report.truth_why_not);
+  } else if (report.evaluation) {
+    text += "  ground truth  has no pose at the time of any frame with an estimate: no errors\n";
+  } else if (report.has_truth) {
+    text += "  errors        none: no frame has a pose to compare with the ground truth\n";
   } else {
     text += "  no ground truth: no errors\n";
   }
+  if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
   if (report.scores.known && !method_named(report.method).baseline)
     text += fmt::format(
         "  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",

@@ -150,6 +150,8 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     const double waited_ms = next->waited_ms();
     const Frame frame = next->frame();
     next.reset();
+    if (source.has_depth() && frame.readable() && !frame.has_depth())
+      result.without_depth.push_back({index, frame.problem});
     if (index + 1 < end) next.emplace(begin(index + 1));
     FrameResult processed = odometry.process_prepared(frame, std::move(prepared), known);
     processed.record.ms.total += waited_ms;

@@ -40,6 +40,12 @@ struct SavedKeyframe {
 /// reference keyframes as these stand in the map now.
 [[nodiscard]] Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records);
 
+/// A frame that could be read but came without depth, in a sequence that has it.
+struct DepthGap {
+  int index = 0;
+  std::string why;  ///< one sentence
+};
+
 /// A whole sequence by one method.
 struct RunResult {
   Config config;
@@ -49,7 +55,8 @@ struct RunResult {
   Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
-  std::vector<SavedPoint> moved;  ///< those that left the map because they moved, oldest first
+  std::vector<SavedPoint> moved;        ///< those that left the map because they moved, oldest first
+  std::vector<DepthGap> without_depth;  ///< in order; empty in a run read from its records
   int frames_in_sequence = 0;
   double orb_unit_ms = 0.0;  ///< the unit of speed, median over the frames; 0 when it was not measured
   bool interrupted = false;  ///< stopped before the last frame

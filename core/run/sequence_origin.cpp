@@ -39,6 +39,10 @@ SequenceOrigin origin_of(const FrameSource& source, const std::string& where, co
   origin.frames = source.size();
   origin.frames_asked = options.frames;
   origin.seed = options.seed;
+  origin.frame_rate = options.frame_rate;
+  origin.depth_offset_s = options.depth_offset_s;
+  origin.truth = options.truth;
+  origin.inverted_masks = options.inverted_masks;
   origin.camera = source.camera();
   origin.has_depth = source.has_depth();
   origin.fingerprint = sequence_fingerprint(source);
@@ -58,6 +62,10 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
   json["frames_asked"] = origin.frames_asked;
   if (origin.is_generated()) json["seed"] = origin.seed;
   json["has_depth"] = origin.has_depth;
+  if (origin.frame_rate != kFrameNumberRate) json["frame_rate"] = origin.frame_rate;
+  if (origin.depth_offset_s != 0) json["depth_offset_s"] = origin.depth_offset_s;
+  if (origin.truth != PoseConvention::as_written) json["truth"] = to_string(origin.truth);
+  if (origin.inverted_masks) json["inverted_masks"] = true;
   json["fingerprint"] = origin.fingerprint;
   visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
   return json;
@@ -72,6 +80,10 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   json.at("frames_asked").get_to(origin.frames_asked);
   if (origin.is_generated()) json.at("seed").get_to(origin.seed);
   json.at("has_depth").get_to(origin.has_depth);
+  origin.frame_rate = json.value("frame_rate", kFrameNumberRate);
+  origin.depth_offset_s = json.value("depth_offset_s", 0.0);
+  origin.truth = convention_by_name(json.value("truth", std::string())).value_or(PoseConvention::as_written);
+  origin.inverted_masks = json.value("inverted_masks", false);
   json.at("fingerprint").get_to(origin.fingerprint);
   const nlohmann::json& camera = json.at("camera");
   visit_camera(origin.camera, [&camera](const char* name, auto& value) { camera.at(name).get_to(value); });

@@ -11,13 +11,17 @@ namespace stillpoint {
 
 /// Where a run's frames came from: enough to open them again, and to notice when they are no longer the same.
 struct SequenceOrigin {
-  std::string name;            ///< as titles show it
-  std::string where;           ///< an absolute folder, or generated:KIND
-  std::string where_from_run;  ///< a folder, from the run's; empty where that is not known
-  int frames = 0;              ///< in the sequence as it was opened
-  int frames_asked = 0;        ///< OpenOptions::frames
-  unsigned seed = 1;           ///< of a generated sequence
-  Camera camera;               ///< as used
+  std::string name;                      ///< as titles show it
+  std::string where;                     ///< an absolute folder, or generated:KIND
+  std::string where_from_run;            ///< a folder, from the run's; empty where that is not known
+  int frames = 0;                        ///< in the sequence as it was opened
+  int frames_asked = 0;                  ///< OpenOptions::frames
+  unsigned seed = 1;                     ///< of a generated sequence
+  Camera camera;                         ///< as used
+  double frame_rate = kFrameNumberRate;  ///< these four as in OpenOptions
+  double depth_offset_s = 0.0;
+  PoseConvention truth = PoseConvention::as_written;
+  bool inverted_masks = false;
   bool has_depth = true;
   std::string fingerprint;  ///< sequence_fingerprint
 

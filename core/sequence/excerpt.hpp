@@ -25,6 +25,7 @@ class Excerpt : public FrameSource {
   [[nodiscard]] const Trajectory& ground_truth() const override { return ground_truth_; }
   [[nodiscard]] bool has_depth() const override { return whole_->has_depth(); }
   [[nodiscard]] bool has_masks() const override { return whole_->has_masks(); }
+  [[nodiscard]] std::string why_not(FramePart part) const override { return whole_->why_not(part); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:

@@ -18,6 +18,7 @@ class FirstFrames final : public FrameSource {
   [[nodiscard]] const Trajectory& ground_truth() const override { return whole_->ground_truth(); }
   [[nodiscard]] bool has_depth() const override { return whole_->has_depth(); }
   [[nodiscard]] bool has_masks() const override { return whole_->has_masks(); }
+  [[nodiscard]] std::string why_not(FramePart part) const override { return whole_->why_not(part); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return whole_->warnings(); }
 
  private:

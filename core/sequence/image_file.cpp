@@ -63,6 +63,22 @@ bool jpeg_has_its_end(const Bytes& bytes) {
   return false;
 }
 
+/// Formats that depth is kept in and that are not read: what a file of one says, and the way on.
+std::string other_format(const Bytes& bytes) {
+  const auto begins = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
+  };
+  const char* kind = begins("\x93NUMPY")            ? "a NumPy array"
+                     : begins("\x76\x2f\x31\x01")   ? "an OpenEXR image"
+                     : begins("Pf") || begins("PF") ? "a PFM image"
+                     : begins("PK\x03\x04")         ? "a zip archive"
+                                                    : nullptr;
+  if (kind == nullptr) return {};
+  return fmt::format("is {}, which is not read; depth is expected as a PNG of 16 bits", kind);
+}
+
 std::string read_bytes(const std::string& path, Bytes& bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -101,8 +117,10 @@ ImageRead read_image(const std::string& path) {
     if (fault.empty()) {
       // The orientation tag is ignored by IMREAD_UNCHANGED, as it must be: calibrations speak of stored
       // pixels.
-      result.image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-      if (result.image.empty()) fault = "is no image that can be decoded";
+      fault = other_format(bytes);
+      result.is_other_format = !fault.empty();
+      if (fault.empty()) result.image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+      if (fault.empty() && result.image.empty()) fault = "is no image that can be decoded";
     }
     if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);
   } catch (const std::exception& error) {

@@ -9,6 +9,8 @@ namespace stillpoint {
 struct ImageRead {
   cv::Mat image;  ///< the file's own depth and channels (colour as BGR); empty when it could not be read
   std::string problem;  ///< one sentence, empty when all is well
+  bool is_other_format =
+      false;  ///< whole, as far as one sees, but in a format that is not read (NumPy, OpenEXR)
 };
 
 /// Reads a PNG, JPEG or other image that OpenCV decodes. A PNG is checked chunk by chunk and a JPEG for its

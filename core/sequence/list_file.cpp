@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 
@@ -12,12 +13,61 @@
 namespace stillpoint {
 namespace {
 
+constexpr std::size_t kFewLines = 4;  // below, a repeat says nothing about a list
+
+/// A line that holds no entry.
+class MalformedLine : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 double read_stamp(const std::string& path, int line, std::string_view text, const char* expected) {
   const auto stamp = parse_number(text);
   if (!stamp || !std::isfinite(*stamp))
-    throw InputError(
+    throw MalformedLine(
         fmt::format("{}:{}: found {} as a timestamp, expected {}", path, line, in_quotes(text), expected));
   return *stamp;
+}
+
+/// Whether a first line names columns instead of filling them.
+bool is_header(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto columns = split_columns(lower);
+  if (columns.empty() || parse_number(columns[0])) return false;
+  return lower.find("time") != std::string::npos || lower.find("stamp") != std::string::npos ||
+         lower.find("file") != std::string::npos;
+}
+
+/// The entries of a list's lines, one by one by `read`; those it finds malformed are skipped as long as they
+/// are few.
+template <typename T, typename Read>
+std::vector<T> read_lines(const std::string& path, const char* expected, std::vector<std::string>& warnings,
+                          const Read& read) {
+  std::vector<TextLine> lines = read_text_lines(path);
+  if (!lines.empty() && is_header(lines.front().text)) lines.erase(lines.begin());
+  std::vector<T> entries;
+  std::string fault, last_fault;
+  std::size_t faults = 0;
+  for (const TextLine& line : lines) {
+    try {
+      entries.push_back(read(line));
+      last_fault.clear();
+    } catch (const MalformedLine& malformed) {
+      if (faults++ == 0) fault = malformed.what();
+      last_fault = malformed.what();
+    }
+  }
+  if (entries.empty() && fault.empty())
+    throw InputError(fmt::format("{}: names no images, expected {}", path, expected));
+  const bool cut_short = faults == 1 && !last_fault.empty() && !entries.empty() &&
+                         split_columns(lines.back().text).size() < split_columns(lines.front().text).size();
+  if (entries.empty() || (2 * faults >= lines.size() && !cut_short)) throw InputError(fault);
+  if (cut_short)
+    warnings.push_back(fmt::format("{}; the last line was cut short and skipped", fault));
+  else if (faults > 0)
+    warnings.push_back(fmt::format("{}; {} such line(s) of {} were skipped", fault, faults, lines.size()));
+  return entries;
 }
 
 /// Sorts by time and drops repeated stamps; `key` gives an element's colour entry.
@@ -39,30 +89,34 @@ void put_in_order(std::vector<T>& entries, const Key& key, const std::string& pa
   const int line = key(*(repeat + 1)).line;
   const std::size_t before = entries.size();
   entries.erase(std::unique(entries.begin(), entries.end(), same), entries.end());
-  warnings.push_back(fmt::format("{}:{}: the stamp was there before; {} such line(s) were dropped", path,
-                                 line, before - entries.size()));
+  const std::size_t repeats = before - entries.size();
+  if (before >= kFewLines && 2 * repeats > before)
+    throw InputError(fmt::format(
+        "{}:{}: {} of {} stamps are there before: they were written with too few digits to tell frames apart",
+        path, line, repeats, before));
+  warnings.push_back(
+      fmt::format("{}:{}: the stamp was there before; {} such line(s) were dropped", path, line, repeats));
 }
 
-bool lies_in(std::string_view file, std::string_view folder) {
-  if (file.starts_with("./")) file.remove_prefix(2);
-  return file.starts_with(folder) || file.find(fmt::format("/{}", folder)) != std::string_view::npos;
+/// Whether a name lies in a folder of depth: `depth/`, `aligned_depth/`, ….
+bool lies_in_depth(std::string_view file) {
+  const auto end = file.find_last_of("/\\");
+  return end != std::string_view::npos && file.substr(0, end).find("depth") != std::string_view::npos;
 }
 
 }  // namespace
 
 std::vector<ListEntry> read_list(const std::string& path, std::vector<std::string>& warnings) {
   constexpr const char* kExpected = "a line of 'timestamp filename'";
-  std::vector<ListEntry> entries;
-  for (const TextLine& line : read_text_lines(path)) {
+  auto entries = read_lines<ListEntry>(path, kExpected, warnings, [&](const TextLine& line) {
     const auto columns = split_columns(line.text);
     if (columns.size() < 2)
-      throw InputError(
+      throw MalformedLine(
           fmt::format("{}:{}: found {}, expected {}", path, line.number, in_quotes(line.text), kExpected));
     const double stamp = read_stamp(path, line.number, columns[0], kExpected);
     const auto name_at = static_cast<std::size_t>(columns[1].data() - line.text.data());
-    entries.push_back({stamp, line.text.substr(name_at), line.number});
-  }
-  if (entries.empty()) throw InputError(fmt::format("{}: names no images, expected {}", path, kExpected));
+    return ListEntry{stamp, line.text.substr(name_at), line.number};
+  });
   put_in_order(
       entries, [](const ListEntry& e) -> const ListEntry& { return e; }, path, warnings);
   return entries;
@@ -70,34 +124,21 @@ std::vector<ListEntry> read_list(const std::string& path, std::vector<std::strin
 
 std::vector<ListedPair> read_associations(const std::string& path, std::vector<std::string>& warnings) {
   constexpr const char* kExpected = "a line of 't_rgb rgb/FILE t_depth depth/FILE'";
-  std::vector<ListedPair> pairs;
-  for (const TextLine& line : read_text_lines(path)) {
+  auto pairs = read_lines<ListedPair>(path, kExpected, warnings, [&](const TextLine& line) {
     const auto columns = split_columns(line.text);
     if (columns.size() != 4)
-      throw InputError(fmt::format("{}:{}: found {} columns in {}, expected {}", path, line.number,
-                                   columns.size(), in_quotes(line.text), kExpected));
-    ListEntry first{read_stamp(path, line.number, columns[0], kExpected), std::string(columns[1]),
-                    line.number};
-    ListEntry second{read_stamp(path, line.number, columns[2], kExpected), std::string(columns[3]),
-                     line.number};
-    const bool depth_first = lies_in(first.file, "depth") && !lies_in(second.file, "depth");
-    if (depth_first) std::swap(first, second);
-    pairs.push_back({std::move(first), std::move(second)});
-  }
-  if (pairs.empty()) throw InputError(fmt::format("{}: names no images, expected {}", path, kExpected));
+      throw MalformedLine(fmt::format("{}:{}: found {} columns in {}, expected {}", path, line.number,
+                                      columns.size(), in_quotes(line.text), kExpected));
+    ListedPair pair{
+        {read_stamp(path, line.number, columns[0], kExpected), std::string(columns[1]), line.number},
+        {read_stamp(path, line.number, columns[2], kExpected), std::string(columns[3]), line.number}};
+    if (lies_in_depth(pair.colour.file) && !lies_in_depth(pair.depth.file))
+      std::swap(pair.colour, pair.depth);
+    return pair;
+  });
   put_in_order(
       pairs, [](const ListedPair& p) -> const ListEntry& { return p.colour; }, path, warnings);
   return pairs;
-}
-
-bool are_frame_numbers(const std::vector<double>& stamps) {
-  constexpr double kMostFrames = 1e6;
-  double smallest_step = kMostFrames;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (stamps[i] < 0 || stamps[i] >= kMostFrames || stamps[i] != std::floor(stamps[i])) return false;
-    if (i > 0) smallest_step = std::min(smallest_step, stamps[i] - stamps[i - 1]);
-  }
-  return smallest_step == 1.0;
 }
 
 }  // namespace stillpoint

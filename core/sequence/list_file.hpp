@@ -18,21 +18,21 @@ struct ListedPair {
   ListEntry colour, depth;
 };
 
-/// Reads `rgb.txt`, `depth.txt` or `mask.txt`: `timestamp filename` a line, `#` starts a comment; the name
-/// may hold single blanks. Entries come back by strictly increasing time: lines out of order are sorted and,
-/// of equal stamps, the first is kept, each told in `warnings`.
-/// @throws InputError with file and line for a malformed line, and for a list without entries.
+/// Reads `rgb.txt`, `depth.txt` or `mask.txt`: `timestamp filename` a line, parted by blanks, tabs, commas or
+/// semicolons, `#` starts a comment, and a first line that names the columns is passed over; the name may
+/// hold single blanks. Entries come back by strictly increasing time: lines out of order are sorted and, of
+/// equal stamps, the first is kept; a last line that was cut short and single malformed lines are skipped;
+/// each is told in `warnings`.
+/// @throws InputError with file and line where half of the lines or more are malformed or repeat a stamp, and
+/// for a list
+///         without entries.
 [[nodiscard]] std::vector<ListEntry> read_list(const std::string& path, std::vector<std::string>& warnings);
 
 /// Reads `associations.txt`: `t_rgb rgb/… t_depth depth/…`, or depth first as ICL-NUIM writes it; the order
-/// is told by which name lies in `depth/`. Sorted and cleared of repeats as read_list does, by the colour
-/// stamp.
+/// is told by which name lies in a folder of depth. Sorted and cleared of repeats as read_list does, by the
+/// colour stamp.
 /// @throws InputError as read_list does.
 [[nodiscard]] std::vector<ListedPair> read_associations(const std::string& path,
                                                         std::vector<std::string>& warnings);
-
-/// True when stamps are frame numbers (0, 1, 2, …; ICL-NUIM) rather than seconds: whole numbers all of them,
-/// below a million, the smallest step being 1.
-[[nodiscard]] bool are_frame_numbers(const std::vector<double>& stamps);
 
 }  // namespace stillpoint

@@ -14,7 +14,7 @@ std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenO
   constexpr std::string_view kGenerated = "generated:";
   if (where.starts_with(kGenerated))
     return make_generated_sequence(where.substr(kGenerated.size()), options.frames, options.seed);
-  auto folder = std::make_unique<TumFolder>(where, options.camera);
+  auto folder = std::make_unique<TumFolder>(where, options);
   if (options.frames < 0)
     throw InputError(fmt::format("{}: expected a number of frames, not {}", where, options.frames));
   if (options.frames == 0) return folder;

@@ -6,10 +6,15 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/pose_convention.hpp"
 #include "core/geometry/trajectory.hpp"
 #include "core/sequence/frame.hpp"
+#include "core/sequence/stamps.hpp"
 
 namespace stillpoint {
+
+/// A part of a sequence that may be missing.
+enum class FramePart { depth, masks, truth };
 
 /// Where frames come from. Reading is const and safe from several threads at once; the same index always
 /// gives the same bytes.
@@ -33,14 +38,21 @@ class FrameSource {
   [[nodiscard]] virtual bool has_depth() const = 0;
   /// True when truth() may give masks.
   [[nodiscard]] virtual bool has_masks() const = 0;
+  /// Why a part that is there is of no use, one sentence; empty where it is of use, or not there at all.
+  [[nodiscard]] virtual std::string why_not(FramePart) const { return {}; }
   /// What was mended while opening, one sentence each (unsorted lists, dropped duplicates, …).
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
 };
 
 struct OpenOptions {
-  std::optional<Camera> camera;  ///< overrides what the folder's name says
-  int frames = 0;                ///< the first so many alone; 0 = all, a generated kind's own length
-  unsigned seed = 1;             ///< generated sequences
+  std::optional<Camera> camera;          ///< overrides what the folder's name says
+  int frames = 0;                        ///< the first so many alone; 0 = all, a generated kind's own length
+  unsigned seed = 1;                     ///< generated sequences
+  double frame_rate = kFrameNumberRate;  ///< Hz, of stamps that are frame numbers
+  std::optional<double> depth_scale{};   ///< depth image units a metre; overrides the camera's
+  PoseConvention truth = PoseConvention::as_written;  ///< what the ground truth's poses mean
+  bool inverted_masks = false;                        ///< white is what stands still
+  double depth_offset_s = 0.0;                        ///< added to the depth images' stamps
 };
 
 /// Opens `FOLDER` (TUM RGB-D layout) or `generated:KIND`.

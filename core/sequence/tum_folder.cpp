@@ -9,6 +9,8 @@
 
 #include "core/error.hpp"
 #include "core/sequence/association.hpp"
+#include "core/sequence/folder_camera.hpp"
+#include "core/sequence/folder_truth.hpp"
 #include "core/sequence/image_file.hpp"
 
 namespace stillpoint {
@@ -16,9 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFrameRate = 30.0;  // Hz, of sequences whose stamps are frame numbers
 constexpr double kTruthMaxGap =
     0.05;  // s, between the ground-truth poses a frame's pose is interpolated from
+constexpr double kFewestJoined = 0.7;                     // of the colour images with depth; fewer are told
+constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
+constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted
 
 void check_folder(const std::string& folder) {
   std::error_code error;
@@ -37,127 +41,113 @@ bool is_there(const std::string& path) {
   return fs::exists(path, none);
 }
 
-/// `groundtruth.txt`, or the first of ICL-NUIM's `*.gt.freiburg`; nothing when neither is there.
-std::optional<std::string> find_ground_truth(const std::string& folder) {
-  const std::string usual = (fs::path(folder) / "groundtruth.txt").string();
-  if (is_there(usual)) return usual;
-  std::vector<std::string> others;
-  std::error_code none;
-  for (const auto& file : fs::directory_iterator(folder, none))
-    if (file.path().string().ends_with(".gt.freiburg")) others.push_back(file.path().string());
-  if (others.empty()) return std::nullopt;
-  return *std::min_element(others.begin(), others.end());
-}
-
-std::vector<double> stamps_of(const std::vector<ListEntry>& entries) {
-  std::vector<double> stamps;
-  stamps.reserve(entries.size());
-  for (const ListEntry& entry : entries) stamps.push_back(entry.timestamp);
-  return stamps;
-}
-
 }  // namespace
 
-TumFolder::TumFolder(const std::string& folder, const std::optional<Camera>& camera) : folder_(folder) {
+TumFolder::TumFolder(const std::string& folder, const OpenOptions& options)
+    : folder_(folder), options_(options) {
   check_folder(folder);
   fs::path whole = fs::absolute(folder).lexically_normal();
   if (whole.filename().empty()) whole = whole.parent_path();
   name_ = whole.filename().string();
   read_lists();
-  read_ground_truth();
-  settle_stamps();
-  choose_camera(camera);
+  FolderTruth truth = read_folder_truth(folder_, stamps(), unit_, options_.frame_rate, options_.truth);
+  ground_truth_ = std::move(truth.poses);
+  if (!truth.why_not.empty()) why_not_[FramePart::truth] = truth.why_not;
+  warnings_.insert(warnings_.end(), truth.warnings.begin(), truth.warnings.end());
+  const cv::Size size = choose_camera();
+  if (has_depth_) survey_depth_images(size);
+  if (has_masks_) survey_mask_images(size);
+  question_convention();
+  for (const auto& [part, sentence] : why_not_) warnings_.push_back(sentence);
 }
 
 std::string TumFolder::path_of(const std::string& file) const { return (fs::path(folder_) / file).string(); }
 
+std::string TumFolder::why_not(FramePart part) const {
+  const auto known = why_not_.find(part);
+  return known == why_not_.end() ? std::string() : known->second;
+}
+
+std::vector<double> TumFolder::stamps() const {
+  std::vector<double> all;
+  all.reserve(frames_.size());
+  for (const Entry& frame : frames_) all.push_back(frame.colour.timestamp);
+  return all;
+}
+
 void TumFolder::read_lists() {
-  const std::string associations = path_of("associations.txt"), colours = path_of("rgb.txt");
-  if (is_there(associations)) {
-    colour_list_ = associations;
-    for (ListedPair& pair : read_associations(associations, warnings_))
-      frames_.push_back({std::move(pair.colour), std::move(pair.depth), {}});
-    has_depth_ = true;
+  FolderLists lists = read_folder_lists(folder_, options_.frame_rate);
+  warnings_ = std::move(lists.warnings);
+  colour_list_ = lists.colours.path;
+  unit_ = lists.unit;
+  for (ListEntry& colour : lists.colours.entries) frames_.push_back({std::move(colour), {}, {}});
+  if (lists.depths) join_depth(lists);
+  if (lists.masks) join_masks(*lists.masks);
+}
+
+void TumFolder::join_depth(FolderLists& lists) {
+  depth_list_ = lists.depths->path;
+  for (ListEntry& depth : lists.depths->entries) depth.timestamp += options_.depth_offset_s;
+  has_depth_ = true;
+  if (lists.paired) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].depth = std::move(lists.depths->entries[i]);
     const auto far = std::find_if(frames_.begin(), frames_.end(), [](const Entry& e) {
       return std::abs(e.colour.timestamp - e.depth->timestamp) >= kAssociationTolerance;
     });
     if (far != frames_.end())
       warnings_.push_back(fmt::format("{}:{}: pairs images {:.3f} s apart; it was taken at its word",
-                                      associations, far->colour.line,
+                                      depth_list_, far->colour.line,
                                       std::abs(far->colour.timestamp - far->depth->timestamp)));
-  } else if (is_there(colours)) {
-    colour_list_ = colours;
-    for (ListEntry& entry : read_list(colours, warnings_)) frames_.push_back({std::move(entry), {}, {}});
-    if (is_there(path_of("depth.txt"))) {
-      join_list("depth.txt", &Entry::depth);
-      has_depth_ = true;
-    }
-  } else {
-    throw InputError(fmt::format(
-        "{}: holds neither rgb.txt nor associations.txt, expected a folder in the TUM RGB-D layout",
-        folder_));
+    return;
   }
-  if (is_there(path_of("mask.txt"))) {
-    join_list("mask.txt", &Entry::mask);
-    has_masks_ = true;
-    const auto gone = [this](const Entry& e) { return e.mask && !is_there(path_of(e.mask->file)); };
-    if (const auto first = std::find_if(frames_.begin(), frames_.end(), gone); first != frames_.end())
-      warnings_.push_back(fmt::format(
-          "{}:{}: {} is missing; {} mask(s) are, and their frames have no true mask", path_of("mask.txt"),
-          first->mask->line, first->mask->file, std::count_if(frames_.begin(), frames_.end(), gone)));
+  const std::size_t listed = lists.depths->entries.size();
+  const double later = lists.depths->entries.front().timestamp - frames_.front().colour.timestamp;
+  const int joined = join(*lists.depths, &Entry::depth);
+  const std::string begins = fmt::format("the first depth image is {:.3f} s {} than the first colour image",
+                                         std::abs(later), later > 0 ? "later" : "earlier");
+  if (joined == 0) {
+    has_depth_ = false;
+    why_not_[FramePart::depth] = fmt::format(
+        "{}: none of its {} stamps is within {} s of a colour image's: {} (`--depth-offset {:.6f}` lays "
+        "first on "
+        "first)",
+        depth_list_, listed, kAssociationTolerance, begins, options_.depth_offset_s - later);
+  } else if (joined < kFewestJoined * static_cast<double>(frames_.size())) {
+    warnings_.push_back(
+        fmt::format("{}: {} of {} colour images have no depth image within {} s; {} (if its "
+                    "clock is, `--depth-offset {:.6f}` mends that)",
+                    depth_list_, frames_.size() - static_cast<std::size_t>(joined), frames_.size(),
+                    kAssociationTolerance, begins, options_.depth_offset_s - later));
   }
 }
 
-void TumFolder::join_list(const std::string& list, std::optional<ListEntry> Entry::*part) {
-  const std::vector<ListEntry> listed = read_list(path_of(list), warnings_);
-  std::vector<double> stamps;
-  stamps.reserve(frames_.size());
-  for (const Entry& frame : frames_) stamps.push_back(frame.colour.timestamp);
-  const auto pairs = associate(stamps, stamps_of(listed));
-  for (const AssociatedPair& pair : pairs) frames_[pair.first].*part = listed[pair.second];
-  if (pairs.empty())
-    warnings_.push_back(fmt::format("{}: none of its stamps is within {} s of a colour image's",
-                                    path_of(list), kAssociationTolerance));
-}
-
-void TumFolder::read_ground_truth() {
-  if (const auto path = find_ground_truth(folder_)) ground_truth_ = read_tum_trajectory(*path, &warnings_);
-}
-
-void TumFolder::settle_stamps() {
-  std::vector<double> stamps, truth_stamps;
-  for (const Entry& frame : frames_) stamps.push_back(frame.colour.timestamp);
-  if (!are_frame_numbers(stamps)) return;
-  for (const StampedPose& pose : ground_truth_) truth_stamps.push_back(pose.timestamp);
-  for (Entry& frame : frames_) frame.colour.timestamp /= kFrameRate;
-  std::string sentence = fmt::format("{}: the stamps are frame numbers; they were read as frames at {} Hz",
-                                     colour_list_, kFrameRate);
-  if (are_frame_numbers(truth_stamps))
-    for (StampedPose& pose : ground_truth_) pose.timestamp /= kFrameRate;
-  else if (!truth_stamps.empty())
-    sentence += ", those of the ground truth as seconds";
-  warnings_.push_back(sentence);
-}
-
-void TumFolder::choose_camera(const std::optional<Camera>& camera) {
-  const fs::path whole = fs::absolute(folder_).lexically_normal();
-  if (camera) {
-    camera_ = *camera;
-  } else if (is_there(path_of("camera.toml"))) {
-    camera_ = read_camera(path_of("camera.toml"));
-  } else if (const auto own = camera_from_folder_name(name_)) {
-    camera_ = *own;
-  } else if (const auto parents =
-                 camera_from_folder_name((whole.filename().empty() ? whole.parent_path() : whole)
-                                             .parent_path()
-                                             .filename()
-                                             .string())) {
-    camera_ = *parents;
-  } else {
-    camera_ = camera_by_name("ros_default");
-    warnings_.push_back(fmt::format("{}: the name tells no camera; {} is assumed", folder_, camera_.name));
+void TumFolder::join_masks(const ImageList& masks) {
+  mask_list_ = masks.path;
+  has_masks_ = true;
+  if (join(masks, &Entry::mask) == 0) {
+    has_masks_ = false;
+    why_not_[FramePart::masks] = fmt::format("{}: none of its stamps is within {} s of a colour image's",
+                                             mask_list_, kAssociationTolerance);
+    return;
   }
+  const auto gone = [this](const Entry& e) { return e.mask && !is_there(path_of(e.mask->file)); };
+  if (const auto first = std::find_if(frames_.begin(), frames_.end(), gone); first != frames_.end())
+    warnings_.push_back(fmt::format(
+        "{}:{}: {} is missing; {} mask(s) are, and their frames have no true mask", mask_list_,
+        first->mask->line, first->mask->file, std::count_if(frames_.begin(), frames_.end(), gone)));
+}
 
+int TumFolder::join(const ImageList& list, Part part) {
+  std::vector<double> listed;
+  for (const ListEntry& image : list.entries) listed.push_back(image.timestamp);
+  const auto pairs = associate(stamps(), listed);
+  for (const AssociatedPair& pair : pairs) frames_[pair.first].*part = list.entries[pair.second];
+  return static_cast<int>(pairs.size());
+}
+
+cv::Size TumFolder::choose_camera() {
+  camera_ = camera_of_folder(folder_, options_.camera, warnings_);
+  if (options_.depth_scale) camera_.depth_scale = *options_.depth_scale;
   std::string first_problem;
   for (const Entry& frame : frames_) {
     const ImageRead image = read_image(path_of(frame.colour.file));
@@ -165,16 +155,80 @@ void TumFolder::choose_camera(const std::optional<Camera>& camera) {
       if (first_problem.empty()) first_problem = fmt::format("line {}: {}", frame.colour.line, image.problem);
       continue;
     }
-    const cv::Size size = image.image.size();
-    if (size == cv::Size(camera_.width, camera_.height)) return;
-    warnings_.push_back(
-        fmt::format("{}: images are {}x{} px; the intrinsics of camera {} ({}x{} px) were scaled to them",
-                    folder_, size.width, size.height, camera_.name, camera_.width, camera_.height));
-    camera_ = camera_.scaled_to(size.width, size.height);
-    return;
+    camera_ = camera_for_size(camera_, image.image.size(), folder_, warnings_);
+    return image.image.size();
   }
   throw InputError(
       fmt::format("{}: none of its {} images can be read; {}", colour_list_, frames_.size(), first_problem));
+}
+
+ImagePaths TumFolder::sample(Part part, std::size_t count) const {
+  std::vector<const ListEntry*> listed;
+  for (const Entry& frame : frames_)
+    if (frame.*part) listed.push_back(&*(frame.*part));
+  ImagePaths paths;
+  for (std::size_t i = 0; i < std::min(count, listed.size()); ++i) {
+    const std::size_t at = listed.size() <= count ? i : i * (listed.size() - 1) / (count - 1);
+    paths.push_back(path_of(listed[at]->file));
+  }
+  return paths;
+}
+
+void TumFolder::survey_depth_images(cv::Size colour) {
+  const DepthSurvey survey = survey_depth(sample(&Entry::depth, kDepthSample), colour);
+  if (survey.fit == 0 && survey.read > 0) {
+    has_depth_ = false;
+    why_not_[FramePart::depth] = survey.fault;
+    return;
+  }
+  const auto doubt = doubt_scale(survey, camera_.depth_scale);
+  if (!doubt) return;
+  std::string sentence = fmt::format(
+      "{}: at {:g} units a metre (camera {}) depth reads {:.2f} to {:.2f} m, {:.2f} m in the middle, which "
+      "is no range of a depth "
+      "camera",
+      depth_list_, camera_.depth_scale, camera_.name, doubt->nearest_m, doubt->farthest_m, doubt->median_m);
+  if (doubt->likely_scale) {
+    const double ratio = camera_.depth_scale / *doubt->likely_scale;
+    sentence += fmt::format("; at {:g}{} it would be {:.2f} to {:.2f} m: `--depth-scale {:g}` reads it so",
+                            *doubt->likely_scale, *doubt->likely_scale == 1000 ? " (millimetres)" : "",
+                            doubt->nearest_m * ratio, doubt->farthest_m * ratio, *doubt->likely_scale);
+  }
+  warnings_.push_back(sentence);
+}
+
+void TumFolder::survey_mask_images(cv::Size colour) {
+  const MaskSurvey survey = survey_masks(sample(&Entry::mask, kMaskSample));
+  if (survey.read == 0) return;
+  mask_coding_ = survey.coding;
+  if (survey.size != colour) {
+    has_masks_ = false;
+    why_not_[FramePart::masks] =
+        fmt::format("{}: the masks are {}x{} px, but the colour images are {}x{} px; none is used",
+                    mask_list_, survey.size.width, survey.size.height, colour.width, colour.height);
+    return;
+  }
+  if (survey.coding == MaskCoding::nonzero)
+    warnings_.push_back(survey.labels <= 1
+                            ? fmt::format("{}: the masks hold 0 and {:g}; what is {:g} is read as moving",
+                                          mask_list_, survey.largest, survey.largest)
+                            : fmt::format("{}: the masks hold {} labels; whatever is not 0 is read as moving",
+                                          mask_list_, survey.labels));
+  const double moving = options_.inverted_masks ? 1.0 - survey.moving_share : survey.moving_share;
+  if (moving > kMostMoving)
+    warnings_.push_back(fmt::format(
+        "{}: {:.0f} % of the masks' pixels are said to move; if white is what stands still, {} reads them so",
+        mask_list_, 100.0 * moving,
+        options_.inverted_masks ? "leaving out `--invert-masks`" : "`--invert-masks`"));
+}
+
+void TumFolder::question_convention() {
+  if (camera_.name == "bonn" && !ground_truth_.empty() && options_.truth == PoseConvention::as_written)
+    warnings_.push_back(
+        fmt::format("{}: Bonn's ground truth is the pose of a marker body, turned some 173 deg from the "
+                    "camera; relative errors "
+                    "mean nothing without `--truth bonn`, which reads it as the camera's",
+                    folder_));
 }
 
 double TumFolder::timestamp(int index) const { return entry(index).colour.timestamp; }
@@ -209,15 +263,13 @@ void TumFolder::read_depth(const Entry& listed, Frame& frame) const {
   ImageRead depth = read_image(path);
   if (depth.image.empty())
     frame.problem = depth.problem;
-  else if (depth.image.type() != CV_16UC1)
-    frame.problem = fmt::format("{} holds {} channel(s) of {} bits, expected depth as 1 channel of 16 bits",
-                                path, depth.image.channels(), 8 * depth.image.elemSize1());
-  else if (depth.image.size() != frame.gray.size())
-    frame.problem = fmt::format("{} is {}x{} px, but its colour image is {}x{} px", path, depth.image.cols,
-                                depth.image.rows, frame.gray.cols, frame.gray.rows);
+  else if (std::string fault = fault_of_depth(path, depth.image, frame.gray.size()); !fault.empty())
+    frame.problem = std::move(fault);
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
   else {
+    // The largest value is what sensors write where they measured nothing.
+    depth.image.setTo(0, depth.image == 65535);
     depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     frame.depth_timestamp = listed.depth->timestamp;
   }
@@ -230,10 +282,12 @@ FrameTruth TumFolder::truth(int index) const {
   if (!truth.world_from_camera)
     if (const auto near = nearest_pose(ground_truth_, listed.colour.timestamp, kAssociationTolerance))
       truth.world_from_camera = ground_truth_[*near].world_from_camera;
-  if (listed.mask) {
+  if (listed.mask && has_masks_) {
     const ImageRead mask = read_image(path_of(listed.mask->file));
-    if (!mask.image.empty() && mask.image.cols == camera_.width && mask.image.rows == camera_.height)
-      truth.moving = to_gray(to_8bit(mask.image)) > 127;
+    if (!mask.image.empty() && mask.image.cols == camera_.width && mask.image.rows == camera_.height) {
+      truth.moving = moving_pixels(mask.image, mask_coding_);
+      if (options_.inverted_masks) truth.moving = truth.moving == 0;
+    }
   }
   return truth;
 }

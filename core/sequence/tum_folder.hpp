@@ -1,28 +1,30 @@
 #pragma once
 
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/sequence/list_file.hpp"
+#include "core/sequence/folder_lists.hpp"
+#include "core/sequence/image_survey.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
 
-/// A folder in the TUM RGB-D layout: `rgb.txt` or `associations.txt` (which goes first), and, where they are,
-/// `depth.txt`, `groundtruth.txt` (or ICL-NUIM's `*.gt.freiburg`), `mask.txt` and `camera.toml`. Bonn and
-/// ICL-NUIM folders share it; stamps that are frame numbers are read as frames at 30 Hz.
+/// A folder in the TUM RGB-D layout or near it: which lists and images it may hold is said in
+/// folder_lists.hpp, which ground truth in folder_truth.hpp, which camera in folder_camera.hpp. Bonn and
+/// ICL-NUIM folders share it.
 ///
-/// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, as
-/// `associations.txt` pairs them where that is given.
+/// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, or as
+/// `associations.txt` pairs them where that is given. Whatever can be known before the first frame is told
+/// then, in warnings() and why_not(): a few images of each kind are looked at on opening.
 class TumFolder final : public FrameSource {
  public:
-  /// @param camera overrides `camera.toml`, which overrides what the folder's or its parent's name says
-  /// @throws InputError in one sentence when the folder, its lists or its ground truth cannot be used, or
-  /// when not
-  ///         one of its colour images can be read.
-  explicit TumFolder(const std::string& folder, const std::optional<Camera>& camera = {});
+  /// @param options camera, frame_rate, depth_scale, truth, inverted_masks and depth_offset_s are used
+  /// @throws InputError in one sentence when the folder, its lists or its camera file cannot be used, or when
+  /// not one of
+  ///         its colour images can be read.
+  explicit TumFolder(const std::string& folder, const OpenOptions& options = {});
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Camera& camera() const override { return camera_; }
@@ -33,6 +35,7 @@ class TumFolder final : public FrameSource {
   [[nodiscard]] const Trajectory& ground_truth() const override { return ground_truth_; }
   [[nodiscard]] bool has_depth() const override { return has_depth_; }
   [[nodiscard]] bool has_masks() const override { return has_masks_; }
+  [[nodiscard]] std::string why_not(FramePart part) const override;
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:
@@ -40,21 +43,31 @@ class TumFolder final : public FrameSource {
     ListEntry colour;
     std::optional<ListEntry> depth, mask;
   };
+  using Part = std::optional<ListEntry> Entry::*;
 
   void read_lists();
-  void join_list(const std::string& list, std::optional<ListEntry> Entry::*part);
-  void read_ground_truth();
-  void settle_stamps();
-  void choose_camera(const std::optional<Camera>& camera);
+  void join_depth(FolderLists& lists);
+  void join_masks(const ImageList& masks);
+  int join(const ImageList& list, Part part);
+  [[nodiscard]] cv::Size choose_camera();
+  void survey_depth_images(cv::Size colour);
+  void survey_mask_images(cv::Size colour);
+  void question_convention();
+  [[nodiscard]] ImagePaths sample(Part part, std::size_t count) const;
   void read_depth(const Entry& entry, Frame& frame) const;
   [[nodiscard]] std::string path_of(const std::string& file) const;
   [[nodiscard]] const Entry& entry(int index) const { return frames_.at(static_cast<std::size_t>(index)); }
+  [[nodiscard]] std::vector<double> stamps() const;
 
-  std::string folder_, name_, colour_list_;
+  std::string folder_, name_, colour_list_, depth_list_, mask_list_;
+  OpenOptions options_;
   std::vector<Entry> frames_;
+  StampUnit unit_ = StampUnit::seconds;
   Camera camera_;
   Trajectory ground_truth_;
   bool has_depth_ = false, has_masks_ = false;
+  MaskCoding mask_coding_ = MaskCoding::bright;
+  std::map<FramePart, std::string> why_not_;
   std::vector<std::string> warnings_;
 };
 

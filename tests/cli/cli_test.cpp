@@ -80,8 +80,8 @@ TEST_F(Evaluate, BadInputGetsOneSentence) {
   expect_one_sentence(run_cli({"evaluate", truth, folder.path("none.txt")}), "none.txt: cannot be read");
   expect_one_sentence(run_cli({"evaluate", folder.path("none"), estimate}), "none: cannot be read");
   expect_one_sentence(run_cli({"evaluate", folder.path(), estimate}), "neither rgb.txt nor associations.txt");
-  folder.write("estimate.txt", "0 0 0 0 0 0 0 1\n1 0 0 nan 0 0 0 1\n");
-  expect_one_sentence(evaluate(), "estimate.txt:2: found 'nan'");
+  folder.write("estimate.txt", "1 0 0 nan 0 0 0 1\n");
+  expect_one_sentence(evaluate(), "estimate.txt:1: found 'nan'");
   folder.write("estimate.txt", "0 0 0 0 0 0 0 0\n");
   expect_one_sentence(evaluate(), "estimate.txt:1: found a quaternion of length 0");
   folder.write("estimate.txt", "");

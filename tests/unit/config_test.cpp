@@ -1,5 +1,6 @@
 #include "core/config.hpp"
 
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -244,8 +245,9 @@ TEST(PresetFolder, PaperHasThePapersConstants) {
 
 TEST(PresetFolder, UnknownPresetsAreToldWithThoseThereAre) {
   EXPECT_EQ(input_error_of([] { (void)load_config("best"); }),
-            "there is no preset 'best'; the presets are: default, fast, none, paper, stillpoint (or give a "
-            ".toml file)");
+            fmt::format("there is no preset 'best'; the presets are: {} (or give a .toml file)",
+                        fmt::join(preset_names(), ", ")));
+  EXPECT_THAT(preset_names(), testing::IsSupersetOf({"default", "fast", "none", "paper", "stillpoint"}));
 }
 
 }  // namespace

@@ -29,14 +29,39 @@ TEST(Se3, QuarterTurnAboutZMovesAlongACircle) {
   EXPECT_NEAR(rotation_angle(pose.linear()), std::numbers::pi / 2, 1e-12);
 }
 
-TEST(Camera, UndistortAndDistortAreInverse) {
-  const Camera camera = camera_by_name("freiburg1");
-  for (const cv::Point2f pixel : {cv::Point2f(320, 240), cv::Point2f(60, 50), cv::Point2f(600, 400)}) {
-    const auto straight = camera.undistort({pixel});
-    const Eigen::Vector2d back = camera.distort({straight[0].x, straight[0].y});
-    EXPECT_NEAR(back.x(), pixel.x, 0.05);
-    EXPECT_NEAR(back.y(), pixel.y, 0.05);
-  }
+/// A wide lens: the left camera of the EuRoC data set.
+Camera wide_camera() {
+  Camera camera;
+  camera.width = 752, camera.height = 480;
+  camera.fx = 458.654, camera.fy = 457.296, camera.cx = 367.215, camera.cy = 248.375;
+  camera.k1 = -0.28340811, camera.k2 = 0.07395907, camera.p1 = 0.00019359, camera.p2 = 1.76187114e-05;
+  return camera;
+}
+
+TEST(Camera, UndistortAndDistortAreInverseOverTheWholeImage) {
+  for (const Camera& camera :
+       {camera_by_name("freiburg1"), camera_by_name("freiburg2"), camera_by_name("bonn"), wide_camera()})
+    for (int y = 0; y <= camera.height; y += 20)
+      for (int x = 0; x <= camera.width; x += 20) {
+        const Eigen::Vector2d pixel(x - 0.5, y - 0.5);
+        const Eigen::Vector2d straight = camera.undistorted(pixel);
+        EXPECT_LT((camera.distort(straight) - pixel).norm(), 1e-6) << camera.name << " " << pixel.transpose();
+        const auto single =
+            camera.undistort({{static_cast<float>(pixel.x()), static_cast<float>(pixel.y())}});
+        EXPECT_LT((Eigen::Vector2d(single[0].x, single[0].y) - straight).norm(), 1e-4);
+      }
+}
+
+TEST(Camera, DistortionIsBrownAndConradys) {
+  // By hand: x = 0.5, y = -0.25, r2 = 0.3125.
+  Camera camera;
+  camera.k1 = 0.1, camera.k2 = -0.2, camera.k3 = 0.3, camera.p1 = 0.01, camera.p2 = -0.02;
+  const double radial = 1 + 0.3125 * (0.1 + 0.3125 * (-0.2 + 0.3125 * 0.3));
+  const double x = 0.5 * radial + 2 * 0.01 * 0.5 * -0.25 - 0.02 * (0.3125 + 2 * 0.25);
+  const double y = -0.25 * radial + 0.01 * (0.3125 + 2 * 0.0625) + 2 * -0.02 * 0.5 * -0.25;
+  const Eigen::Vector2d pixel = camera.distort(camera.project({0.5, -0.25, 1.0}));
+  EXPECT_NEAR(pixel.x(), 525 * x + 319.5, 1e-9);
+  EXPECT_NEAR(pixel.y(), 525 * y + 239.5, 1e-9);
 }
 
 TEST(Camera, FolderNamesTellTheCamera) {

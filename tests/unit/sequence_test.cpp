@@ -75,7 +75,7 @@ TEST(ListFile, TellsMalformedLines) {
     folder.write("rgb.txt", text);
     return input_error_of([&] { (void)read_list(folder.path("rgb.txt"), warnings); });
   };
-  EXPECT_THAT(complaint("1.0 a.png\n# x\n2.0\n"), HasSubstr("rgb.txt:3: found '2.0', expected"));
+  EXPECT_THAT(complaint("1.0\n# x\n2.0 a.png\n"), HasSubstr("rgb.txt:1: found '1.0', expected"));
   EXPECT_THAT(complaint("one a.png\n"), HasSubstr("rgb.txt:1: found 'one' as a timestamp"));
   EXPECT_THAT(complaint("nan a.png\n"), HasSubstr("rgb.txt:1: found 'nan' as a timestamp"));
   EXPECT_THAT(complaint("# nothing\n"), HasSubstr("rgb.txt: names no images"));
@@ -95,15 +95,6 @@ TEST(ListFile, AssociationsTellTheirOrderByName) {
   pairs = read_associations(folder.path("a.txt"), warnings);
   EXPECT_EQ(pairs.at(0).depth.file, "./depth/1.png");
   EXPECT_EQ(pairs.at(0).depth.timestamp, 1.5);
-}
-
-TEST(ListFile, FrameNumbersAreTold) {
-  EXPECT_TRUE(are_frame_numbers({0, 1, 2, 5}));
-  EXPECT_FALSE(are_frame_numbers({7}));
-  EXPECT_FALSE(are_frame_numbers({0, 1, 2.5}));
-  EXPECT_FALSE(are_frame_numbers({0, 10, 20}));
-  EXPECT_FALSE(are_frame_numbers({1305031102}));
-  EXPECT_FALSE(are_frame_numbers({}));
 }
 
 TEST(TumFolder, GivesEachColourImageItsDepthAndTruth) {
@@ -321,8 +312,40 @@ TEST(TumFolder, UnusableFoldersAreToldInOneSentence) {
   EXPECT_THAT(complaint(folder.path()), HasSubstr("none of its 2 images can be read; line 1:"));
   write_sequence(folder, 1);
   EXPECT_EQ(open_sequence(folder.path())->size(), 1);
-  folder.write("groundtruth.txt", "100 0 0 0 0 0 0 0\n");
-  EXPECT_THAT(complaint(folder.path()), HasSubstr("groundtruth.txt:1: found a quaternion of length 0"));
+}
+
+TEST(TumFolder, TruthOfNoUseIsSaidToBeThere) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 3);
+  const auto why = [&](const char* truth) {
+    folder.write("groundtruth.txt", truth);
+    const auto source = open_sequence(folder.path());
+    EXPECT_THAT(source->ground_truth(), IsEmpty());
+    EXPECT_FALSE(source->truth(1).world_from_camera);
+    EXPECT_THAT(source->warnings(), testing::Contains(source->why_not(FramePart::truth)));
+    return source->why_not(FramePart::truth);
+  };
+  EXPECT_THAT(why("100 0 0 0 0 0 0 0\n"), HasSubstr("groundtruth.txt:1: found a quaternion of length 0"));
+  EXPECT_THAT(why("# timestamp tx ty tz qx qy qz qw\n"), HasSubstr("groundtruth.txt: holds no poses"));
+  EXPECT_THAT(why("86500 0 0 0 0 0 0 1\n86500.1 0 0 0 0 0 0 1\n"),
+              HasSubstr("begins 86399.800 s after the last frame"));
+  EXPECT_THAT(why("1.5 0 0 0 0 0 0 1\n1.6 0 0 0 0 0 0 1\n"),
+              HasSubstr("ends 98.400 s before the first frame"));
+  std::filesystem::remove(folder.path("groundtruth.txt"));
+  EXPECT_EQ(open_sequence(folder.path())->why_not(FramePart::truth), "");
+}
+
+TEST(TumFolder, OneBadRowOfTruthCostsThatRow) {
+  const TemporaryFolder folder;
+  write_sequence(folder, 4);
+  folder.write("groundtruth.txt",
+               folder.read("groundtruth.txt") + "100.5 nan nan nan nan nan nan nan\n100.6 1 2 3\n");
+  const auto source = open_sequence(folder.path());
+  EXPECT_EQ(source->ground_truth().size(), 4U);
+  EXPECT_EQ(source->why_not(FramePart::truth), "");
+  EXPECT_THAT(source->warnings(),
+              testing::IsSupersetOf({HasSubstr("groundtruth.txt:5: a row of NaN"),
+                                     HasSubstr("groundtruth.txt:6: a row holds no pose")}));
 }
 
 TEST(TumFolder, FoldersWithoutRightsAreTold) {

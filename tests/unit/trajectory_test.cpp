@@ -85,14 +85,16 @@ INSTANTIATE_TEST_SUITE_P(
     TumTrajectory, BadTrajectories,
     testing::Values(BadTrajectory{"", "t.txt: holds no poses"},
                     BadTrajectory{"# only\n\n", "t.txt: holds no poses"},
-                    BadTrajectory{"1 0 0 0 0 0 0 1\n2 0 0 0 nan 0 0 1\n", "t.txt:2: found 'nan' in column 5"},
+                    BadTrajectory{"2 0 0 0 nan 0 0 1\n", "t.txt:1: found 'nan' in column 5"},
                     BadTrajectory{"1 inf 0 0 0 0 0 1\n", "t.txt:1: found 'inf' in column 2"},
                     BadTrajectory{"#\n1 0 0 0 0 0 0 0\n", "t.txt:2: found a quaternion of length 0,"},
                     BadTrajectory{"1 0 0 0 0 0 1 1\n", "t.txt:1: found a quaternion of length 1.414"},
                     BadTrajectory{"1 0 0 0 0 0 1\n", "t.txt:1: found 7 columns"},
                     BadTrajectory{"1 0 0 0 0 0 0 1 9\n", "t.txt:1: found 9 columns"},
                     BadTrajectory{"1 0 0 x 0 0 0 1\n", "t.txt:1: found 'x' in column 4"},
-                    BadTrajectory{"1 0 0 1,5 0 0 0 1\n", "t.txt:1: found 9 columns"}));
+                    BadTrajectory{"1 0 0 0 0 0 0 1\n2 0 0\n", "t.txt:2: found 3 columns"},
+                    BadTrajectory{"1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
+                                  "t.txt:2: 3 of 4 poses repeat an earlier stamp"}));
 
 TEST(TumTrajectory, MissingFilesAndFoldersAreTold) {
   const TemporaryFolder folder;

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/arguments.hpp"
+#include "app/commands.hpp"
+#include "core/check/findings.hpp"
+#include "core/error.hpp"
+#include "core/evaluation/clocks.hpp"
+#include "core/geometry/trajectory_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFindingsStatus = 3;
+constexpr int kOdometryFrames = 60, kCameraFrames = 40;
+
+struct CheckArguments {
+  std::string sequence, estimate;
+  bool json = false;
+  SequenceArguments frames;
+};
+
+/// An estimate beside the sequence's ground truth.
+void check_estimate(const CheckArguments& arguments, const FrameSource& source,
+                    std::vector<Finding>& findings) {
+  TrajectoryFile file = read_trajectory_file(arguments.estimate);
+  for (const std::string& warning : file.warnings) findings.push_back({"estimate", warning});
+  if (source.ground_truth().empty()) {
+    findings.push_back({"truth", "there is no ground truth of use to lay the estimate beside"});
+    return;
+  }
+  ClockOptions clocks;
+  clocks.truth_name = arguments.sequence, clocks.estimate_name = arguments.estimate;
+  clocks.truth_in_seconds = true;
+  for (int i = 0; i < source.size(); ++i) clocks.frame_stamps.push_back(source.timestamp(i));
+  Trajectory truth = source.ground_truth();
+  for (const std::string& note : settle_clocks(truth, file.poses, clocks))
+    findings.push_back({"stamps", note});
+  const auto matched = match_trajectories(truth, file.poses);
+  if (matched.empty()) {
+    findings.push_back({"estimate", fmt::format("{}: none of its {} poses meets the ground truth in time; {}",
+                                                arguments.estimate, file.poses.size(),
+                                                why_apart(truth, file.poses, clocks))});
+    return;
+  }
+  if (2 * matched.size() < file.poses.size())
+    findings.push_back({"estimate", fmt::format("{}: only {} of {} poses meet the ground truth in time",
+                                                arguments.estimate, matched.size(), file.poses.size())});
+  for (Finding& finding : check_truth(truth, file.poses, true)) findings.push_back(std::move(finding));
+}
+
+void check(const CheckArguments& arguments) {
+  const auto source = open_sequence(arguments.sequence, arguments.frames.options(Config()));
+  std::vector<Finding> findings = check_frames(*source);
+  if (arguments.estimate.empty()) {
+    for (Finding& finding : check_odometry(*source, kOdometryFrames)) findings.push_back(std::move(finding));
+    for (Finding& finding : check_camera(*source, kCameraFrames)) findings.push_back(std::move(finding));
+  }
+  if (!arguments.estimate.empty()) check_estimate(arguments, *source, findings);
+  const Camera& camera = source->camera();
+  if (arguments.json) {
+    nlohmann::ordered_json json;
+    json["sequence"] = arguments.sequence;
+    json["frames"] = source->size();
+    json["camera"] = camera.name;
+    json["depth_scale"] = camera.depth_scale;
+    json["findings"] = nlohmann::json(findings);
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    fmt::print(
+        "{}: {} frames, {:.3f} s, camera {} ({}x{} px), depth {}, masks {}, ground truth {}\n",
+        source->name(), source->size(), source->timestamp(source->size() - 1) - source->timestamp(0),
+        camera.name, camera.width, camera.height,
+        source->has_depth() ? fmt::format("at {:g} a metre", camera.depth_scale) : "none",
+        source->has_masks() ? "yes" : "none",
+        source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
+    for (const Finding& finding : findings) fmt::print("  {:<9} {}\n", finding.about, finding.sentence);
+    fmt::print("{}\n", findings.empty() ? "no findings" : fmt::format("{} finding(s)", findings.size()));
+  }
+  if (!findings.empty()) throw ExitStatus{kFindingsStatus};
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app) {
+  const auto arguments = std::make_shared<CheckArguments>();
+  CLI::App* command = app.add_subcommand("check",
+                                         "Question an input: stamps, depth, masks, camera, ground truth, an "
+                                         "estimate; status 3 when there are findings");
+  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command->add_option("ESTIMATE", arguments->estimate,
+                      "A trajectory to lay beside the ground truth in place of the odometry's own");
+  command->add_flag("--json", arguments->json, "Print JSON");
+  arguments->frames.add_to(*command);
+  command->callback([arguments] { check(*arguments); });
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/geometry/trajectory.hpp"
+#include "core/sequence/source.hpp"
+
+namespace stillpoint {
+
+/// Something about an input that cannot be right, or that was mended on opening.
+struct Finding {
+  std::string about;     ///< "stamps", "depth", "masks", "camera", "truth", "images", "estimate", "odometry"
+  std::string sentence;  ///< what was found, with its figure, and the switch that mends it where there is one
+};
+
+void to_json(nlohmann::json& json, const Finding& finding);
+
+/// What can be said of a sequence from its lists and a sample of its images: all that was told on opening,
+/// parts that are of no use, gaps in time, and images that repeat the one before.
+[[nodiscard]] std::vector<Finding> check_frames(const FrameSource& source);
+
+/// What can be said of ground truth beside poses that are independent of it: a convention, a constant motion
+/// between two bodies, a scale, a shift in time, each by how much better the alternative fits.
+/// @param estimate_may_err false where the estimate is our own, whose convention is known
+[[nodiscard]] std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate,
+                                               bool estimate_may_err);
+
+/// The odometry's (method `none`) poses of the sequence's first frames, and what they say: few frames that
+/// can be tracked, and, where there is ground truth, check_truth.
+/// @param frames at most
+[[nodiscard]] std::vector<Finding> check_odometry(const FrameSource& source, int frames);
+
+/// The known camera under which the odometry's reprojections miss least, when they miss by 1.5 % more under
+/// the one that is used. Cameras that are alike (freiburg1's and freiburg2's) cannot be told apart in so few
+/// frames, and people who walk about add more than a camera does; so this is said only of clear cases.
+/// @param frames at most; they are read once and tracked under each camera, two cameras side by side
+[[nodiscard]] std::vector<Finding> check_camera(const FrameSource& source, int frames);
+
+/// A shift of the truth's clock under which motions fit better: seconds to add to the truth's stamps, and
+/// both fits.
+struct TimeShift {
+  double seconds = 0.0;
+  double as_is_m = 0.0, mended_m = 0.0;  ///< RMSE of motions over a few frames, a degree counting 1.7 cm
+};
+
+/// The best shift within half a second either way, when it leaves less than 70 % of the error and is 15 ms or
+/// more.
+[[nodiscard]] std::optional<TimeShift> find_time_shift(const Trajectory& truth, const Trajectory& estimate);
+
+}  // namespace stillpoint

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/trajectory.hpp"
+#include "core/sequence/association.hpp"
+#include "core/sequence/stamps.hpp"
+
+namespace stillpoint {
+
+/// What is known of the clocks of two trajectories that are to be compared.
+struct ClockOptions {
+  std::string truth_name = "the truth", estimate_name = "the estimate";  ///< for messages
+  bool truth_in_seconds = false;  ///< a sequence has converted its stamps already
+  std::vector<double>
+      frame_stamps;  ///< s, of the sequence's frames, which a numbered estimate counts; empty = unknown
+  double frame_rate = kFrameNumberRate;        ///< Hz, of frame numbers
+  double tolerance_s = kAssociationTolerance;  ///< poses belong together when closer than this
+  double estimate_offset_s = 0.0;              ///< added to the estimate's stamps once they are seconds
+};
+
+/// Converts the stamps of both to seconds of one clock, by unit_of and unit_beside, and tells each conversion
+/// in a sentence. Whole numbers may be frames or seconds: what lets more poses meet is chosen, then what
+/// makes both last equally long, then frames.
+[[nodiscard]] std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate,
+                                                     const ClockOptions& options);
+
+/// Why two trajectories in seconds meet nowhere, as far as that can be told: another origin of the clock and
+/// by how much, or frame numbers against times. One sentence that names the way on.
+[[nodiscard]] std::string why_apart(const Trajectory& truth, const Trajectory& estimate,
+                                    const ClockOptions& options);
+
+}  // namespace stillpoint

@@ -1,0 +1,162 @@
+#include "core/evaluation/suspicion.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/median.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kShareLeft = 0.4;  // of the error, for a reading to be suspected
+constexpr double kFarBetter =
+    0.5;  // of the error a convention leaves, for six free numbers to be preferred to it
+constexpr double kWorthAWord = 0.02;     // m, combined
+constexpr std::size_t kFewestPoses = 8;  // below, anything fits
+
+/// Pairs of poses some time apart: (i, i + step).
+struct Pairs {
+  std::size_t step = 1, count = 0;
+};
+
+Pairs pairs_of(const std::vector<MatchedPose>& matched) {
+  if (matched.size() < 2) return {};
+  std::size_t step = 1;
+  while (step < matched.size() / 2 && matched[step].timestamp - matched[0].timestamp < 1.0) ++step;
+  return {step, matched.size() - step};
+}
+
+Pose relative(const Pose& a, const Pose& b) { return a.inverse() * b; }
+
+/// The rotation X that carries the estimate's turns into the truth's, log(A) = X log(B); then the lever arm.
+std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched) {
+  const Pairs pairs = pairs_of(matched);
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < pairs.count; ++i)
+    sum += so3_log(relative(matched[i].truth, matched[i + pairs.step].truth).linear()) *
+           so3_log(relative(matched[i].estimate, matched[i + pairs.step].estimate).linear()).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // Turns about one axis leave the rotation about it open.
+  if (svd.singularValues()[1] < 1e-3 * svd.singularValues()[0] || svd.singularValues()[0] <= 0)
+    return std::nullopt;
+  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  Pose body_from_camera = Pose::Identity();
+  body_from_camera.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    const Pose a = relative(matched[i].truth, matched[i + pairs.step].truth);
+    const Pose b = relative(matched[i].estimate, matched[i + pairs.step].estimate);
+    const Eigen::Matrix3d lever = a.linear() - Eigen::Matrix3d::Identity();
+    normal += lever.transpose() * lever;
+    right += lever.transpose() * (body_from_camera.linear() * b.translation() - a.translation());
+  }
+  body_from_camera.translation() = normal.ldlt().solve(right);
+  return body_from_camera;
+}
+
+/// The truth's body by hand_eye, and how well it fits then.
+std::optional<Suspicion> suspect_body(const std::vector<MatchedPose>& matched, const MotionFit& as_is) {
+  Suspicion suspicion;
+  suspicion.as_is = as_is;
+  suspicion.body_from_camera = hand_eye(matched);
+  if (!suspicion.body_from_camera) return std::nullopt;
+  std::vector<MatchedPose> read = matched;
+  for (MatchedPose& pose : read) pose.truth = pose.truth * *suspicion.body_from_camera;
+  suspicion.mended = motion_fit(read);
+  return suspicion;
+}
+
+}  // namespace
+
+double MotionFit::combined_m() const { return translation_m + rotation_deg / kDegrees; }
+
+MotionFit motion_fit(const std::vector<MatchedPose>& matched) {
+  const Pairs pairs = pairs_of(matched);
+  MotionFit fit;
+  fit.pairs = static_cast<int>(pairs.count);
+  if (pairs.count == 0) return fit;
+  std::vector<double> deltas;
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    const MatchedPose &a = matched[i], &b = matched[i + pairs.step];
+    const Pose error = relative(a.truth, b.truth).inverse() * relative(a.estimate, b.estimate);
+    fit.translation_m += error.translation().squaredNorm();
+    fit.rotation_deg += std::pow(kDegrees * rotation_angle(error.linear()), 2);
+    deltas.push_back(b.timestamp - a.timestamp);
+  }
+  fit.translation_m = std::sqrt(fit.translation_m / fit.pairs);
+  fit.rotation_deg = std::sqrt(fit.rotation_deg / fit.pairs);
+  fit.delta_s = median_of(deltas);
+  return fit;
+}
+
+std::string Suspicion::sentence() const {
+  const auto figures = [](const MotionFit& fit) {
+    return fmt::format("{:.4f} m, {:.2f} deg", fit.translation_m, fit.rotation_deg);
+  };
+  const std::string better = fmt::format("motions over {:.2f} s then differ by {} instead of {}",
+                                         as_is.delta_s, figures(mended), figures(as_is));
+  if (convention == PoseConvention::as_written && body_from_camera)
+    return fmt::format(
+        "the ground truth seems to follow a body turned {:.1f} deg and set off {:.3f} m from the camera: {}",
+        kDegrees * rotation_angle(body_from_camera->linear()), body_from_camera->translation().norm(),
+        better);
+  const char* whose = of == Of::truth      ? "the ground truth fits far better if"
+                      : of == Of::estimate ? "the estimate fits far better if"
+                                           : "ground truth and estimate fit far better if, in one of them,";
+  const std::string mending = of == Of::estimate ? fmt::format("--estimate {}", to_string(convention))
+                                                 : fmt::format("--truth {}", to_string(convention));
+  return fmt::format("{} {}: {} (`{}` reads it so)", whose, meaning_of(convention), better, mending);
+}
+
+std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matched, bool estimate_may_err) {
+  if (matched.size() < kFewestPoses) return std::nullopt;
+  Suspicion best;
+  best.as_is = best.mended = motion_fit(matched);
+  if (best.as_is.combined_m() < kWorthAWord) return std::nullopt;
+  const auto consider = [&](Suspicion::Of of, PoseConvention convention) {
+    std::vector<MatchedPose> read = matched;
+    for (MatchedPose& pose : read) {
+      Pose& changed = of == Suspicion::Of::estimate ? pose.estimate : pose.truth;
+      changed = camera_pose(changed, convention);
+    }
+    const MotionFit fit = motion_fit(read);
+    if (fit.combined_m() >= best.mended.combined_m() * (1.0 - 1e-9)) return;
+    best.of = of, best.convention = convention, best.mended = fit;
+  };
+  for (const PoseConvention convention : other_conventions()) {
+    consider(Suspicion::Of::truth, convention);
+    if (estimate_may_err && convention != PoseConvention::bonn) consider(Suspicion::Of::estimate, convention);
+  }
+  const auto is_worth_it = [](const Suspicion& s) {
+    return s.mended.combined_m() < kShareLeft * s.as_is.combined_m();
+  };
+  if (const auto body = suspect_body(matched, best.as_is);
+      body && is_worth_it(*body) && body->mended.combined_m() < kFarBetter * best.mended.combined_m())
+    return body;
+  if (!is_worth_it(best)) return std::nullopt;
+  const bool is_mirror = best.convention == PoseConvention::mirrored_x ||
+                         best.convention == PoseConvention::mirrored_y ||
+                         best.convention == PoseConvention::mirrored_z;
+  if (is_mirror && estimate_may_err) best.of = Suspicion::Of::either;
+  return best;
+}
+
+std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
+  constexpr double kRemarkable = 0.03;
+  const auto& similarity = evaluation.ate.similarity;
+  if (!similarity || std::abs(std::log(similarity->scale)) < kRemarkable ||
+      similarity->rmse_m > 0.5 * evaluation.ate.translation_m.rmse)
+    return "";
+  return fmt::format(
+      "the estimate fits {:.4f} m instead of {:.4f} m when its lengths are multiplied by {:.3f}",
+      similarity->rmse_m, evaluation.ate.translation_m.rmse, similarity->scale);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/geometry/pose_convention.hpp"
+
+namespace stillpoint {
+
+/// How well motions agree over a second, or over half of the poses where there is less.
+struct MotionFit {
+  int pairs = 0;
+  double delta_s = 0.0;        ///< median time between the poses of a pair
+  double translation_m = 0.0;  ///< RMSE
+  double rotation_deg = 0.0;   ///< RMSE
+
+  /// Metres, a degree counting as it displaces what is one metre away.
+  [[nodiscard]] double combined_m() const;
+};
+
+[[nodiscard]] MotionFit motion_fit(const std::vector<MatchedPose>& matched);
+
+/// A way to read one of two trajectories under which they fit far better than as they stand.
+struct Suspicion {
+  enum class Of { truth, estimate, either };
+  Of of = Of::truth;                                       ///< either: the other one would do as well
+  PoseConvention convention = PoseConvention::as_written;  ///< as_written: a constant rotation instead
+  std::optional<Pose>
+      body_from_camera;  ///< the constant motion between what the truth follows and the camera
+  MotionFit as_is, mended;
+
+  /// One sentence: what fits, by how much better, and the switch that mends it where there is one.
+  [[nodiscard]] std::string sentence() const;
+};
+
+/// The reading of truth or estimate that lets both fit best, when it leaves less than 40 % of an error that
+/// is worth a word (2 cm and more, a degree counting 1.7 cm). Conventions are tried one by one; if none does,
+/// the constant rotation and lever arm between two bodies that move as one (hand-eye calibration).
+/// @param estimate_may_err false where the estimate is our own, whose convention is known
+[[nodiscard]] std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matched,
+                                                          bool estimate_may_err);
+
+/// The scale, when it explains more than half of the absolute error and is off one by more than 3 %: one
+/// sentence.
+[[nodiscard]] std::string scale_sentence(const TrajectoryEvaluation& evaluation);
+
+}  // namespace stillpoint

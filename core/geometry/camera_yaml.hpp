@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "core/geometry/camera.hpp"
+
+namespace stillpoint {
+
+/// Reads a camera from another program's YAML: ORB-SLAM's (`Camera.fx`, ORB-SLAM3's `Camera1.fx`, with
+/// `DepthMapFactor`), a camchain of Kalibr (its first camera), EuRoC's `sensor.yaml`, or a ROS or OpenCV
+/// calibration (`camera_matrix`). Only pinhole cameras with Brown-Conrady distortion are taken. What a file
+/// does not say keeps Camera's default.
+/// @throws InputError on a missing file, a syntax error (with its line), another camera or distortion model,
+/// and values
+///         that are missing or out of range.
+[[nodiscard]] Camera read_yaml_camera(const std::string& path);
+
+}  // namespace stillpoint

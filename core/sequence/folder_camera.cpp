@@ -1,0 +1,63 @@
+#include "core/sequence/folder_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSameSides =
+    0.01;  // relative difference of the two scales: a rounded pixel, not another shape
+
+}  // namespace
+
+Camera camera_of_folder(const std::string& folder, const std::optional<Camera>& given,
+                        std::vector<std::string>& warnings) {
+  if (given) return *given;
+  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"}) {
+    const fs::path path = fs::path(folder) / name;
+    std::error_code none;
+    if (fs::exists(path, none)) return read_camera(path.string());
+  }
+  fs::path whole = fs::absolute(folder).lexically_normal();
+  if (whole.filename().empty()) whole = whole.parent_path();
+  if (const auto own = camera_from_folder_name(whole.filename().string())) return *own;
+  if (const auto parents = camera_from_folder_name(whole.parent_path().filename().string())) return *parents;
+  Camera camera = camera_by_name("ros_default");
+  warnings.push_back(fmt::format(
+      "{}: the name tells no camera; {} is assumed (--camera NAME|FILE says which)", folder, camera.name));
+  return camera;
+}
+
+Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
+                       std::vector<std::string>& warnings) {
+  if (size == cv::Size(camera.width, camera.height)) return camera;
+  const double sx = static_cast<double>(size.width) / camera.width;
+  const double sy = static_cast<double>(size.height) / camera.height;
+  if (std::abs(sx / sy - 1.0) < kSameSides) {
+    warnings.push_back(
+        fmt::format("{}: images are {}x{} px; the intrinsics of camera {} ({}x{} px) were scaled to them",
+                    folder, size.width, size.height, camera.name, camera.width, camera.height));
+    return camera.scaled_to(size.width, size.height);
+  }
+  const double scale = std::max(sx, sy);
+  const int width = static_cast<int>(std::lround(scale * camera.width));
+  const int height = static_cast<int>(std::lround(scale * camera.height));
+  Camera middle = camera.scaled_to(width, height);
+  middle.cx -= 0.5 * (width - size.width), middle.cy -= 0.5 * (height - size.height);
+  middle.width = size.width, middle.height = size.height;
+  warnings.push_back(fmt::format(
+      "{}: images are {}x{} px, whose sides do not fit the {}x{} px of camera {}; they were taken for the "
+      "middle of its image "
+      "(fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}); if they were made otherwise, --camera FILE says how",
+      folder, size.width, size.height, camera.width, camera.height, camera.name, middle.fx, middle.fy,
+      middle.cx, middle.cy));
+  return middle;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.hpp"
+
+namespace stillpoint {
+
+/// The camera of a folder: `given` (the command line's), else its `camera.toml` or `camera.yaml`, else what
+/// its own or its parent's name says, else ros_default, which is told.
+/// @throws InputError for a camera file that cannot be read
+[[nodiscard]] Camera camera_of_folder(const std::string& folder, const std::optional<Camera>& given,
+                                      std::vector<std::string>& warnings);
+
+/// The camera for images of this size. Images of the same sides are scaled. Images of other sides are taken
+/// for the middle of what the camera sees, as sensors crop them, and never for stretched; either is told.
+[[nodiscard]] Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
+                                     std::vector<std::string>& warnings);
+
+}  // namespace stillpoint

@@ -1,0 +1,260 @@
+#include "core/sequence/folder_lists.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <initializer_list>
+#include <set>
+
+#include "core/error.hpp"
+#include "core/sequence/association.hpp"
+#include "core/text_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::initializer_list<const char*>;
+
+constexpr Names kAssociations = {"associations.txt", "associate.txt", "association.txt", "assoc.txt"};
+constexpr Names kColourLists = {"rgb.txt", "color.txt", "colour.txt", "image.txt", "images.txt"};
+constexpr Names kDepthLists = {"aligned_depth.txt", "depth.txt"};
+constexpr Names kMaskLists = {"mask.txt", "masks.txt"};
+constexpr Names kColourFolders = {"rgb", "color", "colour", "image", "images"};
+constexpr Names kDepthFolders = {"depth", "aligned_depth"};
+constexpr Names kMaskFolders = {"mask", "masks"};
+
+std::string in(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+bool is_there(const std::string& path) {
+  std::error_code none;
+  return fs::exists(path, none);
+}
+
+/// The first of these names that the folder holds.
+std::optional<std::string> first_there(const std::string& folder, Names names) {
+  for (const char* name : names)
+    if (is_there(in(folder, name))) return in(folder, name);
+  return std::nullopt;
+}
+
+bool is_image_name(const fs::path& path) {
+  static const std::set<std::string> kinds = {".png",  ".jpg", ".jpeg", ".bmp", ".tif",
+                                              ".tiff", ".ppm", ".pgm",  ".webp"};
+  std::string kind = path.extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+  return kinds.count(kind) > 0;
+}
+
+/// The number a file's name is, or ends in ("frame-000012.color").
+std::optional<double> number_in(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  if (const auto whole = parse_number(stem)) return whole;
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto last = std::find_if(stem.rbegin(), stem.rend(), is_digit);
+  const auto before = std::find_if_not(last, stem.rend(), is_digit);
+  return parse_number(std::string(before.base(), last.base()));
+}
+
+/// The images of a folder as a list: stamps by their names' numbers where all have one and no two the same,
+/// otherwise by their order. `prefix` stands before each name.
+ImageList images_of(const std::string& folder, const std::string& prefix) {
+  ImageList list{folder, {}};
+  std::vector<fs::path> files;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed))
+    if (is_image_name(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::set<double> stamps;
+  bool numbered = true;
+  for (const fs::path& file : files) {
+    const auto number = number_in(file);
+    numbered = numbered && number && stamps.insert(*number).second;
+    list.entries.push_back({number.value_or(0.0), prefix + file.filename().string(), 0});
+  }
+  if (numbered)
+    std::sort(list.entries.begin(), list.entries.end(),
+              [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
+  for (std::size_t i = 0; i < list.entries.size(); ++i) {
+    list.entries[i].line = static_cast<int>(i) + 1;
+    if (!numbered) list.entries[i].timestamp = static_cast<double>(i);
+  }
+  return list;
+}
+
+std::vector<double> stamps_of(const ImageList& list) {
+  std::vector<double> stamps;
+  stamps.reserve(list.entries.size());
+  for (const ListEntry& entry : list.entries) stamps.push_back(entry.timestamp);
+  return stamps;
+}
+
+std::string with_slashes(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
+
+/// Ways to find a name that is not where it says.
+std::vector<std::string> other_places(const std::string& name, Names folders) {
+  const std::string slashed = with_slashes(name);
+  const fs::path path(slashed);
+  std::vector<std::string> places = {slashed};
+  if (path.has_parent_path()) places.push_back((path.parent_path().filename() / path.filename()).string());
+  for (const char* folder : folders) places.push_back((fs::path(folder) / path.filename()).string());
+  places.push_back(path.filename().string());
+  return places;
+}
+
+/// Sends a list's names to where its images lie, all in the way the first of them that can be found is found.
+void find_images(const std::string& folder, ImageList& list, Names folders,
+                 std::vector<std::string>& warnings) {
+  constexpr std::size_t kTried = 5;
+  const std::size_t tried = std::min(kTried, list.entries.size());
+  for (std::size_t i = 0; i < tried; ++i)
+    if (is_there(in(folder, list.entries[i].file))) return;
+  for (std::size_t i = 0; i < tried; ++i) {
+    const auto places = other_places(list.entries[i].file, folders);
+    const auto found = std::find_if(places.begin(), places.end(),
+                                    [&](const std::string& place) { return is_there(in(folder, place)); });
+    if (found == places.end()) continue;
+    const auto way = found - places.begin();
+    warnings.push_back(fmt::format("{}:{}: there is no {}, but {}; all its names were read so", list.path,
+                                   list.entries[i].line, in_quotes(list.entries[i].file), *found));
+    for (ListEntry& entry : list.entries) {
+      const auto ways = other_places(entry.file, folders);
+      entry.file = ways[std::min(static_cast<std::size_t>(way), ways.size() - 1)];
+    }
+    return;
+  }
+}
+
+/// A last line that was cut in the middle of its name names nothing.
+void drop_cut_name(const std::string& folder, ImageList& list, std::vector<std::string>& warnings) {
+  if (list.entries.size() < 2) return;
+  const auto last = std::max_element(list.entries.begin(), list.entries.end(),
+                                     [](const auto& a, const auto& b) { return a.line < b.line; });
+  const auto& other = list.entries.front().line == last->line ? list.entries[1] : list.entries.front();
+  const auto kind = [](const ListEntry& entry) { return fs::path(entry.file).extension(); };
+  std::error_code none;
+  if (kind(*last) == kind(other) || fs::is_regular_file(in(folder, last->file), none)) return;
+  warnings.push_back(fmt::format("{}:{}: the last line was cut short in its name {} and skipped", list.path,
+                                 last->line, in_quotes(last->file)));
+  list.entries.erase(last);
+}
+
+ImageList read_image_list(const std::string& folder, const std::string& path, Names folders,
+                          std::vector<std::string>& warnings) {
+  ImageList list{path, read_list(path, warnings)};
+  find_images(folder, list, folders, warnings);
+  drop_cut_name(folder, list, warnings);
+  return list;
+}
+
+void convert(ImageList& list, StampUnit unit, double frame_rate) {
+  for (ListEntry& entry : list.entries) entry.timestamp *= seconds_per(unit, frame_rate);
+}
+
+/// What a folder without lists holds that looks like a sequence of another kind.
+std::string what_else(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    const std::string kind = entry.path().extension().string();
+    if (kind == ".bag" || kind == ".mcap" || kind == ".db3" || kind == ".tgz" || kind == ".zip" ||
+        kind == ".txt" || kind == ".csv" || fs::is_directory(entry.path(), failed))
+      names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  constexpr std::size_t kMost = 6;
+  if (names.size() > kMost) names.resize(kMost), names.emplace_back("…");
+  return names.empty() ? "" : fmt::format("; it holds {}", fmt::join(names, ", "));
+}
+
+void read_paired(const std::string& folder, const std::string& path, FolderLists& lists) {
+  lists.colours.path = path;
+  lists.depths = ImageList{path, {}};
+  lists.paired = true;
+  for (ListedPair& pair : read_associations(path, lists.warnings)) {
+    lists.colours.entries.push_back(std::move(pair.colour));
+    lists.depths->entries.push_back(std::move(pair.depth));
+  }
+  find_images(folder, lists.colours, kColourFolders, lists.warnings);
+  find_images(folder, *lists.depths, kDepthFolders, lists.warnings);
+}
+
+/// Images that nothing lists. @return false where there are none
+bool read_images_alone(const std::string& folder, FolderLists& lists) {
+  const auto colours = first_there(folder, kColourFolders);
+  if (colours) lists.colours = images_of(*colours, fs::path(*colours).filename().string() + "/");
+  if (lists.colours.entries.empty()) lists.colours = images_of(folder, "");
+  if (lists.colours.entries.empty()) return false;
+  if (const auto depths = first_there(folder, kDepthFolders); depths && colours) {
+    lists.depths = images_of(*depths, fs::path(*depths).filename().string() + "/");
+    lists.paired = lists.depths->entries.size() == lists.colours.entries.size() &&
+                   unit_of(stamps_of(lists.colours)) == StampUnit::frames;
+    if (lists.depths->entries.empty()) lists.depths.reset();
+  }
+  lists.warnings.push_back(fmt::format("{}: nothing lists its {} images; they were read by their names",
+                                       lists.colours.path, lists.colours.entries.size()));
+  return true;
+}
+
+void settle_stamps(FolderLists& lists, double frame_rate) {
+  const auto colour_stamps = stamps_of(lists.colours);
+  lists.unit = unit_of(colour_stamps);
+  convert(lists.colours, lists.unit, frame_rate);
+  if (lists.unit == StampUnit::frames)
+    lists.warnings.push_back(fmt::format(
+        "{}: the stamps are frame numbers; they were read as frames at {} Hz (--frame-rate says otherwise)",
+        lists.colours.path, frame_rate));
+  else if (lists.unit != StampUnit::seconds)
+    lists.warnings.push_back(fmt::format("{}: the stamps are {}; they were read as such", lists.colours.path,
+                                         to_string(lists.unit)));
+  const auto reference = stamps_of(lists.colours);
+  for (std::optional<ImageList>* list : {&lists.depths, &lists.masks}) {
+    if (!*list) continue;
+    const StampUnit unit =
+        unit_beside(stamps_of(**list), reference, lists.unit, frame_rate, kAssociationTolerance);
+    if (unit != lists.unit)
+      lists.warnings.push_back(fmt::format("{}: the stamps are {}, where those of {} are {}", (*list)->path,
+                                           to_string(unit), lists.colours.path, to_string(lists.unit)));
+    convert(**list, unit, frame_rate);
+  }
+}
+
+}  // namespace
+
+FolderLists read_folder_lists(const std::string& folder, double frame_rate) {
+  FolderLists lists;
+  const auto tell_unusual = [&lists](const std::string& path, const char* usual) {
+    if (fs::path(path).filename() != usual)
+      lists.warnings.push_back(fmt::format("{}: is read in place of {}", path, usual));
+  };
+  if (const auto associations = first_there(folder, kAssociations)) {
+    tell_unusual(*associations, "associations.txt");
+    read_paired(folder, *associations, lists);
+  } else if (const auto colours = first_there(folder, kColourLists)) {
+    tell_unusual(*colours, "rgb.txt");
+    lists.colours = read_image_list(folder, *colours, kColourFolders, lists.warnings);
+    if (const auto depths = first_there(folder, kDepthLists)) {
+      tell_unusual(*depths, "depth.txt");
+      lists.depths = read_image_list(folder, *depths, kDepthFolders, lists.warnings);
+    }
+  } else if (!read_images_alone(folder, lists)) {
+    throw InputError(
+        fmt::format("{}: holds neither rgb.txt nor associations.txt nor images, expected a folder in the TUM "
+                    "RGB-D layout{}",
+                    folder, what_else(folder)));
+  }
+  if (const auto masks = first_there(folder, kMaskLists))
+    lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);
+  settle_stamps(lists, frame_rate);
+  return lists;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/sequence/list_file.hpp"
+#include "core/sequence/stamps.hpp"
+
+namespace stillpoint {
+
+/// One list of images of a folder, stamps in seconds.
+struct ImageList {
+  std::string path;  ///< of the list, or of the folder of images where nothing lists them
+  std::vector<ListEntry> entries;
+};
+
+/// Which images a folder names.
+struct FolderLists {
+  ImageList colours;
+  std::optional<ImageList> depths, masks;
+  bool paired = false;                  ///< depth i belongs to colour image i, whatever the stamps say
+  StampUnit unit = StampUnit::seconds;  ///< the colour stamps were written in
+  std::vector<std::string> warnings;
+};
+
+/// Finds and reads the lists of a folder:
+/// - `associations.txt` (or `associate.txt`, `association.txt`, `assoc.txt`);
+/// - `rgb.txt` (`color.txt`, `colour.txt`, `image.txt`, `images.txt`) and, beside it, `aligned_depth.txt` or
+/// `depth.txt`;
+/// - where nothing lists them, the images of `rgb/` (`color/`, `colour/`, `image/`, `images/`) and `depth/`
+///   (`aligned_depth/`), or those of the folder itself, by name: a name that is a number is a stamp;
+/// - `mask.txt` (`masks.txt`).
+/// Names with backslashes, names without their folder, and absolute names of another machine are found where
+/// the images lie. Stamps are converted to seconds, all lists by the same rules (core/sequence/stamps.hpp).
+/// @param frame_rate Hz, of stamps that are frame numbers
+/// @throws InputError in one sentence where no images are named, with what was found instead
+[[nodiscard]] FolderLists read_folder_lists(const std::string& folder, double frame_rate);
+
+}  // namespace stillpoint

@@ -1,0 +1,148 @@
+#include "core/sequence/image_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+namespace stillpoint {
+namespace {
+
+constexpr std::uint16_t kNoMeasurement = 65535;
+constexpr double kNearMedian = 0.45;  // m; a scene this near is doubted when its nearest part is nearer still
+constexpr int kMaskHalf = 127;        // of 8 bits
+constexpr double kWhiteShare = 0.5;   // of what is not 0, to call a mask black and white
+constexpr int kMostLabels = 32;
+constexpr int kNearlyWhite = 250;  // of 8 bits: JPEG's white
+
+double quantile(std::vector<std::uint16_t>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+/// The largest of an image's channels, alpha left out, as one channel.
+cv::Mat strongest(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  std::vector<cv::Mat> channels;
+  cv::split(image, channels);
+  const std::size_t colours =
+      image.channels() == 4 || image.channels() == 2 ? channels.size() - 1 : channels.size();
+  cv::Mat result = channels[0];
+  for (std::size_t i = 1; i < colours; ++i) result = cv::max(result, channels[i]);
+  return result;
+}
+
+bool is_plausible(double nearest_m, double median_m, double farthest_m) {
+  return !(median_m < kNearMedian && nearest_m < kNearestPlausible) && farthest_m <= kFarthestPlausible;
+}
+
+}  // namespace
+
+std::string fault_of_depth(const std::string& path, const cv::Mat& image, cv::Size colour) {
+  if (image.type() != CV_16UC1) {
+    const bool is_float = image.depth() == CV_32F || image.depth() == CV_64F;
+    return fmt::format("{} holds {} channel(s) of {} bits{}, expected depth as 1 channel of 16 bits", path,
+                       image.channels(), 8 * image.elemSize1(), is_float ? " (floating point)" : "");
+  }
+  if (image.size() != colour)
+    return fmt::format("{} is {}x{} px, but its colour image is {}x{} px", path, image.cols, image.rows,
+                       colour.width, colour.height);
+  return {};
+}
+
+DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour) {
+  DepthSurvey survey;
+  std::vector<std::uint16_t> values;
+  double pixels = 0, zeros = 0;
+  for (const std::string& path : paths) {
+    const ImageRead read = read_image(path);
+    if (read.image.empty()) {
+      if (survey.fault.empty() && read.is_other_format) survey.fault = read.problem;
+      survey.read += read.is_other_format ? 1 : 0;
+      continue;
+    }
+    // An image tool may write a frame without any depth in another kind.
+    if (cv::countNonZero(strongest(read.image)) == 0) continue;
+    ++survey.read;
+    if (const std::string fault = fault_of_depth(path, read.image, colour); !fault.empty()) {
+      if (survey.fault.empty()) survey.fault = fault;
+      continue;
+    }
+    ++survey.fit;
+    constexpr int kStride = 3;
+    for (int y = 0; y < read.image.rows; y += kStride)
+      for (int x = 0; x < read.image.cols; x += kStride) {
+        const auto value = read.image.at<std::uint16_t>(y, x);
+        pixels += 1, zeros += value == 0 || value == kNoMeasurement ? 1 : 0;
+        if (value != 0 && value != kNoMeasurement) values.push_back(value);
+      }
+  }
+  survey.nearest = quantile(values, 0.02);
+  survey.median = quantile(values, 0.5);
+  survey.farthest = quantile(values, 0.98);
+  survey.zeros = pixels > 0 ? zeros / pixels : 0.0;
+  return survey;
+}
+
+std::optional<ScaleDoubt> doubt_scale(const DepthSurvey& survey, double scale) {
+  if (survey.median <= 0) return std::nullopt;
+  const auto plausible = [&](double s) {
+    return is_plausible(survey.nearest / s, survey.median / s, survey.farthest / s);
+  };
+  if (plausible(scale)) return std::nullopt;
+  ScaleDoubt doubt{survey.nearest / scale, survey.median / scale, survey.farthest / scale, {}};
+  for (const double usual : {1000.0, 5000.0, 10000.0, 256.0})
+    if (!doubt.likely_scale && plausible(usual)) doubt.likely_scale = usual;
+  return doubt;
+}
+
+MaskSurvey survey_masks(const ImagePaths& paths) {
+  MaskSurvey survey;
+  std::vector<cv::Mat> images;
+  double white = 0, nonzero = 0, half_of_range = kMaskHalf;
+  std::set<int> labels;
+  for (const std::string& path : paths) {
+    const ImageRead read = read_image(path);
+    if (read.image.empty()) continue;
+    const cv::Mat mask = strongest(read.image);
+    if (survey.read++ == 0) survey.size = mask.size();
+    const double range = mask.depth() == CV_8U ? 1.0 : mask.depth() == CV_16U ? 257.0 : 1.0 / 255.0;
+    half_of_range = kMaskHalf * range;
+    double largest = 0;
+    cv::minMaxLoc(mask, nullptr, &largest);
+    survey.largest = std::max(survey.largest, largest);
+    nonzero += cv::countNonZero(mask);
+    white += cv::countNonZero(mask >= kNearlyWhite * range);
+    cv::Mat values;
+    mask.convertTo(values, CV_32S);
+    for (int y = 0; y < values.rows; y += 4)
+      for (int x = 0; x < values.cols; x += 4)
+        if (values.at<int>(y, x) != 0 && labels.size() < 1000) labels.insert(values.at<int>(y, x));
+    images.push_back(mask);
+  }
+  survey.labels = static_cast<int>(labels.size());
+  // Nothing bright, or a few values of which white is not the most: 0 and 1, or labels of things. A black and
+  // white mask may have grey edges, and one of probabilities has many values.
+  const bool dark = nonzero > 0 && survey.largest <= half_of_range;
+  const bool labelled = survey.labels > 1 && survey.labels <= kMostLabels && white < kWhiteShare * nonzero;
+  survey.coding = dark || labelled ? MaskCoding::nonzero : MaskCoding::bright;
+  double moving = 0, pixels = 0;
+  for (const cv::Mat& image : images) {
+    moving += cv::countNonZero(moving_pixels(image, survey.coding));
+    pixels += static_cast<double>(image.total());
+  }
+  survey.moving_share = pixels > 0 ? moving / pixels : 0.0;
+  return survey;
+}
+
+cv::Mat moving_pixels(const cv::Mat& image, MaskCoding coding) {
+  const cv::Mat mask = strongest(image);
+  if (coding == MaskCoding::nonzero) return mask != 0;
+  if (image.channels() == 1 && mask.depth() == CV_8U) return mask > kMaskHalf;
+  return to_gray(to_8bit(image)) > kMaskHalf;
+}
+
+}  // namespace stillpoint

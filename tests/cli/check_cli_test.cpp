@@ -1,0 +1,45 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/run_cli.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CheckCommand, HasStatusZeroAndNothingToSayOfASoundFolder) {
+  const SmallSequence sequence(8);
+  const CliResult result = run_cli({"check", sequence.path()});
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_THAT(result.out, HasSubstr("8 frames"));
+  EXPECT_THAT(result.out, HasSubstr("no findings"));
+}
+
+TEST(CheckCommand, HasStatusThreeAndTheSwitchThatMends) {
+  const SmallSequence sequence(8);
+  for (int i = 0; i < 8; ++i)
+    sequence.folder.write(sequence.depth(i),
+                          cv::Mat(SmallSequence::kHeight, SmallSequence::kWidth, CV_16UC1, cv::Scalar(1500)));
+  const CliResult result = run_cli({"check", sequence.path(), "--json"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["findings"][0]["about"], "depth");
+  EXPECT_THAT(json["findings"][0]["sentence"].get<std::string>(), HasSubstr("`--depth-scale 1000`"));
+  EXPECT_EQ(run_cli({"check", sequence.path(), "--depth-scale", "1000"}).exit_code, 0);
+}
+
+TEST(CheckCommand, QuestionsAnEstimate) {
+  const SmallSequence sequence(8);
+  sequence.folder.write("estimate.txt", "5.0 0 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n");
+  const CliResult result = run_cli({"check", sequence.path(), sequence.path("estimate.txt")});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.out, HasSubstr("none of its 2 poses meets the ground truth in time"));
+  expect_one_sentence(run_cli({"check", sequence.path("none")}), "there is no such folder");
+}
+
+}  // namespace
+}  // namespace stillpoint

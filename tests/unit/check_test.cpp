@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/check/findings.hpp"
+#include "core/sequence/source.hpp"
+#include "tests/unit/temporary_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+auto says(const char* about, const char* part) {
+  return testing::AllOf(Field(&Finding::about, about), Field(&Finding::sentence, HasSubstr(part)));
+}
+
+/// A camera that goes and turns unevenly, 30 poses a second from `start` s on.
+Trajectory path(double start, double rate = 30.0, int poses = 90) {
+  Trajectory trajectory;
+  for (int i = 0; i < poses; ++i) {
+    const double t = start + i / rate;
+    Pose pose = Pose::Identity();
+    pose.linear() =
+        so3_exp({0.3 * std::sin(3.3 * t), 0.4 * std::sin(2.9 * t + 1), 0.3 * std::sin(4.1 * t + 2)});
+    pose.translation() = Eigen::Vector3d(0.3 * std::cos(2.7 * t), 0.3 * std::sin(2.7 * t), 0.3 * std::sin(t));
+    trajectory.push_back({t, pose});
+  }
+  return trajectory;
+}
+
+TEST(Check, FindsNothingInAGeneratedSequence) {
+  OpenOptions options;
+  options.frames = 12;
+  const auto source = open_sequence("generated:room", options);
+  EXPECT_THAT(check_frames(*source), IsEmpty());
+  EXPECT_THAT(check_odometry(*source, 12), IsEmpty());
+}
+
+TEST(Check, FindsTheShiftOfATruthsClock) {
+  const Trajectory estimate = path(1.0);
+  EXPECT_FALSE(find_time_shift(path(0.0, 100, 500), estimate));
+  for (const double late : {-0.2, 0.06}) {
+    Trajectory truth = path(0.0, 100, 500);
+    for (StampedPose& pose : truth) pose.timestamp += late;
+    const auto shift = find_time_shift(truth, estimate);
+    ASSERT_TRUE(shift);
+    EXPECT_NEAR(shift->seconds, -late, 0.006);
+    EXPECT_LT(shift->mended_m, 0.2 * shift->as_is_m);
+    EXPECT_THAT(check_truth(truth, estimate, false),
+                Contains(says("truth", late < 0 ? "s later" : "s earlier")));
+  }
+}
+
+TEST(Check, NamesConventionsAndScales) {
+  Trajectory truth = path(1.0);
+  const Trajectory estimate = path(1.0);
+  EXPECT_THAT(check_truth(truth, estimate, true), IsEmpty());
+  for (StampedPose& pose : truth) pose.world_from_camera = pose.world_from_camera.inverse();
+  EXPECT_THAT(check_truth(truth, estimate, false), Contains(says("truth", "`--truth inverse`")));
+  Trajectory small = estimate;
+  for (StampedPose& pose : small) pose.world_from_camera.translation() *= 0.2;
+  EXPECT_THAT(check_truth(estimate, small, false), Contains(says("depth", "multiplied by 5.000")));
+  EXPECT_THAT(check_truth(estimate, small, true), Contains(says("estimate", "`--scale`")));
+}
+
+TEST(Check, FindsGapsRepeatsAndWhatWasMended) {
+  const TemporaryFolder folder;
+  std::string list;
+  for (int i = 0; i < 12; ++i) {
+    folder.write(fmt::format("rgb/{}.png", i), cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(10.0 * (i / 2))));
+    list += fmt::format("{:.3f} rgb/{}.png\n", 100 + i / 30.0 + (i > 7 ? 2.5 : 0.0), i);
+  }
+  folder.write("rgb.txt", list);
+  const auto findings = check_frames(*open_sequence(folder.path()));
+  EXPECT_THAT(findings, Contains(says("stamps", "s, follows frame 7: the odometry will be lost there")));
+  EXPECT_THAT(findings, Contains(says("images", "6 of 11 sampled colour images are the same")));
+  EXPECT_THAT(findings, Contains(says("camera", "ros_default is assumed")));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,116 @@
+#include "core/sequence/stamps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/evaluation/clocks.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// 40 stamps from `start` s on at `rate` Hz, written in units of which `per_second` make a second; whole if
+/// asked for.
+std::vector<double> written(double start, double rate, double per_second, bool whole = false) {
+  std::vector<double> stamps;
+  for (int i = 0; i < 40; ++i) {
+    const double stamp = (start + i / rate) * per_second;
+    stamps.push_back(whole ? std::round(stamp) : stamp);
+  }
+  return stamps;
+}
+
+TEST(StampUnit, IsToldBySizeSince1970) {
+  EXPECT_EQ(unit_of(written(1305031102.175, 30, 1)), StampUnit::seconds);
+  EXPECT_EQ(unit_of(written(1305031102.175, 30, 1e3)), StampUnit::milliseconds);
+  EXPECT_EQ(unit_of(written(1305031102.175, 30, 1e3, true)), StampUnit::milliseconds);
+  EXPECT_EQ(unit_of(written(1305031102.175, 30, 1e6, true)), StampUnit::microseconds);
+  EXPECT_EQ(unit_of(written(1305031102.175, 30, 1e9, true)), StampUnit::nanoseconds);
+  EXPECT_EQ(unit_of({1305031102}), StampUnit::seconds);
+  EXPECT_EQ(unit_of({1305031102000000000}), StampUnit::nanoseconds);
+  // Whole seconds of today are no frame numbers.
+  EXPECT_EQ(unit_of(written(1305031102, 1, 1, true)), StampUnit::seconds);
+}
+
+TEST(StampUnit, IsToldByTheStepOfClocksThatBeganElsewhere) {
+  for (const double start : {0.0, 12.5, 3600.0}) {
+    EXPECT_EQ(unit_of(written(start, 30, 1)), StampUnit::seconds) << start;
+    EXPECT_EQ(unit_of(written(start, 30, 1e3, true)), StampUnit::milliseconds) << start;
+    EXPECT_EQ(unit_of(written(start, 10, 1e3, true)), StampUnit::milliseconds) << start;
+    EXPECT_EQ(unit_of(written(start, 30, 1e6, true)), StampUnit::microseconds) << start;
+    EXPECT_EQ(unit_of(written(start, 200, 1e9, true)), StampUnit::nanoseconds) << start;
+  }
+  EXPECT_EQ(unit_of({7}), StampUnit::seconds);
+  EXPECT_EQ(unit_of({}), StampUnit::seconds);
+}
+
+TEST(StampUnit, FrameNumbersGoUpByOnesOrByOneSmallStep) {
+  EXPECT_EQ(unit_of({0, 1, 2, 5}), StampUnit::frames);
+  EXPECT_EQ(unit_of({5, 0, 10, 15}), StampUnit::frames);
+  EXPECT_EQ(unit_of({0, 10, 20}), StampUnit::frames);
+  EXPECT_EQ(unit_of({0, 2, 5, 7, 10}), StampUnit::frames);
+  EXPECT_EQ(unit_of({0, 1, 2.5}), StampUnit::seconds);
+}
+
+TEST(StampUnit, BesideOthersIsTheOneThatMeetsThem) {
+  const std::vector<double> numbered = {0, 1, 2, 3, 4}, seconds = {0, 1 / 30.0, 2 / 30.0, 3 / 30.0, 4 / 30.0};
+  EXPECT_EQ(unit_beside(numbered, seconds, StampUnit::frames, 30, 0.02), StampUnit::frames);
+  EXPECT_EQ(unit_beside(numbered, seconds, StampUnit::seconds, 30, 0.02), StampUnit::frames);
+  EXPECT_EQ(unit_beside(seconds, seconds, StampUnit::frames, 30, 0.02), StampUnit::seconds);
+  // Keyframes by number, steps uneven: milliseconds by themselves, frames beside frames.
+  EXPECT_EQ(unit_beside({0, 17, 38}, written(0, 30, 1), StampUnit::frames, 30, 0.02), StampUnit::frames);
+  // Truth of another clock is not squeezed until it fits.
+  const auto epoch = written(1305031102.175, 100, 1);
+  EXPECT_EQ(unit_beside(epoch, written(0, 30, 1), StampUnit::frames, 30, 0.02), StampUnit::seconds);
+}
+
+Trajectory at(const std::vector<double>& stamps) {
+  Trajectory trajectory;
+  for (const double stamp : stamps) trajectory.push_back({stamp, Pose::Identity()});
+  return trajectory;
+}
+
+/// The stamps of the middle pose of both once their clocks are settled.
+std::pair<double, double> settled(std::vector<double> truth, std::vector<double> estimate,
+                                  const ClockOptions& options = {}) {
+  Trajectory t = at(truth), e = at(estimate);
+  (void)settle_clocks(t, e, options);
+  return {t[20].timestamp, e[20].timestamp};
+}
+
+TEST(Clocks, AreSettledAlikeForTruthAndEstimate) {
+  std::vector<double> numbers;
+  for (int i = 0; i < 40; ++i) numbers.push_back(i);
+  const double at_20 = 20 / 30.0;
+  using Both = std::pair<double, double>;
+  EXPECT_EQ(settled(numbers, numbers), Both(20 * (1 / 30.0), 20 * (1 / 30.0)));
+  const auto mixed = settled(numbers, written(0, 30, 1));
+  EXPECT_NEAR(mixed.first, at_20, 1e-12);
+  EXPECT_NEAR(mixed.second, at_20, 1e-12);
+  EXPECT_NEAR(settled(written(0, 30, 1), numbers).second, at_20, 1e-12);
+  const auto nano = settled(written(1.7e9, 30, 1), written(1.7e9, 30, 1e9, true));
+  EXPECT_NEAR(nano.second, nano.first, 1e-6);
+  // One pose a second is one pose a second, where the other trajectory says so.
+  std::vector<double> long_one;
+  for (int i = 0; i < 39 * 30; ++i) long_one.push_back(i / 30.0);
+  EXPECT_EQ(settled(numbers, long_one).first, 20.0);
+  // An estimate that counts the frames of a sequence with stamps of its own.
+  ClockOptions options;
+  options.truth_in_seconds = true;
+  options.frame_stamps = written(1.7e9, 30, 1);
+  EXPECT_EQ(settled(options.frame_stamps, numbers, options).second, options.frame_stamps[20]);
+}
+
+TEST(Clocks, OfAnotherOriginAreToldWithTheWayOn) {
+  Trajectory truth = at(written(1.7e9, 30, 1)), estimate = at(written(0, 30, 1));
+  ClockOptions options;
+  (void)settle_clocks(truth, estimate, options);
+  EXPECT_NE(why_apart(truth, estimate, options).find("--time-offset 1700000000.000000"), std::string::npos);
+  options.estimate_offset_s = 1.7e9;
+  truth = at(written(1.7e9, 30, 1)), estimate = at(written(0, 30, 1));
+  (void)settle_clocks(truth, estimate, options);
+  EXPECT_NEAR(estimate[20].timestamp, truth[20].timestamp, 1e-6);
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,161 @@
+#include "core/evaluation/suspicion.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace stillpoint {
+namespace {
+
+using testing::HasSubstr;
+
+/// A camera that goes and turns about all axes, 30 poses a second, with an estimate that errs by some
+/// millimetres.
+std::vector<MatchedPose> sound(int poses = 90) {
+  std::vector<MatchedPose> matched;
+  for (int i = 0; i < poses; ++i) {
+    const double t = i / 30.0;
+    MatchedPose pose;
+    pose.timestamp = pose.truth_timestamp = t;
+    pose.truth.linear() =
+        so3_exp({0.3 * std::sin(1.3 * t), 0.4 * std::sin(0.9 * t + 1), 0.3 * std::sin(1.1 * t + 2)});
+    pose.truth.translation() = Eigen::Vector3d(0.8 * std::cos(0.7 * t), 0.8 * std::sin(0.7 * t), 0.3 * t);
+    pose.estimate = pose.truth;
+    pose.estimate.translation().x() += 0.003 * std::sin(5.0 * t);
+    matched.push_back(pose);
+  }
+  const Pose start = matched[0].estimate.inverse();
+  for (MatchedPose& pose : matched) pose.estimate = start * pose.estimate;
+  return matched;
+}
+
+TEST(Conventions, AreTheirOwnInversesWhereTheyShouldBe) {
+  const Pose pose = sound()[40].truth;
+  for (const PoseConvention c : {PoseConvention::inverse, PoseConvention::mirrored_x,
+                                 PoseConvention::mirrored_y, PoseConvention::mirrored_z}) {
+    const Pose twice = camera_pose(camera_pose(pose, c), c);
+    EXPECT_LT((twice.matrix() - pose.matrix()).norm(), 1e-12) << to_string(c);
+    EXPECT_GT((camera_pose(pose, c).matrix() - pose.matrix()).norm(), 0.01) << to_string(c);
+    EXPECT_NEAR(camera_pose(pose, c).linear().determinant(), 1.0, 1e-12);
+  }
+  for (const PoseConvention c : other_conventions()) EXPECT_EQ(convention_by_name(to_string(c)), c);
+  EXPECT_FALSE(convention_by_name("upside-down"));
+}
+
+TEST(Conventions, BonnsMarkerIsTurnedByAHundredAndSeventyThreeDegrees) {
+  const Pose camera = camera_pose(Pose::Identity(), PoseConvention::bonn);
+  // The body turns by T_ROS T_m; here, T_m alone is left of the camera's pose.
+  Eigen::Matrix3d ros;
+  ros << -1, 0, 0, 0, 0, 1, 0, 1, 0;
+  EXPECT_NEAR(camera.linear().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(rotation_angle(ros * camera.linear()) * 180 / std::numbers::pi, 172.7, 0.2);
+}
+
+TEST(Suspicion, NothingIsSaidOfSoundPoses) {
+  EXPECT_FALSE(suspect_convention(sound(), true));
+  auto noisy = sound();
+  for (std::size_t i = 0; i < noisy.size(); ++i)
+    noisy[i].estimate.translation().z() += 0.05 * std::sin(0.37 * static_cast<double>(i));
+  EXPECT_FALSE(suspect_convention(noisy, true));
+  EXPECT_FALSE(suspect_convention({}, true));
+  EXPECT_FALSE(suspect_convention(sound(3), true));
+}
+
+class Misread : public testing::TestWithParam<PoseConvention> {};
+
+/// What a reader of TUM's format makes of a pose that was written in the convention.
+Pose misread(const Pose& pose, PoseConvention convention) {
+  if (convention != PoseConvention::w_first) return camera_pose(pose, convention);
+  const Eigen::Quaterniond q(pose.linear());
+  Pose read = pose;
+  read.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+  return read;
+}
+
+TEST_P(Misread, TruthIsNamedWithItsSwitch) {
+  auto matched = sound();
+  for (MatchedPose& pose : matched) pose.truth = misread(pose.truth, GetParam());
+  const auto suspicion = suspect_convention(matched, false);
+  ASSERT_TRUE(suspicion);
+  EXPECT_EQ(suspicion->convention, GetParam());
+  EXPECT_LT(suspicion->mended.translation_m, 0.02);
+  EXPECT_LT(suspicion->mended.rotation_deg, 0.01);
+  EXPECT_THAT(suspicion->sentence(), HasSubstr(fmt::format("`--truth {}`", to_string(GetParam()))));
+}
+
+TEST_P(Misread, EstimateIsNamedWithItsSwitch) {
+  auto matched = sound();
+  for (MatchedPose& pose : matched) pose.estimate = misread(pose.estimate, GetParam());
+  const auto suspicion = suspect_convention(matched, true);
+  ASSERT_TRUE(suspicion);
+  EXPECT_EQ(suspicion->convention, GetParam());
+  EXPECT_LT(suspicion->mended.combined_m(), 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Suspicion, Misread,
+                         testing::Values(PoseConvention::inverse, PoseConvention::w_first,
+                                         PoseConvention::mirrored_x, PoseConvention::mirrored_y,
+                                         PoseConvention::mirrored_z),
+                         [](const auto& tested) {
+                           std::string name(to_string(tested.param));
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(Suspicion, ABodyThatCarriesTheCameraIsFoundWithItsTurn) {
+  auto matched = sound();
+  Pose camera_from_body = Pose::Identity();
+  camera_from_body.linear() =
+      so3_exp(Eigen::Vector3d(0.2, 2.9, -0.4).normalized() * (173.0 / 180 * std::numbers::pi));
+  camera_from_body.translation() = Eigen::Vector3d(0.1, -0.05, 0.2);
+  for (MatchedPose& pose : matched) pose.truth = pose.truth * camera_from_body;
+  const auto suspicion = suspect_convention(matched, false);
+  ASSERT_TRUE(suspicion);
+  ASSERT_TRUE(suspicion->body_from_camera);
+  EXPECT_NEAR(rotation_angle(suspicion->body_from_camera->linear()) * 180 / std::numbers::pi, 173.0, 0.2);
+  EXPECT_NEAR(suspicion->body_from_camera->translation().norm(), camera_from_body.translation().norm(), 0.02);
+  EXPECT_THAT(suspicion->sentence(), HasSubstr("173.0 deg"));
+}
+
+TEST(Scale, IsToldWhereItExplainsTheError) {
+  Trajectory truth, estimate;
+  for (const MatchedPose& pose : sound()) {
+    truth.push_back({pose.timestamp, pose.truth});
+    estimate.push_back({pose.timestamp, pose.estimate});
+    estimate.back().world_from_camera.translation() *= 0.4;
+  }
+  auto evaluation = evaluate_trajectory(truth, estimate);
+  ASSERT_TRUE(evaluation.ate.similarity);
+  EXPECT_NEAR(evaluation.ate.similarity->scale, 2.5, 0.01);
+  EXPECT_LT(evaluation.ate.similarity->rmse_m, 0.004);
+  EXPECT_GT(evaluation.ate.translation_m.rmse, 0.1);
+  EXPECT_THAT(scale_sentence(evaluation), HasSubstr("multiplied by 2.5"));
+  EvaluationOptions options;
+  options.with_scale = true;
+  evaluation = evaluate_trajectory(truth, estimate, options);
+  EXPECT_NEAR(evaluation.applied_scale, 2.5, 0.01);
+  EXPECT_LT(evaluation.ate.translation_m.rmse, 0.004);
+  EXPECT_THAT(to_text(evaluation, options), HasSubstr("multiplied by 2.5"));
+  EXPECT_EQ(scale_sentence(evaluate_trajectory(truth, truth)), "");
+}
+
+TEST(TrajectoryMetrics, NothingToMeasureIsADashAndAReason) {
+  Trajectory truth;
+  for (const MatchedPose& pose : sound()) truth.push_back({pose.timestamp, pose.truth});
+  const Trajectory one(truth.begin(), truth.begin() + 1), short_one(truth.begin(), truth.begin() + 16);
+  const auto alone = evaluate_trajectory(truth, one);
+  EXPECT_FALSE(alone.has_figures());
+  EXPECT_EQ(alone.ate.translation_m.count, 0);
+  EXPECT_THAT(alone.ate.why_none, HasSubstr("1 matched pose"));
+  EXPECT_EQ(to_text(alone).find("0.00000"), std::string::npos) << to_text(alone);
+  const auto half = evaluate_trajectory(truth, short_one);
+  EXPECT_TRUE(half.has_figures());
+  EXPECT_EQ(half.rpe_time.why_none, "no two matched poses are 1 s apart");
+  EXPECT_THAT(to_text(half), HasSubstr("span 0.500 s of the truth's 2.967 s (16.9 %)"));
+}
+
+}  // namespace
+}  // namespace stillpoint

@@ -1,0 +1,102 @@
+#include "core/geometry/trajectory_file.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/temporary_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The pose all files below hold: at (0.25, -1.5, 2), turned by 2 acos(0.8) about x.
+void expect_the_pose(const TrajectoryFile& file, double stamp) {
+  ASSERT_GE(file.poses.size(), 1U);
+  const Pose& pose = file.poses[0].world_from_camera;
+  EXPECT_DOUBLE_EQ(file.poses[0].timestamp, stamp);
+  EXPECT_LT((pose.translation() - Eigen::Vector3d(0.25, -1.5, 2)).norm(), 1e-12);
+  const Eigen::Quaterniond expected(0.8, 0.6, 0, 0);
+  EXPECT_LT((pose.linear() - expected.toRotationMatrix()).norm(), 1e-12);
+}
+
+class TrajectoryFiles : public testing::Test {
+ protected:
+  TrajectoryFile read(const std::string& text, std::optional<QuaternionOrder> order = {}) const {
+    folder_.write("t.txt", text);
+    return read_trajectory_file(folder_.path("t.txt"), order);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(TrajectoryFiles, AreReadWithAnySeparator) {
+  expect_the_pose(read("1.5 0.25 -1.5 2 0.6 0 0 0.8\n"), 1.5);
+  expect_the_pose(read("1.5,0.25,-1.5,2,0.6,0,0,0.8\n"), 1.5);
+  expect_the_pose(read("1.5, 0.25, -1.5, 2, 0.6, 0, 0, 0.8\r\n"), 1.5);
+  expect_the_pose(read("1.5;0.25;-1.5;2;0.6;0;0;0.8\n"), 1.5);
+  expect_the_pose(read("1.5\t+0.25\t-1.5e0\t2\t0.6\t0\t0\t0.8"), 1.5);
+}
+
+TEST_F(TrajectoryFiles, AreReadWithDecimalCommas) {
+  expect_the_pose(read("1,5 0,25 -1,5 2 0,6 0 0 0,8\n2,5 0,25 -1,5 2,0 0,6 0,0 0,0 0,8\n"), 1.5);
+  expect_the_pose(read("1,5;0,25;-1,5;2,0;0,6;0,0;0,0;0,8\n"), 1.5);
+}
+
+TEST_F(TrajectoryFiles, OrderComesFromTheHeader) {
+  const TrajectoryFile tum_vi = read(
+      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"
+      "1520530308199447626,0.25,-1.5,2,0.8,0.6,0,0\n");
+  expect_the_pose(tum_vi, 1520530308199447626.0);
+  EXPECT_EQ(tum_vi.order, QuaternionOrder::wxyz);
+  EXPECT_TRUE(tum_vi.order_is_named);
+  expect_the_pose(read("timestamp,x,y,z,qw,qx,qy,qz\n1.5,0.25,-1.5,2,0.8,0.6,0,0\n"), 1.5);
+  expect_the_pose(read("# time qx qy qz qw tx ty tz\n1.5 0.6 0 0 0.8 0.25 -1.5 2\n"), 1.5);
+  const TrajectoryFile tum = read("# timestamp tx ty tz qx qy qz qw\n1.5 0.25 -1.5 2 0.6 0 0 0.8\n");
+  expect_the_pose(tum, 1.5);
+  EXPECT_TRUE(tum.order_is_named);
+  EXPECT_FALSE(read("1.5 0.25 -1.5 2 0.6 0 0 0.8\n").order_is_named);
+  expect_the_pose(read("1.5 0.25 -1.5 2 0.8 0.6 0 0\n", QuaternionOrder::wxyz), 1.5);
+}
+
+TEST_F(TrajectoryFiles, EurocsSeventeenColumnsHaveWFirst) {
+  const std::string row = "1403636579763555584,0.25,-1.5,2,0.8,0.6,0,0,0.1,0.2,0.3,0,0,0,0,0,0\r\n";
+  expect_the_pose(read(row), 1403636579763555584.0);
+  expect_the_pose(
+      read(
+          "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], "
+          "v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad "
+          "s^-1], b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\n" +
+          row),
+      1403636579763555584.0);
+}
+
+TEST_F(TrajectoryFiles, KittisMatricesHaveNoStamps) {
+  const TrajectoryFile file = read("1 0 0 0.25 0 0.28 -0.96 -1.5 0 0.96 0.28 2\n1 0 0 9 0 1 0 9 0 0 1 9\n");
+  expect_the_pose(file, 0.0);
+  EXPECT_FALSE(file.has_stamps);
+  EXPECT_EQ(file.poses[1].timestamp, 1.0);
+  EXPECT_THAT(input_error_of([&] { (void)read("1 2 3 4 5 6 7 8 9 10 11 12\n"); }),
+              HasSubstr("no rotation and translation"));
+}
+
+TEST_F(TrajectoryFiles, OneBadRowCostsThatRow) {
+  std::string text;
+  for (int i = 0; i < 9; ++i) text += fmt::format("{} 0.25 -1.5 2 0.6 0 0 0.8\n", 1.5 + i);
+  const TrajectoryFile file = read(text +
+                                   "20 NaN NaN NaN NaN NaN NaN NaN\n21 NaN NaN NaN NaN NaN NaN NaN\n"
+                                   "22 1 2 3 0.6 0 0\n23 1 2 3 0 0 0 0\n24 0.25 -1.");
+  expect_the_pose(file, 1.5);
+  EXPECT_EQ(file.poses.size(), 9U);
+  EXPECT_EQ(file.rows, 14);
+  EXPECT_EQ(file.skipped, 5);
+  EXPECT_THAT(
+      file.warnings,
+      ElementsAre(HasSubstr("t.txt:10: a row of NaN or infinity holds no pose and was skipped (2 in all)"),
+                  HasSubstr("t.txt:12: a row holds no pose"),
+                  HasSubstr("t.txt:13: a row's rotation is none")));
+}
+
+}  // namespace
+}  // namespace stillpoint
