@@ -105,8 +105,8 @@ const MethodInfo& method_named_by(const MotionOptions& options) {
     if (!judges_images(judge)) continue;
     if (options.method.empty() ? !judge.needs.keeps_state : method.name == options.method) return method;
   }
-  throw InputError(fmt::format("--method {}: is none that judges images alone; those are: {}", options.method,
-                               fmt::join(described_methods(), "; ")));
+  throw InputError(fmt::format("--method {} does not judge images alone; the methods that do are: {}",
+                               options.method, fmt::join(described_methods(), "; ")));
 }
 
 void tell_stand_in(const MotionOptions& options, const MethodInfo& method) {
