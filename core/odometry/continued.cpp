@@ -8,22 +8,13 @@ namespace stillpoint {
 void Odometry::drop_images() {
   preparer_.motion().forget();
   motion_.drop_images();
-  for (auto* reference : {&last_reference_, &sharp_reference_})
-    if (*reference) (*reference)->gray.release(), (*reference)->depth.release();
+  solver_.direct().drop_images();
 }
 
 void Odometry::restore_images(int next, const std::function<Frame(int)>& read) {
   preparer_.motion().restore(next, config_.run.threads, read);
   motion_.restore_images(next, std::numeric_limits<int>::max(), read);
-  for (auto* reference : {&last_reference_, &sharp_reference_}) {
-    // One that is too old for the next frame is never looked at again.
-    if (!*reference || !(*reference)->gray.empty() ||
-        next - (*reference)->frame_index > config_.direct.max_age)
-      continue;
-    const Frame frame = read((*reference)->frame_index);
-    (*reference)->gray = frame.gray;
-    (*reference)->depth = frame.depth;
-  }
+  solver_.direct().restore_images(next, read);
 }
 
 int Odometry::frames_wanted(const Config& config) const { return motion_.frames_wanted(config); }
@@ -36,8 +27,10 @@ std::optional<Odometry> Odometry::continued_with(const Config& config,
   Odometry next = *this;
   next.config_ = config;
   next.preparer_ = FramePreparer(camera_, config);
-  if (!next.looks_back()) next.hindsight_.forget_pending();
   next.motion_ = motion_.continued_with(config, before);
+  next.solver_.adopt(config);
+  next.mapper_.adopt(config);
+  if (!next.looks_back()) next.hindsight_.forget_pending();
   if (frames_wanted(config) == 0) {
     for (const auto& preparation : preparer_.motion().past()) next.preparer_.motion().pass(preparation);
   } else {

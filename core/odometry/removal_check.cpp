@@ -1,41 +1,44 @@
-// The pose of a frame as it would be had other features been taken out: beside the run, and of no effect on
-// it.
+#include "core/odometry/removal_check.hpp"
+
 #include <future>
 
-#include "core/odometry/odometry.hpp"
-
 namespace stillpoint {
+namespace {
 
-RemovalCheck Odometry::check_removal(const Frame& frame, const PreparedFrame& prepared,
-                                     const cv::Mat& known_mask) const {
-  RemovalCheck check;
-  std::future<std::optional<Pose>> told;
-  if (known_mask.size() == frame.gray.size())
-    told = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred,
-                      [&] { return solve_with_mask(frame, prepared, known_mask); });
-  check.nothing_removed = solve_with_mask(frame, prepared, {});
-  if (told.valid()) check.truth_removed = told.get();
-  return check;
-}
-
-std::optional<Pose> Odometry::solve_with_mask(const Frame& frame, const PreparedFrame& prepared,
-                                              const cv::Mat& mask) const {
+std::optional<Pose> solve_with_mask(const FrameSolver& solver, const LocalMap& map, const Frame& image,
+                                    const PreparedFrame& prepared, const cv::Mat& mask) {
   FrameRecord unused;
-  Pose start = predicted_camera_from_world();
-  Vector6d velocity = velocity_;
-  if (!is_taken_at_once(frame)) {
-    Current first = remove_moving(frame, prepared, mask, velocity, unused);
+  const CameraPath& path = solver.path();
+  Pose start = path.predicted(map, image.timestamp);
+  Vector6d velocity = path.velocity();
+  if (solver.features().depend_on_velocity(image)) {
+    TrackedFrame first = solver.features().select(image, prepared, mask, velocity);
     first.camera_from_world = start;
-    if (estimate(first, unused)) {
+    if (solver.tracker().estimate(map, first, unused)) {
       start = first.camera_from_world;
-      velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
+      velocity = path.velocity_to(start, map, image.timestamp);
     }
   }
-  Current current = remove_moving(frame, prepared, mask, velocity, unused);
-  current.camera_from_world = start;
-  if (!estimate(current, unused)) return std::nullopt;
-  if (track_local_map(current, unused).inliers < inliers_needed()) return std::nullopt;
-  return current.camera_from_world.inverse();
+  TrackedFrame frame = solver.features().select(image, prepared, mask, velocity);
+  frame.camera_from_world = start;
+  if (!solver.tracker().estimate(map, frame, unused)) return std::nullopt;
+  if (solver.tracker().refine_by_local_map(map, frame, unused).inliers < solver.tracker().inliers_needed())
+    return std::nullopt;
+  return frame.camera_from_world.inverse();
+}
+
+}  // namespace
+
+RemovalCheck check_removal(const FrameSolver& solver, const LocalMap& map, const Frame& image,
+                           const PreparedFrame& prepared, const cv::Mat& known_mask, int threads) {
+  RemovalCheck check;
+  std::future<std::optional<Pose>> told;
+  if (known_mask.size() == image.gray.size())
+    told = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                      [&] { return solve_with_mask(solver, map, image, prepared, known_mask); });
+  check.nothing_removed = solve_with_mask(solver, map, image, prepared, {});
+  if (told.valid()) check.truth_removed = told.get();
+  return check;
 }
 
 }  // namespace stillpoint
