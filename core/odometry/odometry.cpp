@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/odometry/frame_judgement.hpp"
-#include "core/odometry/removal_check.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -43,7 +42,6 @@ FrameResult Odometry::run_frame(const Frame& frame, const PreparedFrame& prepare
   record.timestamp = frame.timestamp;
   record.note = frame.problem;
   const Stopwatch whole;
-  double check_ms = 0.0;  // no part of what the frame takes
 
   mapper_.begin_frame(record);
   if (!frame.readable()) {
@@ -56,14 +54,8 @@ FrameResult Odometry::run_frame(const Frame& frame, const PreparedFrame& prepare
     const MotionNeeds& needs = motion_.info_for(frame).needs;
     if (needs.true_mask) input.true_mask = known_mask;
     if (!needs.first_pose) judge(motion_, input, result);  // §1
-    const bool begun = solver_.path().begun();
-    if (config_.run.check_removal && begun) {
-      const Stopwatch beside;
-      record.removal_check =
-          check_removal(solver_, mapper_.map(), frame, prepared, known_mask, config_.run.threads);
-      check_ms = beside.milliseconds();
-    }
-    TrackedFrame tracked = begun ? track_frame(input, prepared, result) : begin_map(frame, prepared, result);
+    TrackedFrame tracked = solver_.path().begun() ? track_frame(input, prepared, known_mask, result)
+                                                  : begin_map(frame, prepared, result);
     record.features_found = static_cast<int>(tracked.records.size());
     record.features_kept = tracked.features->size();
     record.features_removed = record.features_found - record.features_kept;
@@ -74,7 +66,7 @@ FrameResult Odometry::run_frame(const Frame& frame, const PreparedFrame& prepare
   }
   record.map_points = static_cast<int>(mapper_.map().point_count());
   record.map_keyframes = static_cast<int>(mapper_.map().keyframes().size());
-  record.ms.total = whole.milliseconds() - check_ms;
+  record.ms.total += whole.milliseconds();
   return result;
 }
 
@@ -98,11 +90,14 @@ TrackedFrame Odometry::begin_map(const Frame& frame, const PreparedFrame& prepar
 }
 
 /// METHOD.md §2, a step a line.
-TrackedFrame Odometry::track_frame(MotionInput input, const PreparedFrame& prepared, FrameResult& result) {
+TrackedFrame Odometry::track_frame(MotionInput input, const PreparedFrame& prepared,
+                                   const cv::Mat& known_mask, FrameResult& result) {
   const Frame& frame = input.frame;
   FrameRecord& record = result.record;
   const LocalMap& map = mapper_.map();
   const MotionNeeds& needs = motion_.info_for(frame).needs;
+  std::optional<BeforeFrame> before;
+  if (config_.run.check_removal) before = BeforeFrame{solver_, mapper_, motion_.settled()};
 
   // Where a constant velocity has the camera by now.
   FrameSolver::FirstPose first = solver_.predict(frame, map);
@@ -126,12 +121,23 @@ TrackedFrame Odometry::track_frame(MotionInput input, const PreparedFrame& prepa
   FrameSolver::Solution solution =
       solver_.solve(frame, prepared, result.mask, result.motion, first, map, record);
   if (solution.withdrawn) withdraw(result);
+  if (before)
+    check(*before, frame, prepared, solution.withdrawn ? MotionResult{} : result.motion, known_mask, record);
   mapper_.count_sightings(solution.points_in_view, solution.points_found);
   if (solution.found())
     keep(frame, solution, record);  // §2.1 the local map, §2.4 local bundle adjustment
   else
     lose(frame, FrameStatus::lost, solution.why_lost, record);
   return std::move(solution.frame);
+}
+
+void Odometry::check(const BeforeFrame& before, const Frame& frame, const PreparedFrame& prepared,
+                     const MotionResult& motion, const cv::Mat& known_mask, FrameRecord& record) const {
+  const Stopwatch beside;
+  record.removal_check =
+      check_removal(before, frame, prepared, motion, motion_.info_for(frame).needs.first_pose, known_mask,
+                    config_.run.threads);
+  record.ms.total -= beside.milliseconds();  // no part of what the frame takes
 }
 
 /// What becomes of a frame whose pose was found.

@@ -15,6 +15,7 @@
 #include "core/odometry/hindsight.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/mapper.hpp"
+#include "core/odometry/removal_check.hpp"
 #include "core/sequence/frame.hpp"
 
 namespace stillpoint {
@@ -71,7 +72,9 @@ class Odometry {
   [[nodiscard]] TrackedFrame begin_map(const Frame& frame, const PreparedFrame& prepared,
                                        FrameResult& result);
   [[nodiscard]] TrackedFrame track_frame(MotionInput input, const PreparedFrame& prepared,
-                                         FrameResult& result);
+                                         const cv::Mat& known_mask, FrameResult& result);
+  void check(const BeforeFrame& before, const Frame& frame, const PreparedFrame& prepared,
+             const MotionResult& motion, const cv::Mat& known_mask, FrameRecord& record) const;
   void keep(const Frame& frame, FrameSolver::Solution& solution, FrameRecord& record);
   void lose(const Frame& frame, FrameStatus status, const std::string& why, FrameRecord& record);
   void write_pose(const Pose& camera_from_world, FrameRecord& record) const;

@@ -5,38 +5,49 @@
 namespace stillpoint {
 namespace {
 
-std::optional<Pose> solve_with_mask(const FrameSolver& solver, const LocalMap& map, const Frame& image,
-                                    const PreparedFrame& prepared, const cv::Mat& mask) {
+/// What the judgement says beside what it removes.
+MotionResult weights_of(const MotionResult& motion) {
+  MotionResult weights;
+  weights.log_odds = motion.log_odds;
+  weights.weight_of_feature = motion.weight_of_feature;
+  for (float& weight : weights.weight_of_feature)
+    if (weight <= 0.0F) weight = 1.0F;
+  return weights;
+}
+
+/// The steps of Odometry::track_frame as far as the pose, on copies.
+std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, const PreparedFrame& prepared,
+                                    const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
+  FrameSolver& solver = before.solver;
+  const LocalMap& map = before.mapper.map();
   FrameRecord unused;
-  const CameraPath& path = solver.path();
-  Pose start = path.predicted(map, image.timestamp);
-  Vector6d velocity = path.velocity();
-  if (solver.features().depend_on_velocity(image)) {
-    TrackedFrame first = solver.features().select(image, prepared, mask, velocity);
-    first.camera_from_world = start;
-    if (solver.tracker().estimate(map, first, unused)) {
-      start = first.camera_from_world;
-      velocity = path.velocity_to(start, map, image.timestamp);
-    }
+  FrameSolver::FirstPose first = solver.predict(image, map);
+  if (solver.needs_first_pose(image)) {
+    first = solver.first_pose(image, prepared, mask, map, before.movers_known, unused);
+    if (first.found && judged_by_pose)
+      before.mapper.remove_dynamic_points(image, mask, first.camera_from_world,
+                                          solver.path().last().reference_keyframe);
   }
-  TrackedFrame frame = solver.features().select(image, prepared, mask, velocity);
-  frame.camera_from_world = start;
-  if (!solver.tracker().estimate(map, frame, unused)) return std::nullopt;
-  if (solver.tracker().refine_by_local_map(map, frame, unused).inliers < solver.tracker().inliers_needed())
-    return std::nullopt;
-  return frame.camera_from_world.inverse();
+  const FrameSolver::Solution solution = solver.solve(image, prepared, mask, weights, first, map, unused);
+  if (!solution.found()) return std::nullopt;
+  return solution.frame.camera_from_world.inverse();
 }
 
 }  // namespace
 
-RemovalCheck check_removal(const FrameSolver& solver, const LocalMap& map, const Frame& image,
-                           const PreparedFrame& prepared, const cv::Mat& known_mask, int threads) {
+RemovalCheck check_removal(const BeforeFrame& before, const Frame& image, const PreparedFrame& prepared,
+                           const MotionResult& motion, bool judged_by_pose, const cv::Mat& known_mask,
+                           int threads) {
+  const MotionResult weights = weights_of(motion);
+  const auto solve = [&](const cv::Mat& mask) {
+    return solve_with_mask(before, image, prepared, mask, weights, judged_by_pose);
+  };
   RemovalCheck check;
   std::future<std::optional<Pose>> told;
   if (known_mask.size() == image.gray.size())
     told = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
-                      [&] { return solve_with_mask(solver, map, image, prepared, known_mask); });
-  check.nothing_removed = solve_with_mask(solver, map, image, prepared, {});
+                      [&] { return solve(known_mask); });
+  check.nothing_removed = solve({});
   if (told.valid()) check.truth_removed = told.get();
   return check;
 }
