@@ -1,44 +1,46 @@
 #pragma once
 
-#include <functional>
-#include <map>
+#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/geometry/camera.hpp"
-#include "core/motion/motion_stage.hpp"
-#include "core/odometry/frame_preparer.hpp"
-#include "core/odometry/frame_result.hpp"
-#include "core/odometry/frame_solver.hpp"
-#include "core/odometry/hindsight.hpp"
-#include "core/odometry/local_map.hpp"
-#include "core/odometry/mapper.hpp"
-#include "core/odometry/removal_check.hpp"
-#include "core/sequence/frame.hpp"
+#include "core/odometry/odometry_engine.hpp"
 
 namespace stillpoint {
 
-/// RGB-D visual odometry against a local map (METHOD.md §2), with the features that config.run.method finds
-/// moving taken out first. Frames go in, in order; poses come out. World coordinates are the first tracked
-/// frame's camera.
+/// RGB-D visual odometry with the features that config.run.method finds moving taken out first. Frames go in,
+/// in order; poses come out. World coordinates are the first tracked frame's camera.
 ///
-/// A value: a copy goes on from where the original stood, and gives the same bytes from the same frames. So
-/// is each of its parts.
+/// A value, whatever engine is behind it: a copy goes on from where the original stood, and gives the same
+/// bytes from the same frames.
 class Odometry {
  public:
-  Odometry(const Camera& camera, const Config& config);
+  Odometry(const Camera& camera, const Config& config) : engine_(make_odometry_engine(camera, config)) {}
+  Odometry(const Odometry& other) : engine_(other.engine_->clone()) {}
+  Odometry& operator=(const Odometry& other) {
+    if (this != &other) engine_ = other.engine_->clone();
+    return *this;
+  }
+  Odometry(Odometry&&) = default;
+  Odometry& operator=(Odometry&&) = default;
+  ~Odometry() = default;
 
   /// Takes the next frame. Nothing about the frame makes it throw: what cannot be tracked is marked lost.
-  /// @param known_mask what truly moves, CV_8UC1; empty where it is not known. Method `oracle` alone goes by
-  /// it; to the others it serves for RemovalCheck.
-  [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {});
+  /// @param known_mask what truly moves, CV_8UC1; empty where it is not known. Only methods that need the
+  /// true mask go by it; to the others it serves for RemovalCheck.
+  [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {}) {
+    return engine_->process(frame, known_mask);
+  }
 
   /// The same of a frame that a FramePreparer of the same camera and config prepared, frame by frame in
   /// order.
   [[nodiscard]] FrameResult process_prepared(const Frame& frame, PreparedFrame prepared,
-                                             const cv::Mat& known_mask = {});
+                                             const cv::Mat& known_mask = {}) {
+    return engine_->process_prepared(frame, std::move(prepared), known_mask);
+  }
+
+  /// Lets a pending bundle adjustment enter the map and looks back at the last poses: after the last frame.
+  void finish() { engine_->finish(); }
 
   /// The same map and the same place, but the next frames are processed with another config. What the new
   /// method needs of earlier frames is made from `before`, the last frames_wanted(config) of them, newest
@@ -46,47 +48,31 @@ class Odometry {
   /// @returns nothing where the map's features would not fit the new ones (another features.levels or
   /// features.scale_factor)
   [[nodiscard]] std::optional<Odometry> continued_with(const Config& config,
-                                                       const std::vector<PastFrame>& before) const;
-
+                                                       const std::vector<PastFrame>& before) const {
+    if (auto next = engine_->continued_with(config, before)) return Odometry(std::move(next));
+    return std::nullopt;
+  }
   /// How many earlier frames continued_with() needs; 0 where it has all that the new config asks for.
-  [[nodiscard]] int frames_wanted(const Config& config) const;
+  [[nodiscard]] int frames_wanted(const Config& config) const { return engine_->frames_wanted(config); }
 
   /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
-  void drop_images();
+  void drop_images() { engine_->drop_images(); }
   /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
-  void restore_images(int next, const std::function<Frame(int)>& read);
+  void restore_images(int next, const std::function<Frame(int)>& read) {
+    engine_->restore_images(next, read);
+  }
 
-  /// Lets a pending bundle adjustment enter the map and looks back at the last poses: after the last frame.
-  void finish();
-
-  [[nodiscard]] const LocalMap& map() const { return mapper_.map(); }
+  [[nodiscard]] const LocalMap& map() const { return engine_->map(); }
   /// By frame index: the poses of earlier frames that were solved once more, by the map as it was later.
-  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const { return hindsight_.revised(); }
-  [[nodiscard]] const Config& config() const { return config_; }
+  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const { return engine_->revised_poses(); }
+  [[nodiscard]] const Config& config() const { return engine_->config(); }
   /// The motion method's state, as the next frame will find it.
-  [[nodiscard]] const MotionStage& motion() const { return motion_; }
+  [[nodiscard]] const MotionStage& motion() const { return engine_->motion(); }
 
  private:
-  [[nodiscard]] FrameResult run_frame(const Frame& frame, const PreparedFrame& prepared,
-                                      const cv::Mat& known_mask);
-  [[nodiscard]] TrackedFrame begin_map(const Frame& frame, const PreparedFrame& prepared,
-                                       FrameResult& result);
-  [[nodiscard]] TrackedFrame track_frame(MotionInput input, const PreparedFrame& prepared,
-                                         const cv::Mat& known_mask, FrameResult& result);
-  void check(const BeforeFrame& before, const Frame& frame, const PreparedFrame& prepared,
-             const MotionResult& motion, const cv::Mat& known_mask, FrameRecord& record) const;
-  void keep(const Frame& frame, FrameSolver::Solution& solution, FrameRecord& record);
-  void lose(const Frame& frame, FrameStatus status, const std::string& why, FrameRecord& record);
-  void write_pose(const Pose& camera_from_world, FrameRecord& record) const;
-  [[nodiscard]] bool looks_back() const;
+  explicit Odometry(std::unique_ptr<OdometryEngine> engine) : engine_(std::move(engine)) {}
 
-  Camera camera_;
-  Config config_;
-  FramePreparer preparer_;
-  MotionStage motion_;  // what is classified as dynamic
-  FrameSolver solver_;
-  Mapper mapper_;
-  Hindsight hindsight_;  // of frames lately tracked
+  std::unique_ptr<OdometryEngine> engine_;
 };
 
 }  // namespace stillpoint

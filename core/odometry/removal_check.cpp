@@ -15,7 +15,7 @@ MotionResult weights_of(const MotionResult& motion) {
   return weights;
 }
 
-/// The steps of Odometry::track_frame as far as the pose, on copies.
+/// The steps of FeatureOdometry::track_frame as far as the pose, on copies.
 std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, const PreparedFrame& prepared,
                                     const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
   FrameSolver& solver = before.solver;

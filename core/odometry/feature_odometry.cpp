@@ -1,4 +1,4 @@
-#include "core/odometry/odometry.hpp"
+#include "core/odometry/feature_odometry.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 namespace stillpoint {
 
-Odometry::Odometry(const Camera& camera, const Config& config)
+FeatureOdometry::FeatureOdometry(const Camera& camera, const Config& config)
     : camera_(camera),
       config_(config),
       preparer_(camera, config),
@@ -18,7 +18,7 @@ Odometry::Odometry(const Camera& camera, const Config& config)
       solver_(camera, config),
       mapper_(camera, config) {}
 
-FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
+FrameResult FeatureOdometry::process(const Frame& frame, const cv::Mat& known_mask) {
   const Stopwatch watch;
   PreparedFrame prepared;
   if (frame.readable()) prepared = preparer_.prepare(frame);
@@ -28,14 +28,14 @@ FrameResult Odometry::process(const Frame& frame, const cv::Mat& known_mask) {
   return result;
 }
 
-FrameResult Odometry::process_prepared(const Frame& frame, PreparedFrame prepared,
-                                       const cv::Mat& known_mask) {
+FrameResult FeatureOdometry::process_prepared(const Frame& frame, PreparedFrame prepared,
+                                              const cv::Mat& known_mask) {
   preparer_.motion().pass(prepared.motion);
   return run_frame(frame, prepared, known_mask);
 }
 
-FrameResult Odometry::run_frame(const Frame& frame, const PreparedFrame& prepared,
-                                const cv::Mat& known_mask) {
+FrameResult FeatureOdometry::run_frame(const Frame& frame, const PreparedFrame& prepared,
+                                       const cv::Mat& known_mask) {
   FrameResult result;
   FrameRecord& record = result.record;
   record.index = frame.index;
@@ -70,7 +70,8 @@ FrameResult Odometry::run_frame(const Frame& frame, const PreparedFrame& prepare
   return result;
 }
 
-TrackedFrame Odometry::begin_map(const Frame& frame, const PreparedFrame& prepared, FrameResult& result) {
+TrackedFrame FeatureOdometry::begin_map(const Frame& frame, const PreparedFrame& prepared,
+                                        FrameResult& result) {
   constexpr int kMinFeatures = 100;  // with depth: fewer make no map to track against
   FrameRecord& record = result.record;
   TrackedFrame tracked = solver_.features().select(frame, prepared, result.mask, solver_.path().velocity());
@@ -90,8 +91,8 @@ TrackedFrame Odometry::begin_map(const Frame& frame, const PreparedFrame& prepar
 }
 
 /// METHOD.md §2, a step a line.
-TrackedFrame Odometry::track_frame(MotionInput input, const PreparedFrame& prepared,
-                                   const cv::Mat& known_mask, FrameResult& result) {
+TrackedFrame FeatureOdometry::track_frame(MotionInput input, const PreparedFrame& prepared,
+                                          const cv::Mat& known_mask, FrameResult& result) {
   const Frame& frame = input.frame;
   FrameRecord& record = result.record;
   const LocalMap& map = mapper_.map();
@@ -131,8 +132,9 @@ TrackedFrame Odometry::track_frame(MotionInput input, const PreparedFrame& prepa
   return std::move(solution.frame);
 }
 
-void Odometry::check(const BeforeFrame& before, const Frame& frame, const PreparedFrame& prepared,
-                     const MotionResult& motion, const cv::Mat& known_mask, FrameRecord& record) const {
+void FeatureOdometry::check(const BeforeFrame& before, const Frame& frame, const PreparedFrame& prepared,
+                            const MotionResult& motion, const cv::Mat& known_mask,
+                            FrameRecord& record) const {
   const Stopwatch beside;
   record.removal_check =
       check_removal(before, frame, prepared, motion, motion_.info_for(frame).needs.first_pose, known_mask,
@@ -141,7 +143,7 @@ void Odometry::check(const BeforeFrame& before, const Frame& frame, const Prepar
 }
 
 /// What becomes of a frame whose pose was found.
-void Odometry::keep(const Frame& frame, FrameSolver::Solution& solution, FrameRecord& record) {
+void FeatureOdometry::keep(const Frame& frame, FrameSolver::Solution& solution, FrameRecord& record) {
   TrackedFrame& tracked = solution.frame;
   CameraPath& path = solver_.path();
   DirectFallback& direct = solver_.direct();
@@ -175,7 +177,8 @@ void Odometry::keep(const Frame& frame, FrameSolver::Solution& solution, FrameRe
   record.ms.pose += watch.milliseconds();
 }
 
-void Odometry::lose(const Frame& frame, FrameStatus status, const std::string& why, FrameRecord& record) {
+void FeatureOdometry::lose(const Frame& frame, FrameStatus status, const std::string& why,
+                           FrameRecord& record) {
   record.status = status;
   record.note += (record.note.empty() ? "" : "; ") + why;
   CameraPath& path = solver_.path();
@@ -186,17 +189,17 @@ void Odometry::lose(const Frame& frame, FrameStatus status, const std::string& w
   solver_.direct().end_starving();
 }
 
-void Odometry::write_pose(const Pose& camera_from_world, FrameRecord& record) const {
+void FeatureOdometry::write_pose(const Pose& camera_from_world, FrameRecord& record) const {
   record.reference_keyframe = solver_.path().last().reference_keyframe;
   record.camera_from_reference = solver_.path().last().camera_from_reference;
   record.world_from_camera = camera_from_world.inverse();
 }
 
-bool Odometry::looks_back() const {
+bool FeatureOdometry::looks_back() const {
   return config_.tracking.look_back_frames > 0 && motion_.info().extends_odometry;
 }
 
-void Odometry::finish() {
+void FeatureOdometry::finish() {
   FrameRecord unused;
   mapper_.end_bundle(unused);
   hindsight_.look_back(std::numeric_limits<int>::max(), mapper_.map(), camera_, config_.tracking);
