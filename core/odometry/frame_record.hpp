@@ -97,8 +97,9 @@ struct MotionFigure {
   double value = 0.0;
 };
 
-/// The frame's pose as it would have been with other features taken out, solved from the same map and the
-/// same prediction (run.check_removal). Nothing else depends on it.
+/// The frame's pose as it would have been with other features taken out (run.check_removal): solved from the
+/// same map and the same prediction, by the same solver and with the same weights, so that what is removed is
+/// the only difference. Nothing else depends on it.
 struct RemovalCheck {
   std::optional<Pose> nothing_removed;  ///< world_from_camera; nothing where it was not or cannot be solved
   std::optional<Pose> truth_removed;  ///< … with the features that truly move taken out, where that is known

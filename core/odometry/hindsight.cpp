@@ -29,4 +29,17 @@ void Hindsight::look_back(int last, const LocalMap& map, const Camera& camera, c
   }
 }
 
+std::vector<Hindsight::Sight> sights_of(const TrackedFrame& frame, const std::vector<double>& scales) {
+  std::vector<Hindsight::Sight> sights;
+  const FeatureSet& features = *frame.features;
+  for (std::size_t f = 0; f < frame.points.size(); ++f) {
+    if (frame.points[f] == kNone) continue;
+    const cv::Point2f pixel = features.undistorted[f];
+    const auto octave = static_cast<std::size_t>(features.keypoints[f].octave);
+    sights.push_back({frame.points[f], pixel.x, pixel.y, features.depth[f],
+                      static_cast<float>(scales[octave]), features.trust[f]});
+  }
+  return sights;
+}
+
 }  // namespace stillpoint

@@ -7,6 +7,7 @@
 
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/pose_solver.hpp"
+#include "core/odometry/tracked_frame.hpp"
 
 namespace stillpoint {
 
@@ -55,5 +56,10 @@ class Hindsight {
   std::deque<std::shared_ptr<const Past>> past_;  // oldest first
   std::map<int, HangingPose> revised_;
 };
+
+/// The matches that a tracked frame's pose agreed with. @param scales standard deviation of each octave's
+/// pixels, px
+[[nodiscard]] std::vector<Hindsight::Sight> sights_of(const TrackedFrame& frame,
+                                                      const std::vector<double>& scales);
 
 }  // namespace stillpoint

@@ -200,4 +200,28 @@ Pose LocalMap::pose_of(int keyframe) const {
   }
 }
 
+std::vector<int> local_points(const LocalMap& map, const std::vector<int>& matched, int about,
+                              int max_keyframes) {
+  std::vector<std::pair<int, int>> seeds = map.observers(matched);
+  if (seeds.empty()) {  // nothing matched yet: about where the camera was last
+    const int reference = map.has_keyframe(about) ? about : map.keyframes().rbegin()->first;
+    seeds = map.covisible(reference);
+    seeds.insert(seeds.begin(), {reference, 0});
+  }
+  const auto wanted = static_cast<std::size_t>(max_keyframes);
+  if (seeds.size() > wanted) seeds.resize(wanted);
+  std::vector<int> keyframes;
+  for (const auto& seed : seeds) keyframes.push_back(seed.first);
+  // Room left goes to the neighbours of what the frame sees most of.
+  for (std::size_t i = 0; i < seeds.size() && keyframes.size() < wanted; ++i)
+    for (const auto& [neighbour, shared] : map.covisible(seeds[i].first))
+      if (keyframes.size() < wanted &&
+          std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
+        keyframes.push_back(neighbour);
+
+  std::vector<const std::vector<int>*> seen;
+  for (const int keyframe : keyframes) seen.push_back(&map.keyframe(keyframe).points);
+  return each_once(seen);
+}
+
 }  // namespace stillpoint

@@ -121,4 +121,9 @@ class LocalMap {
   int next_keyframe_ = 0, next_point_ = 0;
 };
 
+/// Points of the keyframes about those that see the matched ones; without any, of those about a keyframe (the
+/// newest, where it has left the map). Each once, ascending.
+[[nodiscard]] std::vector<int> local_points(const LocalMap& map, const std::vector<int>& matched, int about,
+                                            int max_keyframes);
+
 }  // namespace stillpoint

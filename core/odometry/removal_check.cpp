@@ -1,41 +1,55 @@
-// The pose of a frame as it would be had other features been taken out: beside the run, and of no effect on
-// it.
+#include "core/odometry/removal_check.hpp"
+
 #include <future>
 
-#include "core/odometry/odometry.hpp"
-
 namespace stillpoint {
+namespace {
 
-RemovalCheck Odometry::check_removal(const Frame& frame, const PreparedFrame& prepared,
-                                     const cv::Mat& known_mask) const {
-  RemovalCheck check;
-  std::future<std::optional<Pose>> told;
-  if (known_mask.size() == frame.gray.size())
-    told = std::async(config_.run.threads > 1 ? std::launch::async : std::launch::deferred,
-                      [&] { return solve_with_mask(frame, prepared, known_mask); });
-  check.nothing_removed = solve_with_mask(frame, prepared, {});
-  if (told.valid()) check.truth_removed = told.get();
-  return check;
+/// What the judgement says beside what it removes.
+MotionResult weights_of(const MotionResult& motion) {
+  MotionResult weights;
+  weights.log_odds = motion.log_odds;
+  weights.weight_of_feature = motion.weight_of_feature;
+  for (float& weight : weights.weight_of_feature)
+    if (weight <= 0.0F) weight = 1.0F;
+  return weights;
 }
 
-std::optional<Pose> Odometry::solve_with_mask(const Frame& frame, const PreparedFrame& prepared,
-                                              const cv::Mat& mask) const {
+/// The steps of FeatureOdometry::track_frame as far as the pose, on copies.
+std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, const PreparedFrame& prepared,
+                                    const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
+  FrameSolver& solver = before.solver;
+  const LocalMap& map = before.mapper.map();
   FrameRecord unused;
-  Pose start = predicted_camera_from_world();
-  Vector6d velocity = velocity_;
-  if (!is_taken_at_once(frame)) {
-    Current first = remove_moving(frame, prepared, mask, velocity, unused);
-    first.camera_from_world = start;
-    if (estimate(first, unused)) {
-      start = first.camera_from_world;
-      velocity = se3_log(start * last_camera_from_world().inverse()) / elapsed();
-    }
+  FrameSolver::FirstPose first = solver.predict(image, map);
+  if (solver.needs_first_pose(image)) {
+    first = solver.first_pose(image, prepared, mask, map, before.movers_known, unused);
+    if (first.found && judged_by_pose)
+      before.mapper.remove_dynamic_points(image, mask, first.camera_from_world,
+                                          solver.path().last().reference_keyframe);
   }
-  Current current = remove_moving(frame, prepared, mask, velocity, unused);
-  current.camera_from_world = start;
-  if (!estimate(current, unused)) return std::nullopt;
-  if (track_local_map(current, unused).inliers < inliers_needed()) return std::nullopt;
-  return current.camera_from_world.inverse();
+  const FrameSolver::Solution solution = solver.solve(image, prepared, mask, weights, first, map, unused);
+  if (!solution.found()) return std::nullopt;
+  return solution.frame.camera_from_world.inverse();
+}
+
+}  // namespace
+
+RemovalCheck check_removal(const BeforeFrame& before, const Frame& image, const PreparedFrame& prepared,
+                           const MotionResult& motion, bool judged_by_pose, const cv::Mat& known_mask,
+                           int threads) {
+  const MotionResult weights = weights_of(motion);
+  const auto solve = [&](const cv::Mat& mask) {
+    return solve_with_mask(before, image, prepared, mask, weights, judged_by_pose);
+  };
+  RemovalCheck check;
+  std::future<std::optional<Pose>> told;
+  if (known_mask.size() == image.gray.size())
+    told = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                      [&] { return solve(known_mask); });
+  check.nothing_removed = solve({});
+  if (told.valid()) check.truth_removed = told.get();
+  return check;
 }
 
 }  // namespace stillpoint

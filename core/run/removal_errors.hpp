@@ -7,8 +7,9 @@
 
 namespace stillpoint {
 
-/// Errors of one frame's step from the pose before, solved three ways from the same map, against the truth:
-/// translational, m. NaN where it was not, or cannot be, solved.
+/// Errors of one frame's step from the pose before, against the truth: translational, m. Solved with three
+/// masks from the same map by the run's own solver, weights included, so that they tell what the mask did and
+/// nothing of how poses are solved. NaN where it was not, or cannot be, solved.
 struct RemovalError {
   int frame = 0;
   double with_removal_m = 0.0;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "core/motion/motion_method.hpp"
+#include "core/odometry/frame_record.hpp"
+
+namespace stillpoint {
+
+/// What a frame gives: the record that is kept, and the motion stage's images, which can be computed again.
+struct FrameResult {
+  FrameRecord record;
+  MotionResult motion;  ///< the method's judgement, as far as it came to one
+  cv::Mat mask;         ///< what was removed, CV_8UC1, 255 = dynamic; empty when nothing was
+};
+
+}  // namespace stillpoint

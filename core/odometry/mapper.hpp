@@ -1,0 +1,62 @@
+#pragma once
+
+#include <future>
+#include <optional>
+
+#include "core/config.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/local_map.hpp"
+#include "core/odometry/tracked_frame.hpp"
+#include "core/sequence/frame.hpp"
+
+namespace stillpoint {
+
+/// Keeps the local map: keyframes, new points, fusion, culling, and METHOD.md §2.4, local bundle adjustment,
+/// one at a time, solved beside tracking. All that changes the map is here. A value: copies share a pending
+/// adjustment's solution.
+class Mapper {
+ public:
+  Mapper(const Camera& camera, const Config& config) : camera_(camera), config_(config) {}
+
+  void adopt(const Config& config) { config_ = config; }
+  [[nodiscard]] const LocalMap& map() const { return map_; }
+
+  /// A pending adjustment enters the map when the frame with the right number comes. When it does is fixed by
+  /// the frame's number, so that threads change nothing but the time.
+  void begin_frame(FrameRecord& record);
+  /// … or now, due or not.
+  void end_bundle(FrameRecord& record);
+
+  /// Takes the map points that lie on what moves out of the map. @param mask CV_8UC1, 255 = dynamic; empty:
+  /// nothing does. @param about keyframe near which the camera is
+  void remove_dynamic_points(const Frame& image, const cv::Mat& mask, const Pose& camera_from_world,
+                             int about);
+  /// Counts for each map point that should be seen that it should, and whether it was.
+  void count_sightings(const std::vector<int>& in_view, const std::vector<int>& found);
+
+  /// Whether a frame shows enough that the map does not hold. @param inliers of its pose
+  [[nodiscard]] bool wants_keyframe(const Frame& image, const TrackedFrame& frame, int inliers) const;
+  /// Whether a frame that few matches tie to the map can be a keyframe nevertheless.
+  [[nodiscard]] bool bears_keyframe(const Frame& image, const TrackedFrame& frame) const;
+  /// Makes the frame a keyframe and has the map about it adjusted. The frame follows the map.
+  void add_keyframe(const Frame& image, TrackedFrame& frame, FrameRecord& record);
+
+ private:
+  struct PendingBundle {
+    std::shared_future<BundleSolution> solution;
+    int keyframe = kNone;
+    int due = 0;  // frame index at which it enters the map
+  };
+  void begin_bundle(int keyframe, int frame_index);
+  void forget_removed(TrackedFrame& frame) const;
+  void update_points(const std::vector<int>& points);
+
+  Camera camera_;
+  Config config_;
+  LocalMap map_;
+  int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
+  std::optional<PendingBundle> pending_;
+};
+
+}  // namespace stillpoint
