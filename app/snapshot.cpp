@@ -12,6 +12,7 @@
 #include "app/video_file.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/motion/methods.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
 #include "ui/session/session.hpp"
@@ -26,6 +27,7 @@ struct SnapshotArguments {
   PlaceArguments place;
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
   double scale = 1.0, fps = 30.0;
+  std::string beside;  ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
 
@@ -129,6 +131,7 @@ void snapshot(const SnapshotArguments& arguments) {
                            (painter.draws("motion") || painter.draws("stages") || painter.draws("feature") ||
                             painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
+  if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
     const auto on_frame = [&](const FrameRecord& record) {
@@ -196,6 +199,11 @@ void add_snapshot_command(CLI::App& app) {
       "--layout", arguments->layout,
       "The workbench's tiles and what is chosen in each panel, a JSON file; single panels take their "
       "choices from it");
+  command
+      ->add_option("--beside", arguments->beside,
+                   "Another method, whose stages are worked out for each frame as well: what its own panels "
+                   "show")
+      ->check(CLI::IsMember(method_names()));
   command->add_flag("--no-baseline", arguments->no_baseline, "Do not run method none beside for comparison");
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");

@@ -24,16 +24,16 @@ STILLPOINT_METHODS(DECLARE_METHOD)
 
 namespace {
 
-std::vector<MethodInfo>& registry() {
+std::deque<MethodInfo>& registry() {
 #define LIST_METHOD(name) name##_method(),
-  static std::vector<MethodInfo> all = {STILLPOINT_METHODS(LIST_METHOD)};
+  static std::deque<MethodInfo> all = {STILLPOINT_METHODS(LIST_METHOD)};
 #undef LIST_METHOD
   return all;
 }
 
 }  // namespace
 
-const std::vector<MethodInfo>& methods() { return registry(); }
+const std::deque<MethodInfo>& methods() { return registry(); }
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
@@ -65,6 +65,12 @@ void register_method(MethodInfo method) {
   const std::vector<std::string> names = method_names();
   if (std::find(names.begin(), names.end(), method.name) != names.end())
     throw InputError(fmt::format("there is a method '{}' already", method.name));
+  for (const MethodInfo& other : methods())
+    for (const FigureInfo& theirs : other.figures)
+      for (const FigureInfo& figure : method.figures)
+        if (figure.name == theirs.name)
+          throw InputError(fmt::format("methods {} and {} both have a figure '{}'", method.name, other.name,
+                                       figure.name));
   registry().push_back(std::move(method));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,7 +51,8 @@ struct MethodInfo {
 };
 
 /// The methods there are: those of methods.cpp, then those that were registered, in that order.
-[[nodiscard]] const std::vector<MethodInfo>& methods();
+/// What is told of one stays where it is.
+[[nodiscard]] const std::deque<MethodInfo>& methods();
 
 [[nodiscard]] std::vector<std::string> method_names();
 
@@ -67,7 +69,7 @@ struct MethodInfo {
 [[nodiscard]] const MethodInfo& baseline_method();
 
 /// Adds a method to those there are: for programs that bring their own. Before the first Config is made.
-/// @throws InputError when the name is taken
+/// @throws InputError when its name, or that of one of its figures, is taken
 void register_method(MethodInfo method);
 
 /// What runs when nothing else is asked for.

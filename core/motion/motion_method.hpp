@@ -90,7 +90,9 @@ class MotionMethod {
   [[nodiscard]] virtual std::unique_ptr<MotionMethod> clone() const = 0;
 
   /// What can be had of a frame without its pose; may run on another thread, ahead of the frame's turn.
-  /// @param past what prepare() made of the frames before, newest last, at most frames_prepared_back()
+  /// @param past what prepare() made of the readable frames before, newest last, at most
+  /// frames_prepared_back(). Frames are prepared in order, each once; whether commit() has seen them is not
+  /// said, as preparing runs ahead.
   [[nodiscard]] virtual std::shared_ptr<const MotionPreparation> prepare(
       const Frame& frame, std::span<const std::shared_ptr<const MotionPreparation>> past, int threads) const {
     (void)frame, (void)past, (void)threads;
@@ -115,7 +117,8 @@ class MotionMethod {
   /// Whether it has seen frames enough to tell dynamic objects from the room.
   [[nodiscard]] virtual bool settled() const { return true; }
 
-  /// How many frames back the frames lie, at most, that it compares one with.
+  /// How many frames back the frames lie, at most, that it compares one with; of a method with a recursive
+  /// state, how many frames make that state anew well enough when its constants change.
   [[nodiscard]] virtual int frames_back() const { return frames_prepared_back(); }
 
   /// Lets go of images kept of earlier frames: what a checkpoint need not hold.

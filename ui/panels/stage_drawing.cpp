@@ -118,7 +118,7 @@ void StagePainter::draw(const UiFrame& frame, const char* id, const Layer& pictu
     }
   }
   std::string heading = picture.name;
-  if (picture.kind == LayerKind::kSigned) heading += fmt::format(", ±{:g} {}", picture.range, picture.unit);
+  if (picture.kind == LayerKind::kSigned) heading += fmt::format(", ±{:.3g} {}", picture.range, picture.unit);
   if (picture.kind == LayerKind::kLevels || picture.kind == LayerKind::kLength)
     heading += fmt::format(", 0 to {:.3g} {}", picture.range, picture.unit);
   if (picture.elsewhere) {
