@@ -87,6 +87,7 @@ double sum_of(const StageTimes& ms) {
 }
 
 std::string value_text(const Parameter& parameter) {
+  if (const auto* flag = std::get_if<bool*>(&parameter.value)) return **flag ? "true" : "false";
   if (const auto* number = std::get_if<int*>(&parameter.value)) return fmt::format("{}", **number);
   if (const auto* number = std::get_if<double*>(&parameter.value)) return fmt::format("{:g}", **number);
   return *std::get<std::string*>(parameter.value);

@@ -35,6 +35,8 @@ struct MotionNeeds {
 /// What a method makes of a frame before its turn, when no pose is known: its own type.
 struct MotionPreparation {
   virtual ~MotionPreparation() = default;
+  /// What of it later frames are compared with, where that is less than all; null: the whole.
+  [[nodiscard]] virtual std::shared_ptr<const MotionPreparation> for_later() const { return nullptr; }
 };
 
 /// Everything a method saw of a frame, for describe(): its own type.

@@ -41,7 +41,8 @@ std::shared_ptr<const MotionPreparation> MotionPreparer::prepare(const Frame& fr
 
 void MotionPreparer::pass(const std::shared_ptr<const MotionPreparation>& preparation) {
   if (!preparation || frames_back() == 0) return;
-  past_.push_back(preparation);
+  const auto kept = preparation->for_later();
+  past_.push_back(kept ? kept : preparation);
   while (static_cast<int>(past_.size()) > frames_back()) past_.pop_front();
 }
 

@@ -24,7 +24,7 @@ TEST(AblateCommand, RunsTheWholeMethodAndEachWithoutOne) {
   ASSERT_EQ(json["variants"].size(), 3U);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
   EXPECT_EQ(json["variants"][1]["without"], "memory");
-  EXPECT_EQ(json["variants"][1]["set"][0], "depth_motion.memory=0");
+  EXPECT_EQ(json["variants"][1]["set"][0], "stillpoint.memory=0");
   for (const auto& variant : json["variants"]) {
     ASSERT_EQ(variant["runs"].size(), 1U);
     EXPECT_EQ(variant["runs"][0]["coverage"], 1.0);

@@ -26,8 +26,10 @@ std::vector<std::string> panel_names() {
 SessionView without_stages() {
   SessionView view = generated_example();
   auto current = std::make_shared<FrameView>(*view.current);
-  current->motion =
-      std::make_shared<const StageLog>(StageLog{.method = "stillpoint", .stages = {}, .note = "none"});
+  StageLog log;
+  log.method = "stillpoint";
+  log.note = "there are none";
+  current->motion = std::make_shared<const StageLog>(std::move(log));
   view.current = current;
   return view;
 }
@@ -85,7 +87,7 @@ TEST_P(EveryPanel, IsDrawnTwiceTheSame) {
 TEST_P(EveryPanel, IsDrawnWhateverIsMissing) {
   PanelStage stage(GetParam(), {ThemeName::kLight, 1.0F});
   EXPECT_FALSE(is_blank(stage.render(generated_example()), 40));
-  for (const auto& make : {without_depth, without_truth, not_processed, unreadable})
+  for (const auto& make : {without_stages, without_truth, not_processed, unreadable})
     EXPECT_FALSE(is_blank(stage.render(make()), 8));
   stage.resize(40, 32);
   stage.render(generated_example());

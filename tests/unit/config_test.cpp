@@ -217,12 +217,9 @@ TEST_P(Presets, DiffersOnlyInWhatItNames) {
 INSTANTIATE_TEST_SUITE_P(All, Presets, testing::Values("default", "none", "paper", "stillpoint", "fast"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST(PresetFolder, HoldsThePresetsTestedHere) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "presets"))
-    names.push_back(entry.path().filename().string());
-  EXPECT_THAT(names, testing::UnorderedElementsAre("default.toml", "none.toml", "paper.toml",
-                                                   "stillpoint.toml", "fast.toml"));
+TEST(PresetFolder, HoldsPresetsThatAllCanBeRead) {
+  ASSERT_GE(preset_names().size(), 5U);
+  for (const std::string& name : preset_names()) EXPECT_NO_THROW((void)load_config(name)) << name;
 }
 
 TEST(PresetFolder, MethodsShareTheirOdometry) {

@@ -255,6 +255,7 @@ class ParametersPanel final : public NamedPanel {
   }
 
   static void reset(const Parameter& shown, const Parameter& usual) {
+    if (auto* const* flag = std::get_if<bool*>(&shown.value)) **flag = *std::get<bool*>(usual.value);
     if (auto* const* integer = std::get_if<int*>(&shown.value)) **integer = *std::get<int*>(usual.value);
     if (auto* const* real = std::get_if<double*>(&shown.value)) **real = *std::get<double*>(usual.value);
     if (auto* const* text = std::get_if<std::string*>(&shown.value))
@@ -277,9 +278,7 @@ class ParametersPanel final : public NamedPanel {
       return;
     }
     if (is_switch(parameter)) {
-      int& flag = *std::get<int*>(parameter.value);
-      bool on = flag != 0;
-      if (checkbox(frame, "##value", on)) flag = on ? 1 : 0;
+      checkbox(frame, "##value", *std::get<bool*>(parameter.value));
       return;
     }
     // A wide range is gone through by factors, so that small values can be hit too.

@@ -13,6 +13,15 @@ struct Preparation final : MotionPreparation {
   int index = 0;
   std::shared_ptr<const MotionFrame> frame;
   std::shared_ptr<const PaperMotionTrace> trace;  // null where there was no frame to compare with
+
+  /// The trace's images are not kept for a frame longer than they are looked at.
+  [[nodiscard]] std::shared_ptr<const MotionPreparation> for_later() const override {
+    if (!trace) return nullptr;
+    auto kept = std::make_shared<Preparation>();
+    kept->index = index;
+    kept->frame = frame;
+    return kept;
+  }
 };
 
 class PaperMethod final : public MotionMethod {
