@@ -132,8 +132,11 @@ std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate, 
 std::string why_apart(const Trajectory& truth, const Trajectory& estimate, const ClockOptions& options) {
   if (truth.empty() || estimate.empty()) return "";
   const auto truth_s = stamps_of(truth), estimate_s = stamps_of(estimate);
-  const bool whole =
-      std::all_of(estimate_s.begin(), estimate_s.end(), [](double t) { return t == std::floor(t); });
+  // Settled as frames they are multiples of a frame's time, exactly.
+  const bool whole = std::all_of(estimate_s.begin(), estimate_s.end(), [&options](double t) {
+    const double frame = (t - options.estimate_offset_s) * options.frame_rate;
+    return std::abs(frame - std::round(frame)) < 1e-7;
+  });
   const double offset = truth_s.front() - estimate_s.front();
   if (whole && estimate_s.size() > 1 && options.frame_stamps.empty())
     return "the estimate's stamps are whole: if they are frame numbers, give the sequence's folder in place "
