@@ -138,18 +138,20 @@ std::string why_apart(const Trajectory& truth, const Trajectory& estimate, const
     return std::abs(frame - std::round(frame)) < 1e-7;
   });
   const double offset = truth_s.front() - estimate_s.front();
-  if (whole && estimate_s.size() > 1 && options.frame_stamps.empty())
-    return "the estimate's stamps are whole: if they are frame numbers, give the sequence's folder in place "
-           "of its "
-           "ground truth";
+  const std::string numbers = whole && estimate_s.size() > 1 && options.frame_stamps.empty()
+                                  ? "; if the estimate's stamps are frame numbers, give the sequence's "
+                                    "folder in place of its ground truth"
+                                  : "";
   if (estimate_s.front() > truth_s.back() || estimate_s.back() < truth_s.front())
     return fmt::format(
-        "they last {:.3f} s and {:.3f} s and begin {:.3f} s apart: if one clock began elsewhere, "
-        "`--time-offset "
-        "{:.6f}` lays beginning on beginning",
-        span_of(estimate_s), span_of(truth_s), std::abs(offset), offset + options.estimate_offset_s);
+               "they last {:.3f} s and {:.3f} s and begin {:.3f} s apart: if one clock began elsewhere, "
+               "`--time-offset "
+               "{:.6f}` lays beginning on beginning",
+               span_of(estimate_s), span_of(truth_s), std::abs(offset), offset + options.estimate_offset_s) +
+           numbers;
   return "they cover the same time but not the same moments: `--max-difference` lets poses farther apart "
-         "belong together";
+         "belong together" +
+         numbers;
 }
 
 }  // namespace stillpoint
