@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <optional>
 
 #include "core/check/findings.hpp"
 #include "core/run/run_sequence.hpp"
@@ -12,7 +11,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kWorseResidual = 1.015;  // of the best camera's, to doubt the one that is used
-constexpr double kFewestTracked = 0.9;    // of the frames, for a residual to mean anything
+constexpr double kCertain = 4.0;          // standard errors
+constexpr double kFewestTracked = 0.85;   // of the frames, for a residual to mean anything
 constexpr double kSameSides = 0.01;
 
 /// Frames at hand under another camera.
@@ -40,20 +40,40 @@ class UnderCamera final : public FrameSource {
   std::vector<std::string> no_warnings_;
 };
 
-/// The mean over tracked frames of the reprojection error's RMS, px; nothing where too few are tracked.
-std::optional<double> residual_under(const FrameSource& source, const std::vector<Frame>& frames,
-                                     const Camera& camera) {
+/// The RMS of the reprojection error of each frame, px; 0 where it could not be tracked.
+using Residuals = std::vector<double>;
+
+Residuals residuals_under(const FrameSource& source, const std::vector<Frame>& frames, const Camera& camera) {
   Config config;
   set_parameter(config, "run.method=none");
   config.run.threads = 1;
   const RunResult run = run_sequence(UnderCamera(source, frames, camera), config, {});
-  double sum = 0;
-  int count = 0;
-  for (const FrameRecord& record : run.records)
-    if (record.estimated && record.rms_px > 0) sum += record.rms_px, ++count;
-  if (count == 0 || run.tracked() < kFewestTracked * static_cast<double>(run.records.size()))
-    return std::nullopt;
-  return sum / count;
+  Residuals residuals;
+  for (const FrameRecord& record : run.records) residuals.push_back(record.estimated ? record.rms_px : 0.0);
+  return residuals;
+}
+
+/// By how much one camera's residuals exceed another's, frame by frame.
+struct Excess {
+  double ratio = 1.0;      ///< mean over the frames tracked under both
+  double certainty = 0.0;  ///< (ratio - 1) by its standard error: people who walk about make frames disagree
+  double used_px = 0.0, other_px = 0.0;  ///< means
+};
+
+Excess excess_of(const Residuals& used, const Residuals& other) {
+  std::vector<double> ratios;
+  Excess excess;
+  for (std::size_t i = 0; i < std::min(used.size(), other.size()); ++i) {
+    if (used[i] <= 0 || other[i] <= 0) continue;
+    ratios.push_back(used[i] / other[i]);
+    excess.used_px += used[i], excess.other_px += other[i];
+  }
+  const ErrorStatistics s = statistics_of(ratios);
+  if (s.count < kFewestTracked * static_cast<double>(used.size()) || s.stddev <= 0) return {};
+  excess.ratio = s.mean;
+  excess.certainty = (s.mean - 1.0) / (s.stddev / std::sqrt(s.count));
+  excess.used_px /= s.count, excess.other_px /= s.count;
+  return excess;
 }
 
 /// The known cameras of these sides, scaled to them, apart from the one that is used.
@@ -79,28 +99,37 @@ std::vector<Finding> check_camera(const FrameSource& source, int frames) {
   for (int i = 0; i < std::min(frames, source.size()); ++i) at_hand.push_back(source.read(i));
   std::vector<Camera> cameras = others_than(source.camera());
   cameras.insert(cameras.begin(), source.camera());
-  std::vector<std::optional<double>> residuals(cameras.size());
+  std::vector<Residuals> residuals(cameras.size());
   const auto every_second = [&](std::size_t first) {
     for (std::size_t i = first; i < cameras.size(); i += 2)
-      residuals[i] = residual_under(source, at_hand, cameras[i]);
+      residuals[i] = residuals_under(source, at_hand, cameras[i]);
   };
   auto beside = std::async(std::launch::async, every_second, std::size_t{1});
   every_second(0);
   beside.get();
-  if (!residuals[0]) return {};
   std::size_t best = 0;
-  for (std::size_t i = 1; i < cameras.size(); ++i)
-    if (residuals[i] && *residuals[i] < *residuals[best]) best = i;
-  if (best == 0 || *residuals[0] < kWorseResidual * *residuals[best]) return {};
-  std::string all;
-  for (std::size_t i = 0; i < cameras.size(); ++i)
-    if (residuals[i])
-      all += fmt::format("{}{} {:.3f}", all.empty() ? "" : ", ", cameras[i].name, *residuals[i]);
-  return {{"camera", fmt::format("{} fits better than {}: over {} frames reprojections miss by {:.3f} px "
-                                 "instead of {:.3f} px (`--camera "
-                                 "{}` uses it; all: {})",
-                                 cameras[best].name, cameras[0].name, at_hand.size(), *residuals[best],
-                                 *residuals[0], cameras[best].name, all)}};
+  Excess most;
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    const Excess excess = excess_of(residuals[0], residuals[i]);
+    if (excess.ratio < kWorseResidual || excess.certainty < kCertain || excess.ratio <= most.ratio) continue;
+    best = i, most = excess;
+  }
+  if (best == 0) return {};
+  // Cameras as good as the best one, as far as these frames can tell.
+  std::string names = cameras[best].name;
+  for (std::size_t i = 1; i < cameras.size(); ++i) {
+    const Excess over_used = excess_of(residuals[0], residuals[i]),
+                 over_best = excess_of(residuals[i], residuals[best]);
+    if (i != best && over_used.ratio >= kWorseResidual && over_used.certainty >= kCertain &&
+        over_best.certainty < kCertain)
+      names += fmt::format(" (or {}, which is alike)", cameras[i].name);
+  }
+  return {
+      {"camera",
+       fmt::format("{} fits better than {}: over {} frames reprojections miss by {:.3f} px instead of {:.3f} "
+                   "px, {:.1f} standard errors apart (`--camera {}` uses it)",
+                   names, cameras[0].name, at_hand.size(), most.other_px, most.used_px, most.certainty,
+                   cameras[best].name)}};
 }
 
 }  // namespace stillpoint

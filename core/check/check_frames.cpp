@@ -45,6 +45,13 @@ bool are_same(const cv::Mat& a, const cv::Mat& b) {
   return !a.empty() && a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0.0;
 }
 
+/// Depth of a wall seen straight on is the same in every frame, and no repeat.
+bool has_relief(const cv::Mat& depth) {
+  double least = 0, most = 0;
+  cv::minMaxLoc(depth, &least, &most);
+  return most > least;
+}
+
 void check_repeats(const FrameSource& source, std::vector<Finding>& findings) {
   const int pairs = std::min(kPairsSampled, source.size() - 1);
   int colour = 0, depth = 0, with_depth = 0, first = -1;
@@ -55,7 +62,7 @@ void check_repeats(const FrameSource& source, std::vector<Finding>& findings) {
     colour += same ? 1 : 0;
     if (same && first < 0) first = index;
     with_depth += a.has_depth() && b.has_depth() ? 1 : 0;
-    depth += are_same(a.depth, b.depth) ? 1 : 0;
+    depth += are_same(a.depth, b.depth) && has_relief(a.depth) ? 1 : 0;
   }
   if (colour > 0)
     findings.push_back(

@@ -35,8 +35,8 @@ void to_json(nlohmann::json& json, const Finding& finding);
 [[nodiscard]] std::vector<Finding> check_odometry(const FrameSource& source, int frames);
 
 /// The known camera under which the odometry's reprojections miss least, when they miss by 1.5 % more under
-/// the one that is used. Cameras that are alike (freiburg1's and freiburg2's) cannot be told apart in so few
-/// frames, and people who walk about add more than a camera does; so this is said only of clear cases.
+/// the one that is used, and surely so (4 standard errors over the frames). Cameras that are alike
+/// (freiburg1's and freiburg2's) cannot be told apart in so few frames, nor any where people walk about.
 /// @param frames at most; they are read once and tracked under each camera, two cameras side by side
 [[nodiscard]] std::vector<Finding> check_camera(const FrameSource& source, int frames);
 

@@ -132,21 +132,26 @@ std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate, 
 std::string why_apart(const Trajectory& truth, const Trajectory& estimate, const ClockOptions& options) {
   if (truth.empty() || estimate.empty()) return "";
   const auto truth_s = stamps_of(truth), estimate_s = stamps_of(estimate);
-  const bool whole =
-      std::all_of(estimate_s.begin(), estimate_s.end(), [](double t) { return t == std::floor(t); });
+  // Settled as frames they are multiples of a frame's time, exactly.
+  const bool whole = std::all_of(estimate_s.begin(), estimate_s.end(), [&options](double t) {
+    const double frame = (t - options.estimate_offset_s) * options.frame_rate;
+    return std::abs(frame - std::round(frame)) < 1e-7;
+  });
   const double offset = truth_s.front() - estimate_s.front();
-  if (whole && estimate_s.size() > 1 && options.frame_stamps.empty())
-    return "the estimate's stamps are whole: if they are frame numbers, give the sequence's folder in place "
-           "of its "
-           "ground truth";
+  const std::string numbers = whole && estimate_s.size() > 1 && options.frame_stamps.empty()
+                                  ? "; if the estimate's stamps are frame numbers, give the sequence's "
+                                    "folder in place of its ground truth"
+                                  : "";
   if (estimate_s.front() > truth_s.back() || estimate_s.back() < truth_s.front())
     return fmt::format(
-        "they last {:.3f} s and {:.3f} s and begin {:.3f} s apart: if one clock began elsewhere, "
-        "`--time-offset "
-        "{:.6f}` lays beginning on beginning",
-        span_of(estimate_s), span_of(truth_s), std::abs(offset), offset + options.estimate_offset_s);
+               "they last {:.3f} s and {:.3f} s and begin {:.3f} s apart: if one clock began elsewhere, "
+               "`--time-offset "
+               "{:.6f}` lays beginning on beginning",
+               span_of(estimate_s), span_of(truth_s), std::abs(offset), offset + options.estimate_offset_s) +
+           numbers;
   return "they cover the same time but not the same moments: `--max-difference` lets poses farther apart "
-         "belong together";
+         "belong together" +
+         numbers;
 }
 
 }  // namespace stillpoint

@@ -73,6 +73,16 @@ std::optional<Suspicion> suspect_body(const std::vector<MatchedPose>& matched, c
   return suspicion;
 }
 
+/// RMS distance of the true positions from their mean, m.
+double truth_spread_m(const std::vector<MatchedPose>& matched) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const MatchedPose& pose : matched)
+    mean += pose.truth.translation() / static_cast<double>(matched.size());
+  double squares = 0;
+  for (const MatchedPose& pose : matched) squares += (pose.truth.translation() - mean).squaredNorm();
+  return matched.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(matched.size()));
+}
+
 }  // namespace
 
 double MotionFit::combined_m() const { return translation_m + rotation_deg / kDegrees; }
@@ -149,10 +159,13 @@ std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matc
 }
 
 std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
+  // Poses that have nothing to do with the truth also fit better when they are shrunk to a point.
+  constexpr double kMostOfSpread = 0.2;
   constexpr double kRemarkable = 0.03;
   const auto& similarity = evaluation.ate.similarity;
   if (!similarity || std::abs(std::log(similarity->scale)) < kRemarkable ||
-      similarity->rmse_m > 0.5 * evaluation.ate.translation_m.rmse)
+      similarity->rmse_m > 0.5 * evaluation.ate.translation_m.rmse ||
+      similarity->rmse_m > kMostOfSpread * truth_spread_m(evaluation.matched))
     return "";
   return fmt::format(
       "the estimate fits {:.4f} m instead of {:.4f} m when its lengths are multiplied by {:.3f}",

@@ -103,7 +103,7 @@ int meetings(const std::vector<double>& stamps, const std::vector<double>& refer
 
 StampUnit unit_beside(const std::vector<double>& stamps, const std::vector<double>& reference_s,
                       StampUnit reference_unit, double frame_rate, double tolerance) {
-  const bool whole = are_whole(stamps) && !stamps.empty() && stamps.back() < kMostFrames;
+  const bool whole = are_whole(stamps) && stamps.size() > 1 && stamps.back() < kMostFrames;
   const StampUnit own = unit_of(stamps);
   StampUnit best = own;
   int most = 0;

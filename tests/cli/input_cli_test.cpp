@@ -148,7 +148,7 @@ TEST_F(Input, MasksOfNoUseStopTheOracleAlone) {
     list += fmt::format("{:.4f} mask/{}.png\n", SmallSequence::stamp(i), i);
   }
   sequence.folder.write("mask.txt", list);
-  expect_one_sentence(run({"--method", "oracle"}),
+  expect_one_sentence(run_cli({"run", sequence.path(), "--method", "oracle"}),
                       "the masks are 160x120 px, but the colour images are 320x240 px");
   const CliResult none = run();
   EXPECT_EQ(none.exit_code, 0);

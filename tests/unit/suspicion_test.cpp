@@ -142,6 +142,22 @@ TEST(Scale, IsToldWhereItExplainsTheError) {
   EXPECT_EQ(scale_sentence(evaluate_trajectory(truth, truth)), "");
 }
 
+TEST(Scale, IsNotSaidOfPosesThatHaveNothingToDoWithTheTruth) {
+  Trajectory truth, estimate;
+  for (const MatchedPose& pose : sound()) {
+    truth.push_back({pose.timestamp, pose.truth});
+    estimate.push_back({pose.timestamp, Pose::Identity()});
+    estimate.back().world_from_camera.translation() =
+        Eigen::Vector3d(5 * std::sin(9 * pose.timestamp), 4 * std::cos(11 * pose.timestamp),
+                        3 * std::sin(7 * pose.timestamp));
+  }
+  const auto evaluation = evaluate_trajectory(truth, estimate);
+  ASSERT_TRUE(evaluation.ate.similarity);
+  EXPECT_LT(evaluation.ate.similarity->rmse_m, 0.5 * evaluation.ate.translation_m.rmse)
+      << "shrinking helps …";
+  EXPECT_EQ(scale_sentence(evaluation), "") << "… and means nothing";
+}
+
 TEST(TrajectoryMetrics, NothingToMeasureIsADashAndAReason) {
   Trajectory truth;
   for (const MatchedPose& pose : sound()) truth.push_back({pose.timestamp, pose.truth});
