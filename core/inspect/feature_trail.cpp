@@ -43,9 +43,11 @@ std::optional<int> with_map_point(const FrameRecord& record, int map_point) {
   return static_cast<int>(it - record.features.begin());
 }
 
-/// The method's flow track whose end (or, with `from`, start) is nearest to a place.
+/// The flow track, of the run's method or the one laid beside, whose end (or, with `from`, start) is nearest
+/// to a place.
 const Mark* nearest_track(const FrameView& view, const cv::Point2f& place, bool from) {
-  const Layer* flow = view.motion ? view.motion->layer("flow_tracks") : nullptr;
+  const StageLog* log = stages_with(view, "flow_tracks");
+  const Layer* flow = log == nullptr ? nullptr : log->layer("flow_tracks");
   if (flow == nullptr) return nullptr;
   const Mark* best = nullptr;
   float nearest = kFlowReach;

@@ -20,7 +20,8 @@ struct FrameView {
   Frame frame;  ///< t
   Frame
       reference;  ///< what it is compared with: StageLog::reference, or the frame before; empty for the first
-  std::shared_ptr<const StageLog> motion;         ///< the run's method's stages; never null
+  std::shared_ptr<const StageLog> motion =
+      std::make_shared<const StageLog>();         ///< the run's method's stages; never null
   std::shared_ptr<const StageLog> motion_beside;  ///< another method's, where these were asked for; else null
   cv::Mat mask;                                   ///< CV_8UC1: what the method removed; empty = nothing
   FrameTruth truth;                               ///< for display and evaluation only

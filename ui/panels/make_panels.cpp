@@ -8,7 +8,6 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_input_panel(shared));
   panels.push_back(make_compensated_panel(shared));
   panels.push_back(make_difference_panel(shared));
-  panels.push_back(make_mask_panel({"mask", "Mask", Role::kUnion, true}, shared));
   panels.push_back(make_mask_panel({"forward_mask", "Forward mask", Role::kForward, false, "forward_mask",
                                     "raw_forward_mask", "", "difference"},
                                    shared));
@@ -21,6 +20,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_features_panel(FeatureMoment::kAfter, shared));
   panels.push_back(make_feature_panel(shared));
   panels.push_back(make_stages_panel(shared));
+  panels.push_back(make_mask_panel({"mask", "Mask", Role::kUnion, true}, shared));
   panels.push_back(make_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
