@@ -21,7 +21,8 @@ struct FrameView {
   Frame
       reference;  ///< what it is compared with: StageLog::reference, or the frame before; empty for the first
   std::shared_ptr<const StageLog> motion =
-      std::make_shared<const StageLog>();         ///< the run's method's stages; never null
+      std::make_shared<const StageLog>();  ///< the run's method's stages, or those of the one that stands in
+                                           ///< for it; never null
   std::shared_ptr<const StageLog> motion_beside;  ///< another method's, where these were asked for; else null
   cv::Mat mask;                                   ///< CV_8UC1: what the method removed; empty = nothing
   FrameTruth truth;                               ///< for display and evaluation only

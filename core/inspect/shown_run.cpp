@@ -171,7 +171,7 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   StageLog log;
   if (view.frame.readable() && extras.note.empty())
     log = MotionStage(source_->camera(), config).describe(view.frame, extras.motion);
-  log.method = config.run.method;
+  if (log.method.empty()) log.method = config.run.method;
   if (log.note.empty()) log.note = extras.note;
   view.reference.index = log.reference >= 0 ? log.reference : index - 1;
   if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);

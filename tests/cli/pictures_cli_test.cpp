@@ -115,7 +115,7 @@ TEST(ReportPictures, ShowTheRunsAndTheirWorstFrames) {
       ++panels;
       EXPECT_EQ(picture.told, cv::Size(640, 540));
     }
-    by_colour += picture.caption.find("by colour alone") != std::string::npos ? 1 : 0;
+    by_colour += picture.caption.find("What method epipolar judges by") != std::string::npos ? 1 : 0;
   }
   EXPECT_GE(plots, 1);
   EXPECT_EQ(trajectories, 2);
@@ -155,7 +155,8 @@ TEST(PanelPictures, TakeTheChoicesOfALayout) {
   const SmallSequence sequence(4);
   const auto picture = [&](const std::string& name, const std::string& layout, const std::string& warning) {
     std::vector<std::string> arguments = {"snapshot", sequence.path(), "--frames", "3",
-                                          "--panels", "compensated",   "--out",    sequence.path(name)};
+                                          "--panels", "compensated",   "--out",    sequence.path(name),
+                                          "--beside", "paper"};
     if (!layout.empty()) {
       sequence.folder.write(name + ".json", layout);
       arguments.insert(arguments.end(), {"--layout", sequence.path(name + ".json")});

@@ -43,14 +43,14 @@ class RunFolder : public ::testing::Test {
 
 TEST_F(RunFolder, ShowsWhatALiveSessionShows) {
   const std::vector<std::string> panels = {"--frames", "6", "--panels",
-                                           "trajectory,errors,features_before,features_after,depth_motion"};
+                                           "trajectory,errors,features_before,features_after,motion"};
   ASSERT_EQ(snapshot(panels).exit_code, 0);
   std::vector<std::string> live = {"snapshot",   sequence_.path(), "--method",
                                    "stillpoint", "--out",          out_.path("live")};
   live.insert(live.end(), panels.begin(), panels.end());
   ASSERT_EQ(run_cli(live).exit_code, 0);
   // What depends on the frame alone, not on how far the run has come, is the same to the last pixel.
-  for (const char* name : {"features_before", "features_after", "depth_motion"}) {
+  for (const char* name : {"features_before", "features_after", "motion"}) {
     const std::string file = std::string("/000006_") + name + ".png";
     const cv::Mat opened = cv::imread(out_.path("images") + file), ran = cv::imread(out_.path("live") + file);
     ASSERT_FALSE(opened.empty()) << name;

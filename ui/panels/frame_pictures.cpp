@@ -223,7 +223,7 @@ int round_shown(const StageLog& log, int chosen) {
 }
 
 std::string whose_stages(const SessionView& session, const StageLog& log) {
-  if (log.method == session.config.run.method) return {};
+  if (&log != session.current->motion_beside.get()) return {};
   return fmt::format(" By method {}, laid beside; this run is by {}.", log.method, session.config.run.method);
 }
 

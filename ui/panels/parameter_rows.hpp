@@ -13,7 +13,7 @@ namespace stillpoint {
 /// "motion.max_corners": the section, "Max corners".
 [[nodiscard]] std::string section_of(const Parameter& parameter);
 [[nodiscard]] std::string label_of(const Parameter& parameter);
-/// "depth_motion" as a heading: "Depth motion".
+/// "some_words" as a heading: "Some words".
 [[nodiscard]] std::string heading_of(const std::string& section);
 [[nodiscard]] std::string value_text(const Parameter& parameter);
 /// Whether it is off (0) or on (1), and nothing between.
