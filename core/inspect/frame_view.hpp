@@ -42,7 +42,7 @@ struct FrameView {
 
 /// A run as far as it has come.
 struct RunView {
-  std::string name;                  ///< "none", "paper", …
+  std::string name;                  ///< its method's, or what a ghost is called
   std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
   std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
   Trajectory trajectory;             ///< estimated poses so far

@@ -47,7 +47,7 @@ class MotionPanel final : public FramePanel {
   }
 
  private:
-  /// Stages of several earlier frames stand once: for the frame chosen, where there is one.
+  /// The stages that the method marks as telling most of it.
   [[nodiscard]] std::vector<const Stage*> overview_of(const StageLog& log) const {
     std::vector<const Stage*> stages;
     for (const Stage& stage : log.stages)
