@@ -9,6 +9,7 @@
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/places.hpp"
 #include "ui/theme/palette.hpp"
 
 namespace stillpoint {
@@ -187,9 +188,9 @@ TEST(PanelPictures, TakeTheChoicesOfALayout) {
 }
 
 TEST(ReadmePictures, AreWhatTheProgramMakes) {
-  const std::string root = STILLPOINT_SOURCE_DIR;
+  const std::string root = places::source();
   const TemporaryFolder out;
-  const CliResult made = CliProcess({STILLPOINT_PROGRAM, out.path()}, root + "/tests/update_pictures").wait();
+  const CliResult made = CliProcess({places::program(), out.path()}, root + "/tests/update_pictures").wait();
   ASSERT_EQ(made.exit_code, 0) << made.err;
   for (const char* name : {"workbench.png", "motion.png", "stages.png", "figure1.png"}) {
     const cv::Mat kept = cv::imread(root + "/assets/pictures/" + name), now = cv::imread(out.path(name));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -25,7 +26,7 @@ class CliProcess {
  public:
   /// @param standard_output where it goes instead of into the result; empty = into the result
   explicit CliProcess(const std::vector<std::string>& arguments,
-                      const std::string& program = STILLPOINT_PROGRAM,
+                      const std::string& program = places::program(),
                       const std::string& standard_output = "") {
     const std::string out = standard_output.empty() ? folder_.path("out") : standard_output,
                       err = folder_.path("err");

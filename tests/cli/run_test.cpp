@@ -10,6 +10,7 @@
 #include "tests/cli/csv_rows.hpp"
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/places.hpp"
 
 namespace stillpoint {
 namespace {
@@ -149,7 +150,7 @@ TEST(FullDisk, StandardOutput) {
         {"--help"},
         {"run", sequence.path()},
         {"benchmark", sequence.path()}}) {
-    const CliResult result = CliProcess(arguments, STILLPOINT_PROGRAM, "/dev/full").wait();
+    const CliResult result = CliProcess(arguments, places::program(), "/dev/full").wait();
     EXPECT_EQ(result.exit_code, 1) << arguments[0];
     EXPECT_THAT(result.err, HasSubstr("No space left on device")) << arguments[0];
   }
@@ -183,8 +184,8 @@ TEST(FullDisk, Tables) {
 /// `cmake --install`, and the installed program far from its sources' assets.
 TEST(Install, TheInstalledProgramFindsItsOwnAssets) {
   const TemporaryFolder folder;
-  const std::string command = fmt::format("'{}' --install '{}' --prefix '{}' > '{}' 2>&1", STILLPOINT_CMAKE,
-                                          STILLPOINT_BINARY_DIR, folder.path("usr"), folder.path("log"));
+  const std::string command = fmt::format("'{}' --install '{}' --prefix '{}' > '{}' 2>&1", places::cmake(),
+                                          places::build(), folder.path("usr"), folder.path("log"));
   ASSERT_EQ(std::system(command.c_str()), 0) << folder.read("log");
   const std::string program = folder.path("usr/bin/stillpoint");
   EXPECT_TRUE(std::filesystem::exists(folder.path("usr/share/stillpoint/cameras/freiburg1.toml")));

@@ -9,6 +9,8 @@
 #include <set>
 #include <string_view>
 
+#include "tests/support/places.hpp"
+
 namespace stillpoint::testing {
 namespace {
 
@@ -32,7 +34,7 @@ bool wants_update() {
     const cv::Mat& actual, const std::string& name,
     const std::function<::testing::AssertionResult(const cv::Mat& expected)>& compare) {
   const std::filesystem::path golden =
-      std::filesystem::path(STILLPOINT_SOURCE_DIR) / "tests/golden" / (name + ".png");
+      std::filesystem::path(places::source()) / "tests/golden" / (name + ".png");
   if (wants_update()) {
     std::filesystem::create_directories(golden.parent_path());
     // Golden images are kept in the repository, so they are packed as small as PNG goes.
@@ -46,7 +48,7 @@ bool wants_update() {
           ? ::testing::AssertionFailure() << golden << " is missing; STILLPOINT_UPDATE_GOLDEN=1 writes it"
           : compare(expected);
   if (result) return result;
-  const std::filesystem::path place = std::filesystem::path(STILLPOINT_TEST_OUTPUT_DIR) / name;
+  const std::filesystem::path place = std::filesystem::path(places::output()) / name;
   std::filesystem::create_directories(place.parent_path());
   cv::imwrite(place.string() + ".actual.png", actual);
   if (expected.size() == actual.size() && expected.type() == actual.type()) {

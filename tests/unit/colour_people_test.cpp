@@ -9,11 +9,12 @@
 #include "core/config.hpp"
 #include "core/motion/epipolar/colour_motion.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/support/places.hpp"
 
 namespace stillpoint {
 namespace {
 
-const std::string kData = STILLPOINT_SOURCE_DIR "/../shared/data/";
+const std::string kData = places::source() + "/../shared/data/";
 const cv::Size kSize(640, 480);
 
 /// The man who walks through 16 frames of freiburg3_walking_rpy: outlines drawn by hand, px, by frame.

@@ -13,6 +13,7 @@
 #include "core/inspect/shown_run.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_sequence.hpp"
+#include "tests/support/places.hpp"
 
 namespace stillpoint {
 namespace {
@@ -150,7 +151,7 @@ TEST(MotionMethods, AreKnownByNameInCoreMotionAlone) {
   // "none" and "stillpoint" are words of their own: the program's name, and that there is nothing. They count
   // where a method is compared with them.
   const std::regex name(R"re("(paper|oracle|epipolar|yi2013)"|method\s*[!=]=\s*")re");
-  const fs::path root = STILLPOINT_SOURCE_DIR;
+  const fs::path root = places::source();
   int files = 0;
   std::vector<std::string> found;
   for (const char* room : {"core", "ui", "app"})

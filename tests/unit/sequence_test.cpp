@@ -8,6 +8,7 @@
 #include "core/sequence/association.hpp"
 #include "core/sequence/list_file.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/support/places.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -363,8 +364,7 @@ TEST(TumFolder, CameraFilesHoldTheBuiltInCameras) {
   for (const Camera& built_in : known_cameras()) {
     if (built_in.name == "generated") continue;
     ++compared;
-    const Camera read =
-        read_camera(std::string(STILLPOINT_SOURCE_DIR "/assets/cameras/") + built_in.name + ".toml");
+    const Camera read = read_camera(places::source() + "/assets/cameras/" + built_in.name + ".toml");
     EXPECT_EQ(read.name, built_in.name);
     EXPECT_EQ(std::tie(read.width, read.height, read.fx, read.fy, read.cx, read.cy, read.depth_scale,
                        read.readout_s),
@@ -377,7 +377,7 @@ TEST(TumFolder, CameraFilesHoldTheBuiltInCameras) {
 }
 
 TEST(TumFolder, RealClipGivesAllItsFrames) {
-  const std::string data = STILLPOINT_SOURCE_DIR "/../shared/data/";
+  const std::string data = places::source() + "/../shared/data/";
   if (!std::filesystem::exists(data + "fr1_xyz_clip")) GTEST_SKIP() << "the real clip is not here";
   const auto source = open_sequence(data + "fr1_xyz_clip");
   ASSERT_EQ(source->size(), 200);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/evaluation/evaluation_json.hpp"
+#include "tests/support/places.hpp"
 
 namespace stillpoint {
 namespace {
@@ -181,7 +182,7 @@ TEST(TrajectoryMetrics, TextTellsDeltasUnitsAndPairs) {
 }
 
 TEST(TrajectoryMetrics, AgreesWithTheGoldenFigures) {
-  const std::string data = STILLPOINT_SOURCE_DIR "/../shared/data/trajectories/fr3_walking_xyz_";
+  const std::string data = places::source() + "/../shared/data/trajectories/fr3_walking_xyz_";
   if (!std::filesystem::exists(data + "groundtruth.txt"))
     GTEST_SKIP() << "the real trajectories are not here";
   const Trajectory truth = read_tum_trajectory(data + "groundtruth.txt");
