@@ -18,8 +18,9 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
   command.add_option("--threads", threads, "Worker threads; any number gives the same result")
       ->check(CLI::Range(1, 64));
   if (with_method)
-    command.add_option("--method", method,
-                       fmt::format("Which method judges what moves: {}", fmt::join(method_names(), ", ")));
+    command.add_option(
+        "--method", method,
+        fmt::format("Which method judges what is dynamic: {}", fmt::join(method_names(), ", ")));
 }
 
 Config ConfigArguments::config() const {

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "app/commands.hpp"
-#include "app/open_place.hpp"
+#include "app/open_source.hpp"
 #include "app/painter.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
@@ -24,7 +24,7 @@ constexpr std::pair<int, int> kFigureSize = {960, 780};  // px, of one panel
 constexpr const char* kList = "figures.txt";
 
 struct FiguresArguments {
-  PlaceArguments place;
+  SourceArguments place;
   std::string out, frame, theme = "light";
   double scale = 1.0;
   bool force = false;
@@ -95,7 +95,7 @@ class Figures {
 };
 
 void figures(const FiguresArguments& arguments) {
-  OpenedPlace place = open_place(arguments.place);
+  OpenedSource place = open_source(arguments.place);
   if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
   const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames, "--frame");
   if (frames.size() != 1)

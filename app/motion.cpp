@@ -109,7 +109,7 @@ const MethodInfo& method_named_by(const MotionOptions& options) {
                                options.method, fmt::join(described_methods(), "; ")));
 }
 
-void tell_stand_in(const MotionOptions& options, const MethodInfo& method) {
+void describe_stand_in(const MotionOptions& options, const MethodInfo& method) {
   if (!options.method.empty() && options.method != method.name)
     std::printf("method %s judges frames without depth by %s, which is what runs here\n",
                 options.method.c_str(), method.name.c_str());
@@ -161,8 +161,8 @@ void judge_frame(const Frame& frame, MotionReplay& replay, JudgedFrame& judged) 
 
 void run_pair(const MotionOptions& options, const Config& config, const MethodInfo& method) {
   if (method.needs.keeps_state)
-    throw InputError(fmt::format("--method {} follows what moves over several frames: give it a sequence",
-                                 options.method));
+    throw InputError(fmt::format(
+        "--method {} follows what is dynamic over several frames: give it a sequence", options.method));
   if (method.needs.depth)
     throw InputError(fmt::format("--method {} needs depth: give it a sequence that has it", method.name));
   if (!options.frames.empty())
@@ -180,7 +180,7 @@ void run_pair(const MotionOptions& options, const Config& config, const MethodIn
   judge_frame(frame, replay, judged);
   MotionOutput output(options.out, options.force, options.all_rounds, method,
                       MotionStage(camera, config).frames_back());
-  tell_stand_in(options, method);
+  describe_stand_in(options, method);
   output.add(judged);
   output.finish(config);
   print_frame(judged);
@@ -269,7 +269,7 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
     throw InputError(fmt::format("{}: of its {} frames none of those chosen has a reference {} frames back",
                                  options.first, source->size(), gap));
   MotionOutput output(options.out, options.force, options.all_rounds, method, judge.frames_back());
-  tell_stand_in(options, method);
+  describe_stand_in(options, method);
   for (int index = every ? 0 : range.begin; index < range.end && !stop_requested();
        index += every ? 1 : range.step) {
     if (index < range.begin || (index - range.begin) % range.step != 0) {
@@ -290,9 +290,10 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
 
 void add_motion_command(CLI::App& app) {
   auto options = std::make_shared<MotionOptions>();
-  CLI::App* command = app.add_subcommand("motion",
-                                         "What moves between two images, or along a folder of colour frames: "
-                                         "masks, the method's stages, figures");
+  CLI::App* command =
+      app.add_subcommand("motion",
+                         "What is dynamic between two images, or along a folder of colour frames: "
+                         "masks, the method's stages, figures");
   command
       ->add_option("first", options->first, "The previous image; or a sequence, when no next image is given")
       ->required();

@@ -46,8 +46,8 @@ ReplayPlan::ReplayPlan(const std::string& file, const std::string& sequence, Seq
   require_same_sequence(recording_, *place_->source);
 }
 
-OpenedPlace ReplayPlan::open_untimed(const std::string& where) const {
-  OpenedPlace place = open_place_as(where, source_arguments_, config_);
+OpenedSource ReplayPlan::open_untimed(const std::string& where) const {
+  OpenedSource place = open_source_as(where, source_arguments_, config_);
   // Times differ from run to run; screenshots are not to.
   place.options.keep_times = false;
   return place;
@@ -61,7 +61,7 @@ void ReplayPlan::prepare_out(const std::string& folder, bool force) {
   out_ = folder;
   prepare_out_folder(out_, {}, force);
   for (const RecordedLine& line : recording_.lines) {
-    const auto* screenshot = std::get_if<happening::Screenshot>(&line.what);
+    const auto* screenshot = std::get_if<event::Screenshot>(&line.what);
     std::error_code ignored;
     if (screenshot != nullptr && !force && std::filesystem::exists(out_ / screenshot->file, ignored))
       throw InputError(
@@ -72,19 +72,20 @@ void ReplayPlan::prepare_out(const std::string& folder, bool force) {
 void ReplayPlan::play(const ReplayShell& shell, std::function<void()> wake) {
   Settings settings;
   settings.look = look();
-  Desk desk({.open_place = [this](const std::string& where, const Config&) { return open_untimed(where); },
-             .config = config_,
-             .settings = settings,
-             .marks_folder = {},
-             .plays_when_opened = {},
-             .wake = std::move(wake)});
+  AppController desk(
+      {.open_source = [this](const std::string& where, const Config&) { return open_untimed(where); },
+       .config = config_,
+       .settings = settings,
+       .marks_folder = {},
+       .plays_when_opened = {},
+       .wake = std::move(wake)});
   if (!recording_.start.layout.empty())
     desk.workbench().set_layout(
         parse_layout(recording_.start.layout, recording_.file, desk.workbench().panel_names()));
   if (place_) desk.show(*place_, where_);
   const ReplayResult result =
       replay(recording_, desk, shell, {.out = out_, .between = [] { throw_if_interrupted(); }});
-  fmt::print("{} happenings of {} replayed, {} screenshots\n", result.happenings, recording_.file,
+  fmt::print("{} events of {} replayed, {} screenshots\n", result.events, recording_.file,
              result.screenshots);
   const UiPace& pace = shell.canvas->pace();
   if (pace.busy_frames > 0)

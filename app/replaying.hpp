@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/open_place.hpp"
+#include "app/open_source.hpp"
 #include "ui/workbench/replay.hpp"
 
 namespace stillpoint {
@@ -29,12 +29,12 @@ class ReplayPlan {
   void play(const ReplayShell& shell, std::function<void()> wake);
 
  private:
-  [[nodiscard]] OpenedPlace open_untimed(const std::string& where) const;
+  [[nodiscard]] OpenedSource open_untimed(const std::string& where) const;
 
   Recording recording_;
   SequenceArguments source_arguments_;
   Config config_;
-  std::optional<OpenedPlace> place_;
+  std::optional<OpenedSource> place_;
   std::string where_;
   std::filesystem::path out_ = ".";
 };

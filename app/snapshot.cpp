@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/open_place.hpp"
+#include "app/open_source.hpp"
 #include "app/painter.hpp"
 #include "app/progress.hpp"
 #include "app/video_file.hpp"
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SnapshotArguments {
-  PlaceArguments place;
+  SourceArguments place;
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
   double scale = 1.0, fps = 30.0;
   std::string beside;  ///< method whose stages are laid beside the run's; empty = none
@@ -114,7 +114,7 @@ std::vector<int> frames_where(const Condition& condition, const RunView& run,
 
 void snapshot(const SnapshotArguments& arguments) {
   const std::optional<Condition> condition = when_condition(arguments);
-  OpenedPlace place = open_place(arguments.place);
+  OpenedSource place = open_source(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
   if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
   const std::string& method = place.config.run.method;

@@ -9,13 +9,13 @@
 #include <thread>
 
 #include "app/commands.hpp"
-#include "app/open_place.hpp"
+#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
 #include "core/error.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/window.hpp"
-#include "ui/workbench/desk.hpp"
+#include "ui/workbench/app_controller.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char* kDemo = "generated:walking_static";
 
 struct ViewArguments {
-  PlaceArguments place;
+  SourceArguments place;
   std::string layout, record, replay, out = ".";
 };
 
@@ -34,22 +34,23 @@ WindowOptions window_options(const Settings& settings) {
   return {.width = settings.window_size[0], .height = settings.window_size[1], .look = settings.look};
 }
 
-/// The window, the desk in it, and what is kept from one time to the next.
+/// The window, the controller in it, and what is kept from one time to the next.
 class Viewer {
  public:
   Viewer(const ViewArguments& arguments, const Config& config)
       : settings_path_(settings_path()),
         settings_(read_settings(settings_path_, panel_names(), &problem_)),
         window_(window_options(settings_)),
-        desk_(desk_options(arguments, config)) {
-    if (!problem_.empty()) desk_.workbench().say(problem_, true);
+        controller_(controller_options(arguments, config)) {
+    if (!problem_.empty()) controller_.workbench().say(problem_, true);
     if (!arguments.layout.empty())
-      desk_.workbench().set_layout(read_layout(arguments.layout, desk_.workbench().panel_names()));
+      controller_.workbench().set_layout(
+          read_layout(arguments.layout, controller_.workbench().panel_names()));
   }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  [[nodiscard]] Desk& desk() { return desk_; }
+  [[nodiscard]] AppController& controller() { return controller_; }
 
   /// The sequence that was open when the window was last closed; empty when none was.
   [[nodiscard]] std::string last_sequence() const {
@@ -59,7 +60,7 @@ class Viewer {
   /// Records what is done from now on.
   void record(const std::string& file) {
     const auto [width, height] = window_.framebuffer_size();
-    recorder_ = std::make_unique<Recorder>(file, desk_.recording_start({width, height}));
+    recorder_ = std::make_unique<Recorder>(file, controller_.recording_start({width, height}));
     window_.canvas().set_listener([this](const InputEvent& event) {
       recorder_->event(event, window_.canvas().time_s(), recorded_state());
     });
@@ -86,10 +87,10 @@ class Viewer {
     return names;
   }
 
-  DeskOptions desk_options(const ViewArguments& arguments, const Config& config) const {
-    return {.open_place = [source = arguments.place.source](
-                              const std::string& where,
-                              const Config& wanted) { return open_place_as(where, source, wanted); },
+  ControllerOptions controller_options(const ViewArguments& arguments, const Config& config) const {
+    return {.open_source = [source = arguments.place.source](
+                               const std::string& where,
+                               const Config& wanted) { return open_source_as(where, source, wanted); },
             .config = config,
             .settings = settings_,
             .marks_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences",
@@ -98,24 +99,24 @@ class Viewer {
   }
 
   [[nodiscard]] RecordedState recorded_state() const {
-    const auto view = desk_.view();
-    return {view ? view->current->index : 0, view && view->playing, desk_.idle()};
+    const auto view = controller_.view();
+    return {view ? view->current->index : 0, view && view->playing, controller_.idle()};
   }
 
   void draw(UiFrame& frame) {
-    desk_.draw(frame);
-    if (const std::string title = desk_.title(); title != title_) window_.set_title(title_ = title);
+    controller_.draw(frame);
+    if (const std::string title = controller_.title(); title != title_) window_.set_title(title_ = title);
     if (recorder_) {
       recorder_->size(static_cast<int>(frame.size.x), static_cast<int>(frame.size.y));
       recorder_->state(recorded_state());
       if (!recorder_->intact() && !std::exchange(recording_failed_, true))
-        desk_.workbench().say("The recording cannot be written on (the disk is full?).", true);
+        controller_.workbench().say("The recording cannot be written on (the disk is full?).", true);
     }
     if (frame.close_requested || stop_requested()) frame.quit = true;
   }
 
   void save() {
-    settings_ = desk_.settings();
+    settings_ = controller_.settings();
     const auto placement = window_.placement();
     settings_.window_size = {placement[2], placement[3]};
     write_settings(settings_path_, settings_);
@@ -125,7 +126,7 @@ class Viewer {
   fs::path settings_path_;
   Settings settings_;
   Window window_;
-  Desk desk_;
+  AppController controller_;
   std::unique_ptr<Recorder> recorder_;
   bool recording_failed_ = false;
 };
@@ -133,13 +134,13 @@ class Viewer {
 /// Begins with the sequence named, else with the one open last, else with the start page.
 void view(const ViewArguments& arguments) {
   // What was named and cannot be opened is told before there is a window.
-  std::optional<OpenedPlace> place;
-  if (!arguments.place.place.empty()) place = open_place(arguments.place);
+  std::optional<OpenedSource> place;
+  if (!arguments.place.place.empty()) place = open_source(arguments.place);
   Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
-    viewer.desk().show(std::move(*place), arguments.place.place);
+    viewer.controller().show(std::move(*place), arguments.place.place);
   else if (const std::string last = viewer.last_sequence(); !last.empty())
-    viewer.desk().open(last);
+    viewer.controller().open(last);
   if (!arguments.record.empty()) viewer.record(arguments.record);
   viewer.run();
 }

@@ -69,7 +69,9 @@ std::string current_key(std::string_view key) {
 Parameter find_parameter(const std::vector<Parameter>& all, std::string_view wanted,
                          const std::string& where) {
   const std::string key = current_key(wanted);
-  const auto it = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.key == key; });
+  const auto it = std::find_if(all.begin(), all.end(), [&](const Parameter& p) {
+    return p.key == key || std::find(p.old_keys.begin(), p.old_keys.end(), key) != p.old_keys.end();
+  });
   if (it == all.end()) throw InputError(fmt::format("{}there is no parameter '{}'", where, wanted));
   Parameter found = *it;
   found.key = wanted;
@@ -126,15 +128,21 @@ void TrackingConfig::list(ParameterTable& table) {
              "carries depth taken at another time than colour to colour's time");
   table.flag("seek_consensus", seek_consensus, true,
              "takes method stillpoint's first pose from where most samples agree");
-  table.number("start_looseness", start_looseness, 2.0, 0, 1000, "",
-               "matches off by more than so many chi-square bounds under the consensus do not begin the "
-               "pose; 0 all do");
+  table
+      .number("start_gate", start_gate, 2.0, 0, 1000, "",
+              "matches off by more than so many chi-square bounds under the consensus do not begin the "
+              "pose; 0 all do")
+      .formerly("start_looseness");
   table.flag("soft_weights", soft_weights, true,
-             "weighs each feature by how likely it stands still, where method stillpoint left it in");
-  table.number("half_trust_log_odds", half_trust_log_odds, -2.0, -10, 10, "",
-               "log-odds of moving at which a feature counts half");
-  table.number("look_back_frames", look_back_frames, 60, 0, 1000, "frames",
-               "methods stillpoint and oracle solve each pose once more, by the map so much later; 0 never");
+             "weighs each feature by how likely it is static, where method stillpoint left it in");
+  table
+      .number("half_weight_log_odds", half_weight_log_odds, -2.0, -10, 10, "",
+              "log-odds of moving at which a feature counts half")
+      .formerly("half_trust_log_odds");
+  table
+      .number("smoother_lag_frames", smoother_lag_frames, 60, 0, 1000, "frames",
+              "methods stillpoint and oracle solve each pose once more, by the map so much later; 0 never")
+      .formerly("look_back_frames");
   table.number("depth_weight", depth_weight, 1.0, 0, 10, "",
                "weight of the depth residual beside the paper's pixel residuals; 0 is the paper's eq. (5)");
 }
@@ -180,8 +188,10 @@ void MapConfig::list(ParameterTable& table) {
                "a young point found in less than this share of its sightings is culled");
   table.number("max_local_keyframes", max_local_keyframes, 20, 1, 500, "keyframes",
                "covisible keyframes in the local map");
-  table.flag("purge_moving", purge_moving, true,
-             "takes points on what method stillpoint finds moving out of the map");
+  table
+      .flag("cull_dynamic", cull_dynamic, true,
+            "takes points on what method stillpoint finds moving out of the map")
+      .formerly("purge_moving");
   table.number("max_keyframes", max_keyframes, 100, 2, 10000, "keyframes", "beyond them the oldest retires");
 }
 

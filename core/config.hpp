@@ -46,10 +46,10 @@ struct TrackingConfig {
   bool correct_rolling_shutter;
   bool correct_depth_lag;
   bool seek_consensus;
-  double start_looseness;
+  double start_gate;
   bool soft_weights;
-  double half_trust_log_odds;
-  int look_back_frames;
+  double half_weight_log_odds;
+  int smoother_lag_frames;
   double depth_weight;
 };
 
@@ -90,7 +90,7 @@ struct MapConfig {
   double cull_redundancy;
   double min_found_ratio;
   int max_local_keyframes;
-  bool purge_moving;
+  bool cull_dynamic;
   int max_keyframes;
 };
 

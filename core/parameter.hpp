@@ -10,7 +10,8 @@ namespace stillpoint {
 /// One constant of a run: where it lives, its range, unit and meaning. TOML files, `--set`, help and the
 /// parameters panel are made from these.
 struct Parameter {
-  std::string key;  ///< `section.name`, as in the TOML file
+  std::string key;                    ///< `section.name`, as in the TOML file
+  std::vector<std::string> old_keys;  ///< still read, written no more
   std::variant<bool*, int*, double*, std::string*> value;
   double min = 0.0, max = 0.0;       ///< inclusive, numbers only
   std::vector<std::string> choices;  ///< strings only: the values allowed
@@ -28,30 +29,36 @@ class ParameterTable {
   ParameterTable(std::string section, std::vector<Parameter>& into)
       : section_(std::move(section)), into_(&into) {}
 
-  void number(const char* name, int& value, int standard, double min, double max, const char* unit,
-              const char* help) {
-    add(name, value, standard, min, max, {}, unit, help);
+  ParameterTable& number(const char* name, int& value, int standard, double min, double max, const char* unit,
+                         const char* help) {
+    return add(name, value, standard, min, max, {}, unit, help);
   }
-  void number(const char* name, double& value, double standard, double min, double max, const char* unit,
-              const char* help) {
-    add(name, value, standard, min, max, {}, unit, help);
+  ParameterTable& number(const char* name, double& value, double standard, double min, double max,
+                         const char* unit, const char* help) {
+    return add(name, value, standard, min, max, {}, unit, help);
   }
-  void flag(const char* name, bool& value, bool standard, const char* help) {
-    add(name, value, standard, 0.0, 1.0, {}, "", help);
+  ParameterTable& flag(const char* name, bool& value, bool standard, const char* help) {
+    return add(name, value, standard, 0.0, 1.0, {}, "", help);
   }
-  void choice(const char* name, std::string& value, const char* standard, std::vector<std::string> choices,
-              const char* help) {
-    add(name, value, std::string(standard), 0.0, 0.0, std::move(choices), "", help);
+  ParameterTable& choice(const char* name, std::string& value, const char* standard,
+                         std::vector<std::string> choices, const char* help) {
+    return add(name, value, std::string(standard), 0.0, 0.0, std::move(choices), "", help);
+  }
+
+  /// The constant listed last had another name before: files that use it are still read.
+  void formerly(const char* name) {
+    if (into_ != nullptr) into_->back().old_keys.push_back(section_ + "." + name);
   }
 
  private:
   template <typename Value>
-  void add(const char* name, Value& value, Value standard, double min, double max,
-           std::vector<std::string> choices, const char* unit, const char* help) {
+  ParameterTable& add(const char* name, Value& value, Value standard, double min, double max,
+                      std::vector<std::string> choices, const char* unit, const char* help) {
     if (into_ == nullptr)
       value = std::move(standard);
     else
-      into_->push_back({section_ + "." + name, &value, min, max, std::move(choices), unit, help});
+      into_->push_back({section_ + "." + name, {}, &value, min, max, std::move(choices), unit, help});
+    return *this;
   }
 
   std::string section_;

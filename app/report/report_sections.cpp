@@ -44,7 +44,8 @@ RunFigures figures_of(const RunReport& report) {
   return figures;
 }
 
-/// The least of a figure over the runs that were not told what moves; nothing with fewer than two of them.
+/// The least of a figure over the runs that were not told what is dynamic; nothing with fewer than two of
+/// them.
 std::optional<double> least(const ReportGroup& group, std::optional<double> RunFigures::*figure) {
   std::optional<double> best;
   int known = 0;
@@ -110,7 +111,8 @@ std::string introduction(const std::vector<ReportGroup>& groups) {
       "positions after the best rigid alignment. Both are RMSE, and less is better. Gain is the share of the "
       "RPE over one second that a run takes away from the one with nothing removed (none). A mask's "
       "precision "
-      "is the share of it that truly moves, its recall the share of what moves that it holds. oracle is told "
+      "is the share of it that is truly dynamic, its recall the share of what is dynamic that it holds. "
+      "oracle is told "
       "the true masks: a reference, not a method. ✓ marks the least error and time among the others.</p>\n";
   return html;
 }

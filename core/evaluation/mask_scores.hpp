@@ -16,7 +16,7 @@ struct MaskScore {
 
   /// Share of the mask that moves, 0 to 1; nothing when the mask is empty.
   [[nodiscard]] std::optional<double> precision() const;
-  /// Share of what moves that is in the mask, 0 to 1; nothing when nothing moves.
+  /// Share of what is dynamic that is in the mask, 0 to 1; nothing when nothing moves.
   [[nodiscard]] std::optional<double> recall() const;
   /// Intersection over union, 0 to 1; nothing when nothing moves and the mask is empty.
   [[nodiscard]] std::optional<double> iou() const;
@@ -37,10 +37,10 @@ struct FeatureVerdict {
 
 /// Features against the truth, of one frame or of many added up.
 struct RemovalScore {
-  std::int64_t removed_rightly = 0;  ///< features on what moves, removed
-  std::int64_t removed_wrongly = 0;  ///< … on what stands still, removed
-  std::int64_t kept_wrongly = 0;     ///< … on what moves, kept
-  std::int64_t kept_rightly = 0;     ///< … on what stands still, kept
+  std::int64_t removed_rightly = 0;  ///< features on what is dynamic, removed
+  std::int64_t removed_wrongly = 0;  ///< … on what is static, removed
+  std::int64_t kept_wrongly = 0;     ///< … on what is dynamic, kept
+  std::int64_t kept_rightly = 0;     ///< … on what is static, kept
 
   /// Share of the removed that moved, 0 to 1; nothing when none was removed.
   [[nodiscard]] std::optional<double> precision() const;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/inspect/feature_story.hpp"
+#include "core/inspect/feature_explanation.hpp"
 
 namespace stillpoint {
 

@@ -163,7 +163,7 @@ void compare_matches(const FrameRecord& now, const FrameRecord& before, std::vec
     }
 }
 
-/// A first pose, under which what moves was judged.
+/// A first pose, under which what is dynamic was judged.
 void add_first_pose(const FrameRecord& record, std::vector<Stage>& stages) {
   if (!record.motion_pose) return;
   Stage& pose = add_stage(stages, "first_pose", "First pose",

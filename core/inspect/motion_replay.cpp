@@ -34,7 +34,8 @@ MotionAgain MotionReplay::repeat(const Frame& frame, const FrameRecord* record, 
       again.mask = again.motion.mask;
     }
   }
-  // The run found that too little was left without what moves, removed nothing and withdrew the judgement.
+  // The run found that too little was left without what is dynamic, removed nothing and withdrew the
+  // judgement.
   const bool prior_alone =
       needs.first_pose && record != nullptr && !record->motion_pose && record->features_removed == 0;
   if (as_the_run_ && record != nullptr && record->mask_share == 0.0 &&

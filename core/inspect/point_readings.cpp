@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/inspect/feature_story.hpp"
+#include "core/inspect/feature_explanation.hpp"
 
 namespace stillpoint {
 namespace {
@@ -42,8 +42,8 @@ Reading in_mask(std::string name, const cv::Mat& mask, const Point& point) {
   return {std::move(name), *value != 0 ? "yes" : "no", *value != 0};
 }
 
-const char* by_text(CarriedBy by) {
-  return by == CarriedBy::kDepth ? "by depth" : by == CarriedBy::kHomography ? "by homography" : "itself";
+const char* by_text(WarpedBy by) {
+  return by == WarpedBy::kDepth ? "by depth" : by == WarpedBy::kHomography ? "by homography" : "itself";
 }
 
 ReadingGroup read_place(const FrameView& view, const PairGeometry& pair, const Point& target) {

@@ -1,11 +1,11 @@
-// The part of RunTrack that has a finished run: all that its records hold at once, and what they do not hold
-// once odometry has seen the frames again.
-#include "core/inspect/run_track.hpp"
+// The part of ReplayableRun that has a finished run: all that its records hold at once, and what they do not
+// hold once odometry has seen the frames again.
+#include "core/inspect/replayable_run.hpp"
 
 namespace stillpoint {
 
-RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
-                   const RunTrackOptions& options)
+ReplayableRun::ReplayableRun(const FrameSource& source, std::shared_ptr<const RecordedRun> recorded,
+                             const ReplayableRunOptions& options)
     : source_(&source),
       options_(options),
       recorded_(std::move(recorded)),
@@ -22,7 +22,7 @@ RunTrack::RunTrack(const FrameSource& source, std::shared_ptr<const RecordedRun>
   }
 }
 
-void RunTrack::catch_up_one(const ReadFrame& read) {
+void ReplayableRun::catch_up_one(const ReadFrame& read) {
   if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();
   keep_motion_state();
   const Frame frame = read(seen_);
@@ -31,15 +31,15 @@ void RunTrack::catch_up_one(const ReadFrame& read) {
   if (seen_ == source_->size()) odometry_.finish();
 }
 
-bool RunTrack::is_as_recorded() const {
+bool ReplayableRun::is_as_recorded() const {
   return recorded_ && records_.size() == recorded_->run.records.size();
 }
 
-std::vector<SavedKeyframe> RunTrack::keyframes() const {
+std::vector<SavedKeyframe> ReplayableRun::keyframes() const {
   return is_as_recorded() ? recorded_->run.keyframes : saved_keyframes(odometry_.map());
 }
 
-std::vector<SavedPoint> RunTrack::points() const {
+std::vector<SavedPoint> ReplayableRun::points() const {
   const bool recorded = is_as_recorded();
   std::vector<SavedPoint> points = recorded ? recorded_->run.points : saved_points(odometry_.map());
   const std::vector<SavedPoint> moved = recorded ? recorded_->run.moved : moved_points(odometry_.map());
@@ -47,7 +47,7 @@ std::vector<SavedPoint> RunTrack::points() const {
   return points;
 }
 
-cv::Mat RunTrack::recorded_mask(int index) const {
+cv::Mat ReplayableRun::recorded_mask(int index) const {
   const auto at = static_cast<std::size_t>(index);
   return recorded_ && at < recorded_->masks.size() ? unpack_mask(recorded_->masks[at]) : cv::Mat();
 }

@@ -15,8 +15,8 @@ Eigen::Vector3d back_project(const Camera& camera, const Eigen::Vector2d& pixel,
   return camera.back_project({static_cast<double>(ideal.x), static_cast<double>(ideal.y)}, z);
 }
 
-std::optional<Eigen::Vector2d> carry_by_depth(const Camera& camera, const cv::Mat& depth, const Pose& to_from,
-                                              const Eigen::Vector2d& pixel) {
+std::optional<Eigen::Vector2d> warp_by_depth(const Camera& camera, const cv::Mat& depth, const Pose& to_from,
+                                             const Eigen::Vector2d& pixel) {
   const std::optional<double> z = depth_at_pixel(depth, pixel);
   if (!z) return std::nullopt;
   const Eigen::Vector3d there = to_from * back_project(camera, pixel, *z);
@@ -24,42 +24,42 @@ std::optional<Eigen::Vector2d> carry_by_depth(const Camera& camera, const cv::Ma
   return camera.distort(camera.project(there));
 }
 
-std::optional<Eigen::Vector2d> carry_by_homography(const cv::Matx33d& homography,
-                                                   const Eigen::Vector2d& pixel) {
+std::optional<Eigen::Vector2d> warp_by_homography(const cv::Matx33d& homography,
+                                                  const Eigen::Vector2d& pixel) {
   const cv::Vec3d moved = homography * cv::Vec3d(pixel.x(), pixel.y(), 1.0);
   const cv::Point2d carried(moved[0] / moved[2], moved[1] / moved[2]);
   if (!std::isfinite(carried.x) || !std::isfinite(carried.y)) return std::nullopt;
   return Eigen::Vector2d(carried.x, carried.y);
 }
 
-std::optional<CarriedPoint> as_carried(const std::optional<Eigen::Vector2d>& pixel, CarriedBy by) {
+std::optional<WarpedPoint> as_warped(const std::optional<Eigen::Vector2d>& pixel, WarpedBy by) {
   if (!pixel) return std::nullopt;
-  return CarriedPoint{*pixel, by};
+  return WarpedPoint{*pixel, by};
 }
 
 /// Along a direction's own homography, else against the other's.
-std::optional<CarriedPoint> carry_either_way(const std::optional<cv::Matx33d>& along,
-                                             const std::optional<cv::Matx33d>& against,
-                                             const Eigen::Vector2d& pixel) {
-  if (along) return as_carried(carry_by_homography(*along, pixel), CarriedBy::kHomography);
-  if (against) return as_carried(carry_by_homography(against->inv(), pixel), CarriedBy::kHomography);
+std::optional<WarpedPoint> warp_either_way(const std::optional<cv::Matx33d>& along,
+                                           const std::optional<cv::Matx33d>& against,
+                                           const Eigen::Vector2d& pixel) {
+  if (along) return as_warped(warp_by_homography(*along, pixel), WarpedBy::kHomography);
+  if (against) return as_warped(warp_by_homography(against->inv(), pixel), WarpedBy::kHomography);
   return std::nullopt;
 }
 
-std::optional<CarriedPoint> in_reference(const PairGeometry& pair, const Eigen::Vector2d& target) {
+std::optional<WarpedPoint> in_reference(const PairGeometry& pair, const Eigen::Vector2d& target) {
   if (pair.reference_from_target)
     if (const auto carried =
-            carry_by_depth(pair.camera, pair.target_depth, *pair.reference_from_target, target))
-      return CarriedPoint{*carried, CarriedBy::kDepth};
-  return carry_either_way(pair.backward, pair.forward, target);
+            warp_by_depth(pair.camera, pair.target_depth, *pair.reference_from_target, target))
+      return WarpedPoint{*carried, WarpedBy::kDepth};
+  return warp_either_way(pair.backward, pair.forward, target);
 }
 
-std::optional<CarriedPoint> from_reference(const PairGeometry& pair, const Eigen::Vector2d& reference) {
+std::optional<WarpedPoint> from_reference(const PairGeometry& pair, const Eigen::Vector2d& reference) {
   if (pair.reference_from_target)
-    if (const auto carried = carry_by_depth(pair.camera, pair.reference_depth,
-                                            pair.reference_from_target->inverse(), reference))
-      return CarriedPoint{*carried, CarriedBy::kDepth};
-  return carry_either_way(pair.forward, pair.backward, reference);
+    if (const auto carried = warp_by_depth(pair.camera, pair.reference_depth,
+                                           pair.reference_from_target->inverse(), reference))
+      return WarpedPoint{*carried, WarpedBy::kDepth};
+  return warp_either_way(pair.forward, pair.backward, reference);
 }
 
 std::optional<Pose> estimated_pose(const RunView& run, int frame) {
@@ -92,51 +92,50 @@ PairGeometry pair_geometry(const FrameView& view, const RunView& run, const Came
   return pair;
 }
 
-std::optional<CarriedPoint> scene_point_in(const PairGeometry& pair, FrameSpace space,
-                                           const Eigen::Vector2d& target) {
+std::optional<WarpedPoint> scene_point_in(const PairGeometry& pair, FrameSpace space,
+                                          const Eigen::Vector2d& target) {
   switch (space) {
     case FrameSpace::kTarget:
-      return CarriedPoint{target, CarriedBy::kItself};
+      return WarpedPoint{target, WarpedBy::kItself};
     case FrameSpace::kSmall:
-      return CarriedPoint{((target.array() + 0.5) / static_cast<double>(pair.small_factor) - 0.5).matrix(),
-                          CarriedBy::kItself};
+      return WarpedPoint{((target.array() + 0.5) / static_cast<double>(pair.small_factor) - 0.5).matrix(),
+                         WarpedBy::kItself};
     case FrameSpace::kReference:
       return in_reference(pair, target);
     case FrameSpace::kCompensatedBackward:
       if (!pair.backward) return std::nullopt;
-      return as_carried(carry_by_homography(*pair.backward, target), CarriedBy::kHomography);
+      return as_warped(warp_by_homography(*pair.backward, target), WarpedBy::kHomography);
     case FrameSpace::kCompensatedForward: {
       if (!pair.forward) return std::nullopt;
       const auto reference = in_reference(pair, target);
       // On the homography's plane compensation is exact; parallax, known by depth, shows as an offset.
-      if (!reference || reference->by != CarriedBy::kDepth)
-        return CarriedPoint{target, CarriedBy::kHomography};
-      return as_carried(carry_by_homography(*pair.forward, reference->pixel), CarriedBy::kDepth);
+      if (!reference || reference->by != WarpedBy::kDepth) return WarpedPoint{target, WarpedBy::kHomography};
+      return as_warped(warp_by_homography(*pair.forward, reference->pixel), WarpedBy::kDepth);
     }
   }
   return std::nullopt;
 }
 
-std::optional<CarriedPoint> target_point(const PairGeometry& pair, FrameSpace space,
-                                         const Eigen::Vector2d& pixel) {
+std::optional<WarpedPoint> target_point(const PairGeometry& pair, FrameSpace space,
+                                        const Eigen::Vector2d& pixel) {
   switch (space) {
     case FrameSpace::kTarget:
-      return CarriedPoint{pixel, CarriedBy::kItself};
+      return WarpedPoint{pixel, WarpedBy::kItself};
     case FrameSpace::kSmall:
-      return CarriedPoint{((pixel.array() + 0.5) * static_cast<double>(pair.small_factor) - 0.5).matrix(),
-                          CarriedBy::kItself};
+      return WarpedPoint{((pixel.array() + 0.5) * static_cast<double>(pair.small_factor) - 0.5).matrix(),
+                         WarpedBy::kItself};
     case FrameSpace::kReference:
       return from_reference(pair, pixel);
     case FrameSpace::kCompensatedBackward:
       if (!pair.backward) return std::nullopt;
-      return as_carried(carry_by_homography(pair.backward->inv(), pixel), CarriedBy::kHomography);
+      return as_warped(warp_by_homography(pair.backward->inv(), pixel), WarpedBy::kHomography);
     case FrameSpace::kCompensatedForward: {
       if (!pair.forward) return std::nullopt;
-      const auto reference = carry_by_homography(pair.forward->inv(), pixel);
+      const auto reference = warp_by_homography(pair.forward->inv(), pixel);
       if (!reference) return std::nullopt;
       const auto target = from_reference(pair, *reference);
-      if (target && target->by == CarriedBy::kDepth) return target;
-      return CarriedPoint{pixel, CarriedBy::kHomography};
+      if (target && target->by == WarpedBy::kDepth) return target;
+      return WarpedPoint{pixel, WarpedBy::kHomography};
     }
   }
   return std::nullopt;

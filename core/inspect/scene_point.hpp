@@ -17,15 +17,15 @@ struct RunView;
 // middle of pixel (i, j) is (i, j).
 
 /// By what a point came to its place in another picture.
-enum class CarriedBy {
+enum class WarpedBy {
   kItself,      ///< the picture shows that very pixel
   kDepth,       ///< its measured depth and the camera's motion
   kHomography,  ///< where there is no depth or no pose: as if it lay on the homography's plane
 };
 
-struct CarriedPoint {
+struct WarpedPoint {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  CarriedBy by = CarriedBy::kItself;
+  WarpedBy by = WarpedBy::kItself;
 };
 
 /// What is known of a pair of frames by which points are carried between its pictures.
@@ -44,12 +44,12 @@ struct PairGeometry {
 
 /// Where a picture shows the scene point that the target has at `target` px; nothing where that is not known,
 /// as behind the camera or before there is a pair. The place may lie outside the picture.
-[[nodiscard]] std::optional<CarriedPoint> scene_point_in(const PairGeometry& pair, FrameSpace space,
-                                                         const Eigen::Vector2d& target);
+[[nodiscard]] std::optional<WarpedPoint> scene_point_in(const PairGeometry& pair, FrameSpace space,
+                                                        const Eigen::Vector2d& target);
 
 /// Where the target has the scene point that a picture shows at `pixel`: the way back.
-[[nodiscard]] std::optional<CarriedPoint> target_point(const PairGeometry& pair, FrameSpace space,
-                                                       const Eigen::Vector2d& pixel);
+[[nodiscard]] std::optional<WarpedPoint> target_point(const PairGeometry& pair, FrameSpace space,
+                                                      const Eigen::Vector2d& pixel);
 
 /// The measured depth (m) at a pixel; nothing outside the image or where there is no measurement.
 [[nodiscard]] std::optional<double> depth_at_pixel(const cv::Mat& depth, const Eigen::Vector2d& pixel);

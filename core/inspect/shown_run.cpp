@@ -65,7 +65,7 @@ ShownRun::Extras ShownRun::extras_of(int index) {
     const bool processed = index < track_.processed();
     MotionAgain again = motion.repeat(
         frames_->read(index), processed ? &track_.records()[static_cast<std::size_t>(index)] : nullptr,
-        track_.told_mask(track_.config(), index));
+        track_.true_mask_used(track_.config(), index));
     extras.motion = std::move(again.motion);
     extras.mask = std::move(again.mask);
   } else if (!is_own(index)) {
@@ -110,7 +110,7 @@ bool ShownRun::set_out_for(int index) {
 bool ShownRun::prepare_preview(int index) {
   if (!is_own(index)) return true;
   if ((!before_ || before_->index != index) && !set_out_for(index)) return false;
-  RunTrack::Rewound& way = before_->way;
+  ReplayableRun::Rewound& way = before_->way;
   if (way.next < index) {
     (void)track_.process(way.odometry, way.next, [this](int) { return before_->frames->next(); });
     ++way.next;
@@ -133,7 +133,7 @@ std::optional<MotionAgain> ShownRun::motion_again(int index, const Config& confi
   const bool processed = index < track_.processed();
   const FrameRecord* record = processed ? &track_.records()[static_cast<std::size_t>(index)] : nullptr;
   const auto repeat = [&](MotionReplay motion) {
-    return motion.repeat(frames_->read(index), record, track_.told_mask(config, index));
+    return motion.repeat(frames_->read(index), record, track_.true_mask_used(config, index));
   };
   if (!needs.keeps_state && !needs.first_pose)
     return repeat(

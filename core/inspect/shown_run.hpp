@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/inspect/frame_cache.hpp"
-#include "core/inspect/run_track.hpp"
+#include "core/inspect/replayable_run.hpp"
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
@@ -17,7 +17,7 @@ namespace stillpoint {
 /// those of others are computed again.
 class ShownRun {
  public:
-  ShownRun(const FrameSource& source, FrameCache& frames, RunTrack track)
+  ShownRun(const FrameSource& source, FrameCache& frames, ReplayableRun track)
       : source_(&source), frames_(&frames), track_(std::move(track)) {}
 
   /// Processes the next frame. @param frame that frame, read
@@ -26,7 +26,7 @@ class ShownRun {
   /// Shows odometry the next of a finished run's frames that it has not seen.
   void catch_up_one() { track_.catch_up_one(reader()); }
 
-  [[nodiscard]] const RunTrack& track() const { return track_; }
+  [[nodiscard]] const ReplayableRun& track() const { return track_; }
 
   /// The frame with all its images and, where it was processed, its record and those right before.
   /// @param before becomes FrameView::before
@@ -52,7 +52,7 @@ class ShownRun {
   /// @param method its name; empty for none
   void lay_beside(const std::string& method) { beside_ = method; }
 
-  [[nodiscard]] RunTrack::ReadFrame reader() const {
+  [[nodiscard]] ReplayableRun::ReadFrame reader() const {
     return [this](int index) { return frames_->read(index); };
   }
 
@@ -82,14 +82,14 @@ class ShownRun {
 
   const FrameSource* source_;
   FrameCache* frames_;
-  RunTrack track_;
+  ReplayableRun track_;
   std::string beside_;         // method whose stages are laid beside; empty = none
   std::deque<Extras> extras_;  // of the frames processed or replayed last
   std::shared_ptr<const RunView> view_;
   /// The state before a frame that is processed again, or the way there.
   struct Before {
     int index = 0;
-    RunTrack::Rewound way;
+    ReplayableRun::Rewound way;
     std::unique_ptr<Prefetcher> frames{};  // null once it is there
   };
   std::optional<std::pair<int, std::set<int>>> to_read_;       // before one can set out for a frame

@@ -23,7 +23,7 @@ struct FigureInfo {
 
 /// Something a method can do without, and how it is told to.
 struct Ingredient {
-  std::string name;                      ///< for the command line and tables: "memory"
+  std::string name;                      ///< for the command line and tables: "prior"
   std::string help;                      ///< what it does, a few words
   std::vector<std::string> assignments;  ///< `section.name=value`, as set_parameter takes them
 };

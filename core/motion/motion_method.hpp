@@ -19,8 +19,8 @@ namespace stillpoint {
 
 struct Config;
 
-// What moves: the interface between a motion method and everything around it. A method judges frames, one
-// after the other; the odometry acts on its judgement. README.md beside this file tells how to add one.
+// What is dynamic: the interface between a motion method and everything around it. A method judges frames,
+// one after the other; the odometry acts on its judgement. README.md beside this file tells how to add one.
 
 /// What a method asks for. What it does not ask for it is not given.
 struct MotionNeeds {
@@ -82,8 +82,8 @@ struct MotionOutcome {
   Pose camera_from_world = Pose::Identity();  ///< final
 };
 
-/// Judges what moves. A value behind a pointer: a clone goes on as the original would, with the same bytes.
-/// Only commit() changes it, so that a frame can be judged again, or by several threads.
+/// Judges what is dynamic. A value behind a pointer: a clone goes on as the original would, with the same
+/// bytes. Only commit() changes it, so that a frame can be judged again, or by several threads.
 class MotionMethod {
  public:
   using ReadFrame = std::function<Frame(int)>;

@@ -16,7 +16,7 @@ struct RgbdView {
                     ///< gray; and depth, m, 0 unless the four neighbours are measured on the same surface
   cv::Mat
       depth_slope;  ///< CV_32FC1, m a pixel: largest step to one of the four neighbours on the same surface
-  Camera camera;    ///< of the small images, without distortion: pixels are near enough
+  Camera camera;    ///< of the downsampled images, without distortion: pixels are near enough
   int factor = 4;   ///< full-size pixels a side of a block
 };
 

@@ -23,7 +23,7 @@ void Yi2013Config::list(ParameterTable& table) {
   table.number("iterations", iterations, 20, 1, 100, "", "Lucas-Kanade steps a level, at most");
   table.number("epsilon_px", epsilon_px, 0.03, 1e-4, 1, "px", "a shorter Lucas-Kanade step is the last one");
   table.number("min_tracks", min_tracks, 10, 4, 10000, "points",
-               "with fewer followed points the camera is taken to stand still");
+               "with fewer followed points the camera is taken to are static");
   table.number("ransac_px", ransac_px, 1.0, 0.05, 20, "px", "inliers lie this close to the homography");
   table.number("block_px", block_px, 4, 1, 32, "px", "side of a block of the background model");
   table.number("initial_sigma", initial_sigma, 20.0, 1, 128, "grey levels",
@@ -85,13 +85,13 @@ Yi2013Motion yi2013_motion(const std::vector<cv::Mat>& here, const std::vector<c
   for (std::size_t i = 0; i < from.size(); ++i) motion.tracks.push_back({from[i], to[i], false});
   if (static_cast<int>(from.size()) < config.min_tracks) {
     motion.note =
-        fmt::format("only {} points could be followed: the camera is taken to stand still", from.size());
+        fmt::format("only {} points could be followed: the camera is taken to are static", from.size());
     return motion;
   }
   std::vector<std::uint8_t> agrees;
   const cv::Mat homography = cv::findHomography(from, to, cv::RANSAC, config.ransac_px, agrees);
   if (homography.empty()) {
-    motion.note = "no homography fits the followed points: the camera is taken to stand still";
+    motion.note = "no homography fits the followed points: the camera is taken to are static";
     return motion;
   }
   motion.last_from_here = cv::Matx33d(homography);

@@ -88,7 +88,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
     } else if (p.z() < kNearest) {
       return false;
     } else {
-      const double weight = std::sqrt(edge_.trust) / edge_.sigma_px, iz = 1.0 / p.z();
+      const double weight = std::sqrt(edge_.static_weight) / edge_.sigma_px, iz = 1.0 / p.z();
       if (half_ == Half::pixel) {
         residual.x() = weight * (camera_.fx * p.x() * iz + camera_.cx - edge_.pixel.x());
         residual.y() = weight * (camera_.fy * p.y() * iz + camera_.cy - edge_.pixel.y());
@@ -300,7 +300,7 @@ BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Confi
                       {features.undistorted[f].x, features.undistorted[f].y},
                       features.depth[f],
                       scales[static_cast<std::size_t>(features.keypoints[f].octave)],
-                      features.trust[f]});
+                      features.static_weight[f]});
     }
     if (seen.size() == 1) {  // says nothing of any pose, and goes where its view goes
       const Pose& camera_from_world = problem.views[static_cast<std::size_t>(seen[0].view)].camera_from_world;

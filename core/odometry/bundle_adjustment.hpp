@@ -25,7 +25,7 @@ struct BundleProblem {
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< px, undistorted
     double depth = 0.0;                               ///< m; 0 = none
     double sigma_px = 1.0;
-    double trust = 1.0;  ///< weight of its squares, before Huber's bound: FeatureSet::trust
+    double static_weight = 1.0;  ///< weight of its squares, before Huber's bound: FeatureSet::static_weight
   };
   struct Carried {
     int point = kNone, view = 0;

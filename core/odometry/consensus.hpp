@@ -18,7 +18,8 @@ struct Consensus {
 /// Finds the pose that explains the scene tightly, among the guesses given and poses from samples of three
 /// points with depth (RANSAC with truncated squares, Torr & Zisserman 2000). Observations of one part of the
 /// image share their vote, so that a thing rich in texture weighs no more than its area; and the bound is
-/// tight, for a mover that goes with the camera looks, to a loose one, like a scene with another motion.
+/// tight, for a dynamic object that goes with the camera looks, to a loose one, like a scene with another
+/// motion.
 /// @param seed makes the samples; same seed, same result
 [[nodiscard]] Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
                                        const std::vector<Pose>& guesses, int samples, std::uint32_t seed);

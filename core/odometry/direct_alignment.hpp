@@ -12,7 +12,7 @@ namespace stillpoint {
 struct DirectTarget {
   cv::Mat gray;    ///< CV_8UC1
   cv::Mat depth;   ///< CV_32FC1, m; empty where there is none: then depth checks nothing
-  cv::Mat moving;  ///< small mask of what is held to move in it; empty when nothing is
+  cv::Mat moving;  ///< small mask of what is classified as dynamic in it; empty when nothing is
   /// Which way the camera goes while the rows are exposed, by the pose that is tried: of one second,
   /// log(now_from_before). Null where all rows are exposed at once.
   std::function<Vector6d(const Pose& target_from_reference)> velocity;

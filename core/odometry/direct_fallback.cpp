@@ -34,7 +34,7 @@ void DirectFallback::adopt(const Config& config) {
   enabled_ = config.direct.below_inliers > 0 && method_of(config).extends_odometry;
 }
 
-bool DirectFallback::begins_starved(const TrackedFrame& frame) {
+bool DirectFallback::starts_degraded(const TrackedFrame& frame) {
   const auto found = static_cast<double>(
       std::count_if(frame.points.begin(), frame.points.end(), [](int point) { return point != kNone; }));
   constexpr double kHardly = 0.6;  // the first pose is but a first one: it may do with fewer
@@ -43,7 +43,7 @@ bool DirectFallback::begins_starved(const TrackedFrame& frame) {
   return starved;
 }
 
-bool DirectFallback::starves(int inliers) const {
+bool DirectFallback::is_degraded(int inliers) const {
   return enabled_ && inliers < std::max<double>(config_.direct.below_inliers,
                                                 config_.direct.below_share * usual_inliers_);
 }
@@ -144,14 +144,14 @@ double DirectFallback::noise_of_corners(const LocalMap& map, const TrackedFrame&
 }
 
 void DirectFallback::count(int inliers, bool directly) {
-  starved_frames_ = directly ? starved_frames_ + 1 : 0;
+  degraded_frames_ = directly ? degraded_frames_ + 1 : 0;
   // Fading all the while: a view with fewer corners that lasts becomes the usual one.
   usual_inliers_ = std::max(kUsualFades * usual_inliers_, 1.0 * inliers);
 }
 
-bool DirectFallback::starved_for_long() const {
+bool DirectFallback::degraded_for_long() const {
   constexpr int kLong = 5;  // frames: by then the view is another one
-  return starved_frames_ >= kLong;
+  return degraded_frames_ >= kLong;
 }
 
 void DirectFallback::remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask, double lag,
@@ -166,7 +166,7 @@ void DirectFallback::remember(const Frame& image, const FrameRecord& record, con
   reference.moving = small_mask(mask);
   reference.reference_keyframe = record.reference_keyframe;
   reference.camera_from_keyframe = record.camera_from_reference;
-  if (record.status == FrameStatus::initialised || !starves(record.inliers)) sharp_reference_ = reference;
+  if (record.status == FrameStatus::initialised || !is_degraded(record.inliers)) sharp_reference_ = reference;
   last_reference_ = std::move(reference);
 }
 

@@ -23,9 +23,9 @@ class DirectFallback {
   [[nodiscard]] bool enabled() const { return enabled_; }
 
   /// Whether a first pose has far fewer matches than first poses lately had, of which this is one.
-  [[nodiscard]] bool begins_starved(const TrackedFrame& frame);
+  [[nodiscard]] bool starts_degraded(const TrackedFrame& frame);
   /// Whether a pose with so many inliers is to be helped.
-  [[nodiscard]] bool starves(int inliers) const;
+  [[nodiscard]] bool is_degraded(int inliers) const;
 
   /// A first pose by patches alone. @returns whether there is one; the frame is at it then
   [[nodiscard]] bool begin(const Frame& image, const LocalMap& map, const CameraPath& path,
@@ -38,11 +38,11 @@ class DirectFallback {
   /// Takes note of a tracked frame. @param directly whether patches had a say in it
   void count(int inliers, bool directly);
   /// Whether frames have gone by patches for so long that the map knows nothing of the view.
-  [[nodiscard]] bool starved_for_long() const;
+  [[nodiscard]] bool degraded_for_long() const;
   /// The map knows the view again, or the camera is lost.
-  void end_starving() { starved_frames_ = 0; }
+  void end_degradation() { degraded_frames_ = 0; }
 
-  /// Keeps the frame to align later ones with. @param mask what moves in it; @param lag s, of its depth
+  /// Keeps the frame to align later ones with. @param mask what is dynamic in it; @param lag s, of its depth
   /// @param velocity of the camera in it, a second
   void remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask, double lag,
                 const Vector6d& velocity);
@@ -70,7 +70,7 @@ class DirectFallback {
   std::optional<DirectReference> sharp_reference_;  // … that had corners enough
   double usual_first_inliers_ = 0.0;                // of first poses, lately
   double usual_inliers_ = 0.0;                      // of whole frames, lately
-  int starved_frames_ = 0;                          // in a row
+  int degraded_frames_ = 0;                         // in a row
 };
 
 }  // namespace stillpoint

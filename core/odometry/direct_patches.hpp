@@ -23,7 +23,7 @@ struct DirectReference {
   Pose camera_from_keyframe = Pose::Identity();
 };
 
-/// The mask of what moves made small for keeping: a block moves where any of its pixels does.
+/// The mask of what is dynamic made small for keeping: a block moves where any of its pixels does.
 [[nodiscard]] cv::Mat small_mask(const cv::Mat& mask);
 /// Whether a small mask covers a full-size pixel.
 [[nodiscard]] bool covers(const cv::Mat& small, const cv::Point2f& pixel);

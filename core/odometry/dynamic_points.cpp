@@ -6,8 +6,9 @@ namespace stillpoint {
 int remove_dynamic_points(LocalMap& map, const cv::Mat& depth, const cv::Mat& mask,
                           const Pose& camera_from_world, int about, const Camera& camera,
                           const Config& config) {
-  constexpr double kLikeDepth = 0.1;  // m: the point lies on what moves or before it, where nothing is now
-  constexpr double kNearest = 0.05;   // m: nearer points are not projected
+  constexpr double kLikeDepth =
+      0.1;  // m: the point lies on what is dynamic or before it, where nothing is now
+  constexpr double kNearest = 0.05;  // m: nearer points are not projected
   if (mask.empty() || depth.empty() || map.keyframes().empty()) return 0;
   int removed = 0;
   // Not only what the last frame showed: what has gone on meanwhile stays behind in the map.

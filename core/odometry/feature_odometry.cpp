@@ -103,7 +103,8 @@ TrackedFrame FeatureOdometry::track_frame(MotionInput input, const PreparedFrame
   // Where a constant velocity has the camera by now.
   FrameSolver::FirstPose first = solver_.predict(frame, map);
   if (solver_.needs_first_pose(frame)) {
-    // What moves under a first pose, and how fast the camera goes in this very frame, are known only then.
+    // What is dynamic under a first pose, and how fast the camera goes in this very frame, are known only
+    // then.
     if (needs.first_pose) {
       input.camera_from_world = first.camera_from_world;
       expect(motion_, input, result);
@@ -154,10 +155,10 @@ void FeatureOdometry::keep(const Frame& frame, FrameSolver::Solution& solution, 
   direct.count(solution.inliers, solution.directly);
 
   const bool keyframe = solution.directly
-                            ? direct.starved_for_long() && mapper_.bears_keyframe(frame, tracked)
+                            ? direct.degraded_for_long() && mapper_.bears_keyframe(frame, tracked)
                             : mapper_.wants_keyframe(frame, tracked, record.inliers);
   if (keyframe) {
-    direct.end_starving();
+    direct.end_degradation();
     mapper_.add_keyframe(frame, tracked, record);  // §2.4 begins here, and ends some frames later
   }
   // Points that so few corners show are looked for again from the frame that showed them well.
@@ -169,11 +170,11 @@ void FeatureOdometry::keep(const Frame& frame, FrameSolver::Solution& solution, 
 
   if (!looks_back()) return;
   if (!keyframe && !solution.directly)
-    hindsight_.remember(record.index, {record.reference_keyframe, record.camera_from_reference},
-                        sights_of(tracked, solver_.tracker().scales()));
+    smoother_.remember(record.index, {record.reference_keyframe, record.camera_from_reference},
+                       inlier_matches_of(tracked, solver_.tracker().scales()));
   const Stopwatch watch;
-  hindsight_.look_back(record.index - config_.tracking.look_back_frames, mapper_.map(), camera_,
-                       config_.tracking);
+  smoother_.advance(record.index - config_.tracking.smoother_lag_frames, mapper_.map(), camera_,
+                    config_.tracking);
   record.ms.pose += watch.milliseconds();
 }
 
@@ -186,7 +187,7 @@ void FeatureOdometry::lose(const Frame& frame, FrameStatus status, const std::st
   const Pose predicted = path.predicted(mapper_.map(), frame.timestamp);
   path.lose(mapper_.map(), frame.timestamp);
   write_pose(predicted, record);
-  solver_.direct().end_starving();
+  solver_.direct().end_degradation();
 }
 
 void FeatureOdometry::write_pose(const Pose& camera_from_world, FrameRecord& record) const {
@@ -196,13 +197,13 @@ void FeatureOdometry::write_pose(const Pose& camera_from_world, FrameRecord& rec
 }
 
 bool FeatureOdometry::looks_back() const {
-  return config_.tracking.look_back_frames > 0 && motion_.info().extends_odometry;
+  return config_.tracking.smoother_lag_frames > 0 && motion_.info().extends_odometry;
 }
 
 void FeatureOdometry::finish() {
   FrameRecord unused;
   mapper_.end_bundle(unused);
-  hindsight_.look_back(std::numeric_limits<int>::max(), mapper_.map(), camera_, config_.tracking);
+  smoother_.advance(std::numeric_limits<int>::max(), mapper_.map(), camera_, config_.tracking);
 }
 
 }  // namespace stillpoint

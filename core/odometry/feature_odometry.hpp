@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/odometry/frame_solver.hpp"
-#include "core/odometry/hindsight.hpp"
 #include "core/odometry/mapper.hpp"
 #include "core/odometry/odometry_engine.hpp"
 #include "core/odometry/removal_check.hpp"
+#include "core/odometry/smoother.hpp"
 
 namespace stillpoint {
 
@@ -34,8 +34,8 @@ class FeatureOdometry final : public OdometryEngine {
   void restore_images(int next, const std::function<Frame(int)>& read) override;
 
   [[nodiscard]] const LocalMap& map() const override { return mapper_.map(); }
-  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const override {
-    return hindsight_.revised();
+  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const override {
+    return smoother_.revised();
   }
   [[nodiscard]] const Config& config() const override { return config_; }
   [[nodiscard]] const MotionStage& motion() const override { return motion_; }
@@ -60,7 +60,7 @@ class FeatureOdometry final : public OdometryEngine {
   MotionStage motion_;  // what is classified as dynamic
   FrameSolver solver_;
   Mapper mapper_;
-  Hindsight hindsight_;  // of frames lately tracked
+  FixedLagSmoother smoother_;  // of frames lately tracked
 };
 
 }  // namespace stillpoint

@@ -31,7 +31,7 @@ std::unique_ptr<OdometryEngine> FeatureOdometry::continued_with(const Config& co
   next.motion_ = motion_.continued_with(config, before);
   next.solver_.adopt(config);
   next.mapper_.adopt(config);
-  if (!next.looks_back()) next.hindsight_.forget_pending();
+  if (!next.looks_back()) next.smoother_.forget_pending();
   if (frames_wanted(config) == 0) {
     for (const auto& preparation : preparer_.motion().past()) next.preparer_.motion().pass(preparation);
   } else {

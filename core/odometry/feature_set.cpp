@@ -53,14 +53,14 @@ FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, 
   kept.undistorted.reserve(count);
   kept.descriptors.reserve(count);
   kept.depth.reserve(count);
-  kept.trust.reserve(count);
+  kept.static_weight.reserve(count);
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (!keep[i]) continue;
     kept.keypoints.push_back(all.keypoints[i]);
     kept.undistorted.push_back(all.undistorted[i]);
     kept.descriptors.push_back(all.descriptors[i]);
     kept.depth.push_back(all.depth[i]);
-    kept.trust.push_back(all.trust[i]);
+    kept.static_weight.push_back(all.static_weight[i]);
   }
   kept.build_index(width, height);
   return kept;

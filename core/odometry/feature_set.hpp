@@ -25,8 +25,8 @@ struct FeatureSet {
   std::vector<cv::KeyPoint> keypoints;   ///< pixel in the image as it is, octave, angle (deg), response
   std::vector<cv::Point2f> undistorted;  ///< the same pixels as a pinhole would see them, px
   std::vector<Descriptor> descriptors;
-  std::vector<float> depth;  ///< m; 0 where the frame has no measurement
-  std::vector<float> trust;  ///< 0 to 1: how likely each stands still; its weight in every pose
+  std::vector<float> depth;          ///< m; 0 where the frame has no measurement
+  std::vector<float> static_weight;  ///< 0 to 1: how likely each is static; its weight in every pose
 
   [[nodiscard]] int size() const { return static_cast<int>(keypoints.size()); }
 

@@ -35,7 +35,7 @@ void withdraw(FrameResult& result) {
   FrameRecord& record = result.record;
   record.mask_share = 0.0;
   record.note += (record.note.empty() ? "" : "; ") +
-                 std::string("too little is left without what moves, so nothing was removed");
+                 std::string("too little is left without what is dynamic, so nothing was removed");
 }
 
 std::vector<MotionFeature> motion_features(const TrackedFrame& first, const LocalMap& map) {

@@ -15,7 +15,8 @@ namespace stillpoint {
 /// Has the frame judged. Where the input has a pose, under it.
 void judge(const MotionStage& motion, const MotionInput& input, FrameResult& result);
 
-/// What is held to move before the frame is judged, under the input's pose, becomes the result's mask.
+/// What is classified as dynamic before the frame is judged, under the input's pose, becomes the result's
+/// mask.
 void expect(const MotionStage& motion, const MotionInput& input, FrameResult& result);
 
 /// Takes a judgement back: nothing is removed.

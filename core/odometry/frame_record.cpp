@@ -22,7 +22,7 @@ std::string_view to_string(FrameStatus status) {
 
 int weighing_little(const std::vector<FeatureRecord>& features) {
   return static_cast<int>(std::count_if(features.begin(), features.end(), [](const FeatureRecord& f) {
-    return f.fate == FeatureFate::inlier && f.trust < kLittleTrust;
+    return f.fate == FeatureFate::inlier && f.static_weight < kLowWeight;
   }));
 }
 

@@ -38,11 +38,11 @@ struct FeatureRecord {
   int map_point = kNone;     ///< id; kNone when unmatched or removed
   std::uint8_t octave = 0;
   FeatureFate fate = FeatureFate::unmatched;
-  float trust = 1.0F;  ///< 0 to 1, of standing still: its weight in the pose
+  float static_weight = 1.0F;  ///< 0 to 1, of being static: its weight in the pose
 };
 
-/// A feature trusted less than this weighs little: it is told where its weight is told.
-inline constexpr float kLittleTrust = 0.5F;
+/// A feature of less weight than this weighs little; its weight is shown then.
+inline constexpr float kLowWeight = 0.5F;
 
 /// How many inliers weigh little in the pose.
 [[nodiscard]] int weighing_little(const std::vector<FeatureRecord>& features);
@@ -56,7 +56,7 @@ enum class PoseStart : std::uint8_t { none, motion_model, wide_search, epnp, dir
 struct DirectPatch {
   cv::Point2f pixel;      ///< px, where the frame shows it as aligned
   float residual = 0.0F;  ///< grey levels, mean over its pixels at the finest level, signed
-  float weight = 0.0F;    ///< how far it was trusted, 0 to 1
+  float weight = 0.0F;    ///< 0 to 1
 };
 
 /// What direct alignment did in a frame whose corners starved.
@@ -75,7 +75,7 @@ struct DirectRecord {
 
 /// What each stage took, in milliseconds of wall time. For reading only: no result depends on it.
 struct StageTimes {
-  double motion = 0.0;    ///< finding what moves, beside feature extraction where threads allow
+  double motion = 0.0;    ///< finding what is dynamic, beside feature extraction where threads allow
   double features = 0.0;  ///< ORB
   double matching = 0.0;  ///< both searches against the map
   double pose = 0.0;      ///< EPnP, consensus and refinement

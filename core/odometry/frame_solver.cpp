@@ -34,7 +34,7 @@ FrameSolver::FirstPose FrameSolver::predict(const Frame& image, const LocalMap& 
 }
 
 FrameSolver::FirstPose FrameSolver::first_pose(const Frame& image, const PreparedFrame& prepared,
-                                               const cv::Mat& mask, const LocalMap& map, bool movers_known,
+                                               const cv::Mat& mask, const LocalMap& map, bool motion_settled,
                                                FrameRecord& record) {
   FirstPose first = predict(image, map);
   TrackedFrame& seen = first.seen;
@@ -45,7 +45,7 @@ FrameSolver::FirstPose FrameSolver::first_pose(const Frame& image, const Prepare
     consensus_seed = static_cast<std::uint32_t>(config_.run.seed) + static_cast<std::uint32_t>(image.index);
   first.found = tracker_.estimate(map, seen, record, consensus_seed);
   if (direct_.enabled()) {
-    const bool starved = direct_.begins_starved(seen) && movers_known;
+    const bool starved = direct_.starts_degraded(seen) && motion_settled;
     if (starved || !first.found) first.found = direct_.begin(image, map, path(), seen, record) || first.found;
   }
   if (!first.found) return first;
@@ -83,7 +83,7 @@ void FrameSolver::track(const Frame& image, const LocalMap& map, Solution& solut
   const bool begun = tracker_.estimate(map, frame, record);               // §2.2: EPnP inside RANSAC
   if (begun) refined = tracker_.refine_by_local_map(map, frame, record);  // §2.3, eq. (5)
   solution.directly =
-      direct_.starves(refined.inliers) && direct_.refine(image, map, tracker_, frame, refined, record);
+      direct_.is_degraded(refined.inliers) && direct_.refine(image, map, tracker_, frame, refined, record);
   solution.inliers = refined.inliers;
   // That a blurred frame does not show a point's corner tells nothing of the point.
   if (begun && !solution.directly) {

@@ -12,9 +12,9 @@
 
 namespace stillpoint {
 
-/// METHOD.md §2.1 to §2.3: where a frame was taken, given what moves in it and the map as it is. The run and
-/// the removal check solve by it alike. A value: the tracker and the direct fallback, with what they know of
-/// earlier frames. It changes no map.
+/// METHOD.md §2.1 to §2.3: where a frame was taken, given what is dynamic in it and the map as it is. The run
+/// and the removal check solve by it alike. A value: the tracker and the direct fallback, with what they know
+/// of earlier frames. It changes no map.
 class FrameSolver {
  public:
   FrameSolver(const Camera& camera, const Config& config);
@@ -37,10 +37,11 @@ class FrameSolver {
   /// Whether the frame needs a first pose: to be judged under, or to know how fast the camera goes in it.
   [[nodiscard]] bool needs_first_pose(const Frame& image) const;
   [[nodiscard]] FirstPose predict(const Frame& image, const LocalMap& map) const;
-  /// @param mask of what is known to move before the frame is judged; @param movers_known whether the motion
-  /// method has seen enough to know: before that, patches on a mover would take the camera along
+  /// @param mask of what is known to be dynamic before the frame is judged; @param motion_settled whether the
+  /// motion method has seen enough to know: before that, patches on a dynamic object would take the camera
+  /// along
   [[nodiscard]] FirstPose first_pose(const Frame& image, const PreparedFrame& prepared, const cv::Mat& mask,
-                                     const LocalMap& map, bool movers_known, FrameRecord& record);
+                                     const LocalMap& map, bool motion_settled, FrameRecord& record);
 
   struct Solution {
     TrackedFrame frame;

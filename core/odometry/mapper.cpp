@@ -29,7 +29,7 @@ void Mapper::end_bundle(FrameRecord& record) {
 
 void Mapper::remove_dynamic_points(const Frame& image, const cv::Mat& mask, const Pose& camera_from_world,
                                    int about) {
-  if (config_.map.purge_moving)
+  if (config_.map.cull_dynamic)
     stillpoint::remove_dynamic_points(map_, image.depth, mask, camera_from_world, about, camera_, config_);
 }
 

@@ -28,8 +28,8 @@ class Mapper {
   /// … or now, due or not.
   void end_bundle(FrameRecord& record);
 
-  /// Takes the map points that lie on what moves out of the map. @param mask CV_8UC1, 255 = dynamic; empty:
-  /// nothing does. @param about keyframe near which the camera is
+  /// Takes the map points that lie on what is dynamic out of the map. @param mask CV_8UC1, 255 = dynamic;
+  /// empty: nothing does. @param about keyframe near which the camera is
   void remove_dynamic_points(const Frame& image, const cv::Mat& mask, const Pose& camera_from_world,
                              int about);
   /// Counts for each map point that should be seen that it should, and whether it was.

@@ -24,8 +24,8 @@ int cull_points(LocalMap& map, int newest_keyframe, const Config& config);
 /// map.max_keyframes.
 int cull_keyframes(LocalMap& map, int newest_keyframe, const Config& config);
 
-/// At any frame: takes out the points about a keyframe that lie on what moves, or before it where nothing is
-/// now. Each is remembered among LocalMap::moved_points().
+/// At any frame: takes out the points about a keyframe that lie on what is dynamic, or before it where
+/// nothing is now. Each is remembered among LocalMap::moved_points().
 /// @param depth of the frame, CV_32FC1, m; @param mask CV_8UC1 of the same size, 255 = dynamic; empty: none
 int remove_dynamic_points(LocalMap& map, const cv::Mat& depth, const cv::Mat& mask,
                           const Pose& camera_from_world, int about, const Camera& camera,

@@ -26,8 +26,8 @@ class Odometry {
   ~Odometry() = default;
 
   /// Takes the next frame. Nothing about the frame makes it throw: what cannot be tracked is marked lost.
-  /// @param known_mask what truly moves, CV_8UC1; empty where it is not known. Only methods that need the
-  /// true mask go by it; to the others it serves for RemovalCheck.
+  /// @param known_mask what is truly dynamic, CV_8UC1; empty where it is not known. Only methods that need
+  /// the true mask go by it; to the others it serves for RemovalCheck.
   [[nodiscard]] FrameResult process(const Frame& frame, const cv::Mat& known_mask = {}) {
     return engine_->process(frame, known_mask);
   }
@@ -64,7 +64,9 @@ class Odometry {
 
   [[nodiscard]] const LocalMap& map() const { return engine_->map(); }
   /// By frame index: the poses of earlier frames that were solved once more, by the map as it was later.
-  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const { return engine_->revised_poses(); }
+  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const {
+    return engine_->revised_poses();
+  }
   [[nodiscard]] const Config& config() const { return engine_->config(); }
   /// The motion method's state, as the next frame will find it.
   [[nodiscard]] const MotionStage& motion() const { return engine_->motion(); }

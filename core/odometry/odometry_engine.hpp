@@ -10,8 +10,8 @@
 #include "core/motion/motion_stage.hpp"
 #include "core/odometry/frame_preparer.hpp"
 #include "core/odometry/frame_result.hpp"
-#include "core/odometry/hindsight.hpp"
 #include "core/odometry/local_map.hpp"
+#include "core/odometry/smoother.hpp"
 #include "core/sequence/frame.hpp"
 
 namespace stillpoint {
@@ -41,7 +41,7 @@ class OdometryEngine {
   virtual void restore_images(int next, const std::function<Frame(int)>& read) = 0;
 
   [[nodiscard]] virtual const LocalMap& map() const = 0;
-  [[nodiscard]] virtual const std::map<int, HangingPose>& revised_poses() const = 0;
+  [[nodiscard]] virtual const std::map<int, KeyframeRelativePose>& revised_poses() const = 0;
   [[nodiscard]] virtual const Config& config() const = 0;
   [[nodiscard]] virtual const MotionStage& motion() const = 0;
 

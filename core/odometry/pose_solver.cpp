@@ -39,7 +39,7 @@ class PoseProblem {
       block.inverse_depth[k] = depth ? 1.0 / o.depth : 0.0;
       block.depth_weight[k] = depth ? depth_weight * kDepthBaseline * camera.fx / o.sigma_px : 0.0;
       block.bound[k] = depth ? kChi2PixelDepth : kChi2Pixel;
-      block.trust[k] = block.used[k] = o.trust;
+      block.static_weight[k] = block.used[k] = o.static_weight;
     }
   }
 
@@ -47,17 +47,17 @@ class PoseProblem {
   void use(const std::vector<std::uint8_t>& inlier) {
     for (std::size_t i = 0; i < count_; ++i) {
       Block& block = blocks_[i / kLanes];
-      block.used[i % kLanes] = inlier[i] != 0 ? block.trust[i % kLanes] : 0.0;
+      block.used[i % kLanes] = inlier[i] != 0 ? block.static_weight[i % kLanes] : 0.0;
     }
   }
 
   /// Marks the observations whose χ² is within so many times its bound; returns how many.
-  int mark_inliers(const Pose& camera_from_world, double looseness, std::vector<std::uint8_t>& inlier) const {
+  int mark_inliers(const Pose& camera_from_world, double gate, std::vector<std::uint8_t>& inlier) const {
     int inliers = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Residual r = residual(blocks_[b], camera_from_world);
       for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k) {
-        const bool within = r.in_front[k] > 0 && r.chi2[k] <= looseness * blocks_[b].bound[k];
+        const bool within = r.in_front[k] > 0 && r.chi2[k] <= gate * blocks_[b].bound[k];
         inlier[b * kLanes + k] = within;
         inliers += within;
       }
@@ -98,7 +98,7 @@ class PoseProblem {
     Lanes u{}, v{}, inverse_depth{};
     Lanes weight{};        // 1/σ, so that squared norms are χ²
     Lanes depth_weight{};  // of the third residual, depth as disparity; 0 without depth
-    Lanes bound{}, trust{}, used{};
+    Lanes bound{}, static_weight{}, used{};
   };
   /// Residuals by weight, and where the points lie in the camera.
   struct Residual {
@@ -187,7 +187,7 @@ int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, 
 
 PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
                            const Pose& initial_camera_from_world, const TrackingConfig& config,
-                           double start_looseness) {
+                           double start_gate) {
   PoseRefinement result;
   result.camera_from_world = initial_camera_from_world;
   result.inlier.assign(observations.size(), 1);
@@ -197,8 +197,8 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     return result;
   }
   PoseProblem problem(camera, observations, config.depth_weight);
-  if (start_looseness > 0 &&
-      problem.mark_inliers(initial_camera_from_world, start_looseness, result.inlier) >= config.min_inliers)
+  if (start_gate > 0 &&
+      problem.mark_inliers(initial_camera_from_world, start_gate, result.inlier) >= config.min_inliers)
     problem.use(result.inlier);
   for (int round = 0; round < config.refine_rounds; ++round) {
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.

@@ -16,7 +16,7 @@ struct PoseObservation {
   Eigen::Vector2d pixel;           ///< px, undistorted
   double depth = 0.0;              ///< m, measured; 0 = none
   double sigma_px = 1.0;           ///< standard deviation of the pixel: the scale of the feature's octave
-  double trust = 1.0;  ///< 0 to 1, of standing still: weighs its squares, not its bound as an outlier
+  double static_weight = 1.0;  ///< 0 to 1, of being static: weighs its squares, not its bound as an outlier
 };
 
 /// Depth enters beside pixels as what a stereo rig of this baseline (m) would measure in px: b fx / z. It is
@@ -42,13 +42,13 @@ struct PoseRefinement {
 /// pose. In rounds, after each of which inliers are told from outliers anew. With tracking.depth_weight above
 /// 0 a third residual compares depth. With fewer than 3 observations the pose is returned as it came, without
 /// inliers.
-/// @param start_looseness where what moves may have a large part in the observations, and the initial pose is
+/// @param start_gate where what is dynamic may have a large part in the observations, and the initial pose is
 /// known not to follow it: those beyond this many times their χ² bound at the start take no part in the first
 /// round, unless fewer than tracking.min_inliers are left; 0 = all do
 [[nodiscard]] PoseRefinement refine_pose(const Camera& camera,
                                          const std::vector<PoseObservation>& observations,
                                          const Pose& initial_camera_from_world, const TrackingConfig& config,
-                                         double start_looseness = 0.0);
+                                         double start_gate = 0.0);
 
 /// EPnP (Lepetit et al. 2009) inside RANSAC.
 struct InitialPose {

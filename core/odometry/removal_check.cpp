@@ -23,7 +23,7 @@ std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, cons
   FrameRecord unused;
   FrameSolver::FirstPose first = solver.predict(image, map);
   if (solver.needs_first_pose(image)) {
-    first = solver.first_pose(image, prepared, mask, map, before.movers_known, unused);
+    first = solver.first_pose(image, prepared, mask, map, before.motion_settled, unused);
     if (first.found && judged_by_pose)
       before.mapper.remove_dynamic_points(image, mask, first.camera_from_world,
                                           solver.path().last().reference_keyframe);

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/odometry/rolling_shutter.hpp"
-#include "core/odometry/trust.hpp"
+#include "core/odometry/static_weight.hpp"
 
 namespace stillpoint {
 namespace {
@@ -39,11 +39,11 @@ TrackedFrame StaticFeatures::select(const Frame& frame, const PreparedFrame& pre
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
   const std::vector<std::uint8_t> keep = kept_features(pixels, mask, motion.weight_of_feature);
-  all.trust = trust_at(pixels, tracking_.soft_weights ? motion.log_odds : cv::Mat(), frame.gray.size(),
-                       tracking_.half_trust_log_odds);
+  all.static_weight = static_weights_at(pixels, tracking_.soft_weights ? motion.log_odds : cv::Mat(),
+                                        frame.gray.size(), tracking_.half_weight_log_odds);
   if (motion.weight_of_feature.size() == keep.size())
-    for (std::size_t i = 0; i < keep.size(); ++i) all.trust[i] *= motion.weight_of_feature[i];
-  raise_least_trust(keep, all.trust);
+    for (std::size_t i = 0; i < keep.size(); ++i) all.static_weight[i] *= motion.weight_of_feature[i];
+  raise_least_weight(keep, all.static_weight);
 
   TrackedFrame selected;
   selected.mask = mask;
@@ -53,7 +53,7 @@ TrackedFrame StaticFeatures::select(const Frame& frame, const PreparedFrame& pre
     feature.pixel = pixels[i];
     feature.depth = all.depth[i];
     feature.octave = static_cast<std::uint8_t>(found.keypoints[i].octave);
-    feature.trust = all.trust[i];
+    feature.static_weight = all.static_weight[i];
     if (keep[i])
       selected.record_of.push_back(static_cast<int>(i));
     else
@@ -74,7 +74,8 @@ double StaticFeatures::depth_lag(const Frame& frame) const {
 
 bool StaticFeatures::too_few_places(const TrackedFrame& frame) const {
   constexpr int kColumns = 8, kRows = 6;
-  constexpr int kLeastParts = 5;  // of those 48 that features must lie in, or they tell no room from a mover
+  constexpr int kLeastParts =
+      5;  // of those 48 that features must lie in, or they tell no room from a dynamic object
   if (!frame.lost_features()) return false;
   std::array<bool, kColumns * kRows> before{}, after{};
   for (const FeatureRecord& feature : frame.records) {

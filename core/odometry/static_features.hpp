@@ -9,8 +9,9 @@
 
 namespace stillpoint {
 
-/// METHOD.md §1.6 and §2.1: takes out of a frame's features what moves, and gives those that are left their
-/// depth and weight, as a frame taken all at once would show them. A value without memory of earlier frames.
+/// METHOD.md §1.6 and §2.1: takes out of a frame's features what is dynamic, and gives those that are left
+/// their depth and weight, as a frame taken all at once would show them. A value without memory of earlier
+/// frames.
 class StaticFeatures {
  public:
   StaticFeatures(const Camera& camera, const TrackingConfig& tracking)
@@ -26,7 +27,7 @@ class StaticFeatures {
   [[nodiscard]] bool depend_on_velocity(const Frame& frame) const;
   /// s, of depth after colour, as far as it is to be corrected.
   [[nodiscard]] double depth_lag(const Frame& frame) const;
-  /// Whether so little of the view is left that it tells no room from a mover.
+  /// Whether so little of the view is left that it tells no room from a dynamic object.
   [[nodiscard]] bool too_few_places(const TrackedFrame& frame) const;
 
  private:

@@ -64,7 +64,7 @@ bool Tracker::estimate_from_last(const LocalMap& map, TrackedFrame& frame, Frame
     if (record.matches < tracking.min_initial_matches) continue;
 
     frame.camera_from_world = predicted;
-    PoseRefinement refined = refine(map, frame, matches, start_looseness(frame), record);
+    PoseRefinement refined = refine(map, frame, matches, start_gate(frame), record);
     if (refined.inliers < kMinModelInliers) continue;
     if (consensus_seed)
       seek_consensus(observations_of(map, frame, matches), predicted, *consensus_seed, refined, frame,
@@ -173,7 +173,7 @@ PoseRefinement Tracker::refine_by_local_map(const LocalMap& map, TrackedFrame& f
   const std::vector<Match> matches = match_local_map(map, frame);
   record.ms.matching += watch.milliseconds();
 
-  const PoseRefinement refined = refine(map, frame, matches, start_looseness(frame), record);
+  const PoseRefinement refined = refine(map, frame, matches, start_gate(frame), record);
   frame.camera_from_world = refined.camera_from_world;
   record.matches = static_cast<int>(matches.size());
   record.inliers = refined.inliers;
@@ -218,17 +218,17 @@ std::vector<PoseObservation> Tracker::observations_of(const LocalMap& map, const
                             {pixel.x, pixel.y},
                             features.depth[f],
                             scales_[static_cast<std::size_t>(features.keypoints[f].octave)],
-                            features.trust[f]});
+                            features.static_weight[f]});
   }
   return observations;
 }
 
 PoseRefinement Tracker::refine(const LocalMap& map, const TrackedFrame& frame,
-                               const std::vector<Match>& matches, double start_looseness,
+                               const std::vector<Match>& matches, double start_gate,
                                FrameRecord& record) const {
   const Stopwatch watch;
   PoseRefinement refined = refine_pose(camera_, observations_of(map, frame, matches), frame.camera_from_world,
-                                       config_.tracking, start_looseness);
+                                       config_.tracking, start_gate);
   record.refine_iterations += refined.iterations;
   const double took = watch.milliseconds();
   record.ms.refine += took;
@@ -236,8 +236,8 @@ PoseRefinement Tracker::refine(const LocalMap& map, const TrackedFrame& frame,
   return refined;
 }
 
-double Tracker::start_looseness(const TrackedFrame& frame) const {
-  return frame.start_agreed ? config_.tracking.start_looseness : 0.0;
+double Tracker::start_gate(const TrackedFrame& frame) const {
+  return frame.start_agreed ? config_.tracking.start_gate : 0.0;
 }
 
 std::vector<int> Tracker::local_points(const LocalMap& map, const TrackedFrame& frame) const {

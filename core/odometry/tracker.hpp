@@ -30,8 +30,9 @@ class Tracker {
 
   /// §2.2, the initial pose: from where the frame is held to be now, by what the frame before saw; where that
   /// fails or is stale, by EPnP inside RANSAC over the local map.
-  /// @param consensus_seed given where movers may be among the features, so that least squares alone is not
-  /// to be trusted: the pose that most of the image agrees on is sought, by samples of this seed
+  /// @param consensus_seed given where dynamic objects may be among the features, so that least squares alone
+  /// is not to be relied on: the pose that most of the image agrees on is sought, by samples of this
+  /// seed
   /// @returns whether there is a pose; `frame` and its matches are at it then
   [[nodiscard]] bool estimate(const LocalMap& map, TrackedFrame& frame, FrameRecord& record,
                               std::optional<std::uint32_t> consensus_seed = std::nullopt) const;
@@ -56,9 +57,9 @@ class Tracker {
   [[nodiscard]] std::vector<PoseObservation> observations_of(const LocalMap& map, const TrackedFrame& frame,
                                                              const std::vector<Match>& matches) const;
   [[nodiscard]] PoseRefinement refine(const LocalMap& map, const TrackedFrame& frame,
-                                      const std::vector<Match>& matches, double start_looseness,
+                                      const std::vector<Match>& matches, double start_gate,
                                       FrameRecord& record) const;
-  [[nodiscard]] double start_looseness(const TrackedFrame& frame) const;
+  [[nodiscard]] double start_gate(const TrackedFrame& frame) const;
   [[nodiscard]] std::vector<int> local_points(const LocalMap& map, const TrackedFrame& frame) const;
 
   Camera camera_;

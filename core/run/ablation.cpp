@@ -48,17 +48,18 @@ std::vector<Ingredient> ingredients(const MethodInfo& method) {
   if (method.needs.first_pose) {
     all.push_back({"consensus", "a first pose by consensus of samples", {"tracking.seek_consensus=false"}});
     all.push_back(
-        {"held_start", "a second pose held to the first one's consensus", {"tracking.start_looseness=0"}});
+        {"gated_start", "a second pose held to the first one's consensus", {"tracking.start_gate=0"}});
   }
   if (method.extends_odometry) {
-    all.push_back({"look_back", "solving poses once more by the later map", {"tracking.look_back_frames=0"}});
+    all.push_back(
+        {"smoother", "solving poses once more by the later map", {"tracking.smoother_lag_frames=0"}});
     all.push_back({"direct", "direct alignment where corners starve", {"direct.below_inliers=0"}});
   }
   if (method.needs.first_pose) {
-    all.push_back({"soft_weights",
-                   "weighing features by how likely they stand still",
-                   {"tracking.soft_weights=false"}});
-    all.push_back({"purge", "taking map points on movers out of the map", {"map.purge_moving=false"}});
+    all.push_back(
+        {"soft_weights", "weighing features by how likely they are static", {"tracking.soft_weights=false"}});
+    all.push_back(
+        {"cull_dynamic", "taking map points on dynamic objects out of the map", {"map.cull_dynamic=false"}});
   }
   const std::vector<Ingredient> of_all = {
       {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},

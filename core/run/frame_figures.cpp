@@ -19,7 +19,7 @@ struct Row {
   double rpe_m = kUnknown, rpe_deg = kUnknown;        // of the motion that ends here
   double rpe_1s_m = kUnknown, rpe_1s_deg = kUnknown;  // … of the second that ends here
   double ate_m = kUnknown;
-  RemovalError removal{.with_removal_m = kUnknown, .without_removal_m = kUnknown, .told_m = kUnknown};
+  RemovalError removal{.with_removal_m = kUnknown, .without_removal_m = kUnknown, .oracle_m = kUnknown};
 };
 
 struct Figure {
@@ -70,8 +70,8 @@ std::vector<Figure> all_figures() {
        [](const Row& r) { return r.removal.with_removal_m; }},
       {{"step_without", metres, "the same step solved without removal"},
        [](const Row& r) { return r.removal.without_removal_m; }},
-      {{"step_told", metres, "the same step solved with the true mask"},
-       [](const Row& r) { return r.removal.told_m; }},
+      {{"step_oracle", metres, "the same step solved with the true mask"},
+       [](const Row& r) { return r.removal.oracle_m; }},
       {{"hurt", truth, "removal made the step worse"}, [](const Row& r) { return flag(r.removal.hurt); }},
       {{"mask", share, "of the image that was masked as moving"},
        [](const Row& r) { return r.record.mask_share; }},

@@ -5,7 +5,7 @@
 
 namespace stillpoint {
 
-/// A frame's masks and removals against what truly moves.
+/// A frame's masks and removals against what is truly dynamic.
 struct FrameScores {
   bool known = false;      ///< the truth was there, and the frame had a reference to compare with
   MaskScore mask;          ///< the method's mask

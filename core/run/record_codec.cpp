@@ -114,7 +114,7 @@ void transfer_features(Archive& archive, Features& features) {
   for (auto& f : features) archive(f.map_point);
   for (auto& f : features) archive(f.octave);
   for (auto& f : features) archive(f.fate);
-  for (auto& f : features) archive(f.trust);
+  for (auto& f : features) archive(f.static_weight);
 }
 
 template <typename Archive, typename Scores>

@@ -54,7 +54,7 @@ std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records
         {.frame = now.index,
          .with_removal_m = error(now.estimated ? std::optional(now.world_from_camera) : std::nullopt),
          .without_removal_m = error(now.removal_check.nothing_removed),
-         .told_m = error(now.removal_check.truth_removed),
+         .oracle_m = error(now.removal_check.truth_removed),
          .hurt = false,
          .helped = false});
   }

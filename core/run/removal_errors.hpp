@@ -14,9 +14,9 @@ struct RemovalError {
   int frame = 0;
   double with_removal_m = 0.0;
   double without_removal_m = 0.0;
-  double told_m = 0.0;  ///< with the true mask
-  bool hurt = false;    ///< removal made it worse by more than the noise of such steps
-  bool helped = false;  ///< … better by more than that
+  double oracle_m = 0.0;  ///< with the true mask
+  bool hurt = false;      ///< removal made it worse by more than the noise of such steps
+  bool helped = false;    ///< … better by more than that
 };
 
 /// Did removal help? One entry a frame that was checked (run.check_removal) and whose pose and the one before

@@ -108,9 +108,10 @@ Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRe
   for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
     const auto revised = odometry.revised_poses().find(record.index);
-    const HangingPose pose = revised != odometry.revised_poses().end()
-                                 ? revised->second
-                                 : HangingPose{record.reference_keyframe, record.camera_from_reference};
+    const KeyframeRelativePose pose =
+        revised != odometry.revised_poses().end()
+            ? revised->second
+            : KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference};
     const Pose camera_from_world =
         pose.camera_from_reference * odometry.map().pose_of(pose.reference_keyframe);
     trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});

@@ -231,18 +231,18 @@ void settle_stamps(FolderLists& lists, double frame_rate) {
 
 FolderLists read_folder_lists(const std::string& folder, double frame_rate) {
   FolderLists lists;
-  const auto tell_unusual = [&lists](const std::string& path, const char* usual) {
+  const auto explain_unusual = [&lists](const std::string& path, const char* usual) {
     if (fs::path(path).filename() != usual)
       lists.warnings.push_back(fmt::format("{}: is read in place of {}", path, usual));
   };
   if (const auto associations = first_there(folder, kAssociations)) {
-    tell_unusual(*associations, "associations.txt");
+    explain_unusual(*associations, "associations.txt");
     read_paired(folder, *associations, lists);
   } else if (const auto colours = first_there(folder, kColourLists)) {
-    tell_unusual(*colours, "rgb.txt");
+    explain_unusual(*colours, "rgb.txt");
     lists.colours = read_image_list(folder, *colours, kColourFolders, lists.warnings);
     if (const auto depths = first_there(folder, kDepthLists)) {
-      tell_unusual(*depths, "depth.txt");
+      explain_unusual(*depths, "depth.txt");
       lists.depths = read_image_list(folder, *depths, kDepthFolders, lists.warnings);
     }
   } else if (!read_images_alone(folder, lists)) {

@@ -43,7 +43,7 @@ struct ScaleDoubt {
 };
 [[nodiscard]] std::optional<ScaleDoubt> doubt_scale(const DepthSurvey& survey, double scale);
 
-/// How a sequence's masks say what moves.
+/// How a sequence's masks say what is dynamic.
 enum class MaskCoding {
   bright,   ///< above half of the type's range: 0 and 255
   nonzero,  ///< anything but 0: 0 and 1, or labels

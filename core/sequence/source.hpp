@@ -51,7 +51,7 @@ struct OpenOptions {
   double frame_rate = kFrameNumberRate;  ///< Hz, of stamps that are frame numbers
   std::optional<double> depth_scale{};   ///< depth image units a metre; overrides the camera's
   PoseConvention truth = PoseConvention::as_written;  ///< what the ground truth's poses mean
-  bool inverted_masks = false;                        ///< white is what stands still
+  bool inverted_masks = false;                        ///< white is what is static
   double depth_offset_s = 0.0;                        ///< added to the depth images' stamps
 };
 

@@ -217,7 +217,7 @@ void TumFolder::survey_mask_images(cv::Size colour) {
   const double moving = options_.inverted_masks ? 1.0 - survey.moving_share : survey.moving_share;
   if (moving > kMostMoving)
     warnings_.push_back(fmt::format(
-        "{}: {:.0f} % of the masks' pixels are said to move; if white is what stands still, {} reads them so",
+        "{}: {:.0f} % of the masks' pixels are said to move; if white is what is static, {} reads them so",
         mask_list_, 100.0 * moving,
         options_.inverted_masks ? "leaving out `--invert-masks`" : "`--invert-masks`"));
 }

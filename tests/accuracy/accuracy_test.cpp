@@ -1,4 +1,4 @@
-// How good the methods are, end to end, on films whose truth is known.
+// How good the methods are, end to end, on sequences whose truth is known.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -11,7 +11,7 @@ namespace {
 
 /// RMSE of the relative pose error over 1 s in m, and the mask of `stillpoint` against the truth.
 struct Measured {
-  FilmChoice film;
+  SequenceChoice sequence;
   double none_m, paper_m, oracle_m, stillpoint_m;
   double iou;  ///< 0 to 1; 0 where nothing moves
 };
@@ -48,13 +48,13 @@ constexpr double kBandLow = 0.75;    // error of `none` and `paper`, times what 
 constexpr double kBandHigh = 1.33;   // …
 constexpr double kIouMargin = 0.05;  // below what was measured
 constexpr double kRoomMask = 0.002;  // share of the pixels masked where nothing moves
-// Errors of a pose that goes with the mover, times those of one that does not.
+// Errors of a pose that goes with the dynamic object, times those of one that does not.
 constexpr double kCapturedBy = 10.0;
 
 class Accuracy : public testing::TestWithParam<Measured> {
  protected:
-  static const RunFigures& run(const char* method) { return figures_of(GetParam().film, method); }
-  static bool moves() { return GetParam().film.kind != "room"; }
+  static const RunFigures& run(const char* method) { return figures_of(GetParam().sequence, method); }
+  static bool moves() { return GetParam().sequence.kind != "room"; }
 };
 
 TEST_P(Accuracy, EveryFrameHasAPose) {
@@ -93,7 +93,7 @@ TEST_P(Accuracy, MasksHoldWhatMovesAndLittleElse) {
 }
 
 TEST_P(Accuracy, AMoverTakesAlongWhoRemovesNothing) {
-  const std::string& kind = GetParam().film.kind;
+  const std::string& kind = GetParam().sequence.kind;
   if (kind == "approach" || kind == "walking_xyz") {
     EXPECT_GE(run("none").rpe_m, kCapturedBy * run("oracle").rpe_m);
     EXPECT_GE(run("none").rpe_m, kCapturedBy * run("stillpoint").rpe_m);
@@ -104,13 +104,13 @@ TEST_P(Accuracy, AMoverTakesAlongWhoRemovesNothing) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Accuracy, testing::ValuesIn(kMeasured),
-                         [](const auto& tested) { return name_of(tested.param.film); });
+INSTANTIATE_TEST_SUITE_P(RenderedSequences, Accuracy, testing::ValuesIn(kMeasured),
+                         [](const auto& tested) { return name_of(tested.param.sequence); });
 
-/// Each film is a test of its own to ctest, which would not miss one that nobody told it of.
-TEST(Films, AreThoseThatCtestKnows) {
+/// Each sequence is a test of its own to ctest, which would not miss one that nobody told it of.
+TEST(RenderedSequences, AreThoseThatCtestKnows) {
   std::set<std::string> measured, known;
-  for (const Measured& one : kMeasured) measured.insert(name_of(one.film));
+  for (const Measured& one : kMeasured) measured.insert(name_of(one.sequence));
   std::istringstream list(STILLPOINT_ACCURACY_FILMS);
   for (std::string name; list >> name;) known.insert(name);
   EXPECT_EQ(measured, known);

@@ -1,9 +1,9 @@
 // What refactoring must not change: all that a run computes, to the last bit.
 //
 // A pinned hash belongs to Debian 12's OpenCV, Eigen and Ceres on x86-64, with OpenCV's baseline code: AVX2
-// code rounds otherwise, and gives `stillpoint` (and the generator, in a few pixels of some films) other last
-// bits. main.cpp turns it off, so the hashes hold on every x86-64 CPU as far as OpenCV goes; glibc's choice
-// of AVX2 and FMA code changes none. On a system with other versions the tests skip.
+// code rounds otherwise, and gives `stillpoint` (and the generator, in a few pixels of some sequences) other
+// last bits. main.cpp turns it off, so the hashes hold on every x86-64 CPU as far as OpenCV goes; glibc's
+// choice of AVX2 and FMA code changes none. On a system with other versions the tests skip.
 //
 // A change that is meant to change results puts the hashes printed by the failing tests here, and says so.
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace stillpoint {
 namespace {
 
 struct Pinned {
-  FilmChoice film;
+  SequenceChoice sequence;
   std::map<std::string, std::string> hash_of;  ///< by method, of the first 40 frames
 };
 
@@ -55,11 +55,11 @@ TEST_P(PinnedHash, RunsAreTheSameToTheLastBit) {
     GTEST_SKIP() << "run hashes are known for Debian 12's OpenCV 4.6.0 and Eigen 3.4.0 on x86-64 only";
   ASSERT_EQ(GetParam().hash_of.size(), 4U);
   for (const auto& [method, hash] : GetParam().hash_of)
-    EXPECT_EQ(figures_of(GetParam().film, method).first_hash, hash) << method;
+    EXPECT_EQ(figures_of(GetParam().sequence, method).first_hash, hash) << method;
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, PinnedHash, testing::ValuesIn(kPinned),
-                         [](const auto& tested) { return name_of(tested.param.film); });
+INSTANTIATE_TEST_SUITE_P(RenderedSequences, PinnedHash, testing::ValuesIn(kPinned),
+                         [](const auto& tested) { return name_of(tested.param.sequence); });
 
 }  // namespace
 }  // namespace stillpoint

@@ -7,29 +7,29 @@
 
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
-#include "tests/accuracy/film.hpp"
+#include "tests/accuracy/rendered_sequence.hpp"
 
 namespace stillpoint {
 namespace {
 
-/// The film, kept until another one is asked for: tests come film by film.
-const Film& film_of(const FilmChoice& choice) {
+/// The sequence, kept until another one is asked for: tests come sequence by sequence.
+const RenderedSequence& rendered(const SequenceChoice& choice) {
   static std::string shown;
-  static std::unique_ptr<Film> film;
+  static std::unique_ptr<RenderedSequence> sequence;
   const std::string name = name_of(choice);
   if (shown != name) {
-    film = std::make_unique<Film>(
+    sequence = std::make_unique<RenderedSequence>(
         open_sequence("generated:" + choice.kind, {.camera = {}, .frames = kFrames, .seed = choice.seed}));
     shown = name;
   }
-  return *film;
+  return *sequence;
 }
 
-RunFigures run_over(const Film& film, const std::string& method) {
+RunFigures run_over(const RenderedSequence& sequence, const std::string& method) {
   Config config;
   config.run.method = method;
-  const RunResult run = run_sequence(film, config);
-  const RunReport report = report_on(run, film);
+  const RunResult run = run_sequence(sequence, config);
+  const RunReport report = report_on(run, sequence);
 
   RunFigures figures;
   if (report.evaluation) {
@@ -48,19 +48,21 @@ RunFigures run_over(const Film& film, const std::string& method) {
 
 }  // namespace
 
-std::string name_of(const FilmChoice& film) { return fmt::format("{}_{}", film.kind, film.seed); }
+std::string name_of(const SequenceChoice& sequence) {
+  return fmt::format("{}_{}", sequence.kind, sequence.seed);
+}
 
-const RunFigures& figures_of(const FilmChoice& film, const std::string& method) {
+const RunFigures& figures_of(const SequenceChoice& sequence, const std::string& method) {
   static std::map<std::string, RunFigures> runs;
-  const std::string name = name_of(film) + "_" + method;
+  const std::string name = name_of(sequence) + "_" + method;
   const auto found = runs.find(name);
   if (found != runs.end()) return found->second;
-  const RunFigures& figures = runs.emplace(name, run_over(film_of(film), method)).first->second;
+  const RunFigures& figures = runs.emplace(name, run_over(rendered(sequence), method)).first->second;
   // What was measured is printed, so that bounds can be set from it.
   fmt::print(
       "measured {:<16} seed {} {:<10} rpe {:.5f} m over {} pairs, IoU {:.3f}, masked {:.3f} % in {} frames, "
       "{}\n",
-      film.kind, film.seed, method, figures.rpe_m, figures.pairs, figures.iou, 100.0 * figures.masked,
+      sequence.kind, sequence.seed, method, figures.rpe_m, figures.pairs, figures.iou, 100.0 * figures.masked,
       figures.masked_frames, figures.first_hash);
   return figures;
 }

@@ -4,14 +4,14 @@
 
 namespace stillpoint {
 
-/// A film to run on: its kind and seed.
-struct FilmChoice {
+/// A sequence to run on: its kind and seed.
+struct SequenceChoice {
   std::string kind;
   unsigned seed = 1;
 };
 
 /// `KIND_SEED`, as tests are named.
-[[nodiscard]] std::string name_of(const FilmChoice& film);
+[[nodiscard]] std::string name_of(const SequenceChoice& sequence);
 
 /// What a run is held to.
 struct RunFigures {
@@ -24,10 +24,10 @@ struct RunFigures {
   std::string first_hash;  ///< run_hash of the first kHashedFrames records
 };
 
-inline constexpr int kFrames = 60;        ///< of each film: 2 s, so 30 pairs of poses that are 1 s apart
+inline constexpr int kFrames = 60;        ///< of each sequence: 2 s, so 30 pairs of poses that are 1 s apart
 inline constexpr int kHashedFrames = 40;  ///< a run's hash is pinned over so many
 
-/// The method's run over the film, made when it is first asked for and kept.
-const RunFigures& figures_of(const FilmChoice& film, const std::string& method);
+/// The method's run over the sequence, made when it is first asked for and kept.
+const RunFigures& figures_of(const SequenceChoice& sequence, const std::string& method);
 
 }  // namespace stillpoint

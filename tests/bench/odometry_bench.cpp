@@ -3,7 +3,7 @@
 
 #include <opencv2/features2d.hpp>
 
-#include "core/motion/stillpoint/segments.hpp"
+#include "core/motion/stillpoint/superpixels.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/consensus.hpp"
 #include "core/odometry/odometry.hpp"
@@ -124,7 +124,7 @@ void DepthMotion(benchmark::State& state) {
     references.push_back({view(static_cast<std::size_t>(i)),
                           scene.source->truth(i).world_from_camera->inverse() * world_from_current, i == 0});
   for (auto _ : state)
-    benchmark::DoNotOptimize(detect_depth_motion(*current, segment_surfaces(*current, config),
+    benchmark::DoNotOptimize(detect_depth_motion(*current, make_superpixels(*current, config),
                                                  scene.last().depth, references, nullptr, Pose::Identity(),
                                                  config));
 }

@@ -1,5 +1,5 @@
 // What a session costs: `session_bench SEQUENCE [METHOD [FRAMES]]` processes a sequence as the window does,
-// then goes to and fro in it, and prints times and memory. Run by hand, on a machine that does nothing else.
+// then goes to and fro in it, and prints times and prior. Run by hand, on a machine that does nothing else.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace stillpoint;
 
-/// Resident memory of this process, MB.
+/// Resident prior of this process, MB.
 double resident_mb() {
   long pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;

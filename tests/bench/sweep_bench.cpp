@@ -29,7 +29,7 @@ const FrameSource& sequence() {
 }
 
 /// Sequences of one size follow each other, so that one is held at a time.
-const MemorySource& film(const cv::Size& size) {
+const MemorySource& sequence(const cv::Size& size) {
   static std::unique_ptr<MemorySource> held;
   static cv::Size held_size;
   if (held_size != size) {
@@ -41,7 +41,7 @@ const MemorySource& film(const cv::Size& size) {
 
 /// Runs the sequence once; the time reported is a frame's median.
 void run(benchmark::State& state, const char* method, int features, const cv::Size& size, int threads) {
-  const MemorySource& source = film(size);
+  const MemorySource& source = sequence(size);
   Config config;
   config.run.method = method;
   config.run.threads = threads;

@@ -16,15 +16,15 @@ using ::testing::HasSubstr;
 TEST(AblateCommand, RunsTheWholeMethodAndEachWithoutOne) {
   const SmallSequence sequence(34);
   const CliResult result = run_cli(
-      {"ablate", sequence.path(), "--without", "memory,depth_residual", "--out", sequence.path("out")});
+      {"ablate", sequence.path(), "--without", "prior,depth_residual", "--out", sequence.path("out")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("whole method"));
   EXPECT_THAT(result.out, HasSubstr("without depth_residual"));
   const auto json = nlohmann::json::parse(sequence.folder.read("out/ablation.json"));
   ASSERT_EQ(json["variants"].size(), 3U);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
-  EXPECT_EQ(json["variants"][1]["without"], "memory");
-  EXPECT_EQ(json["variants"][1]["set"][0], "stillpoint.memory=0");
+  EXPECT_EQ(json["variants"][1]["without"], "prior");
+  EXPECT_EQ(json["variants"][1]["set"][0], "stillpoint.prior_share=0");
   for (const auto& variant : json["variants"]) {
     ASSERT_EQ(variant["runs"].size(), 1U);
     EXPECT_EQ(variant["runs"][0]["coverage"], 1.0);
@@ -34,16 +34,16 @@ TEST(AblateCommand, RunsTheWholeMethodAndEachWithoutOne) {
   EXPECT_NE(json["variants"][0]["runs"][0]["run_hash"], json["variants"][2]["runs"][0]["run_hash"]);
   const std::string csv = sequence.folder.read("out/ablation.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
-  EXPECT_THAT(sequence.folder.read("out/ablation.md"), HasSubstr("| without memory"));
+  EXPECT_THAT(sequence.folder.read("out/ablation.md"), HasSubstr("| without prior"));
 
   expect_one_sentence(
-      run_cli({"ablate", sequence.path(), "--without", "memory", "--out", sequence.path("out")}), "--force");
+      run_cli({"ablate", sequence.path(), "--without", "prior", "--out", sequence.path("out")}), "--force");
 }
 
 TEST(AblateCommand, SaysWhatIsWrong) {
   const SmallSequence sequence(3);
   expect_one_sentence(run_cli({"ablate", sequence.path(), "--without", "luck"}), "depth_evidence");
-  expect_one_sentence(run_cli({"ablate", sequence.path(), "--without", "memory,memory"}), "twice");
+  expect_one_sentence(run_cli({"ablate", sequence.path(), "--without", "prior,prior"}), "twice");
   expect_one_sentence(run_cli({"ablate", sequence.path("none")}), "none");
   std::filesystem::remove(sequence.path("depth.txt"));
   expect_one_sentence(run_cli({"ablate", sequence.path()}), "colour frames only");

@@ -265,7 +265,7 @@ TEST_F(MotionCommand, MethodsThatNeedMoreThanImagesAreRefused) {
   }
   for (const char* method : {"epipolar", "stillpoint"})
     expect_one_sentence(pair("a.png", "b.png", {"--method", method}),
-                        std::string(method) + " follows what moves over several frames");
+                        std::string(method) + " follows what is dynamic over several frames");
   EXPECT_FALSE(fs::exists(folder_.path("out")));
 }
 

@@ -183,7 +183,7 @@ TEST(PanelPictures, TakeTheChoicesOfALayout) {
   EXPECT_EQ(cv::norm(plain, same, cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(plain, unknown, cv::NORM_INF), 0.0);
   EXPECT_GT(cv::norm(plain, wiped, cv::NORM_INF), 50.0);
-  // The wall stands still, so nearly all of its difference is the ground of the scale.
+  // The wall is static, so nearly all of its difference is the ground of the scale.
   EXPECT_GT(cv::norm(plain, difference, cv::NORM_L1) / static_cast<double>(plain.total()), 50.0);
 }
 

@@ -21,14 +21,14 @@ using ::testing::HasSubstr;
 class ReplayCli : public ::testing::Test {
  protected:
   /// A recording of the small sequence. @returns its path
-  [[nodiscard]] std::string recording(const std::string& happenings, int frames = 6) const {
+  [[nodiscard]] std::string recording(const std::string& events, int frames = 6) const {
     const std::string name = "sequence";
     sequence_.folder.write("recording.txt",
                            fmt::format("stillpoint recording 1\nsequence {} {}\nopened {}\nsize 800 600\n"
                                        "look light 1\nlayout {{\"columns\": [{{\"panel\": \"input\"}}, "
                                        "{{\"panel\": \"union_mask\"}}]}}\n"
                                        "set run.method=paper\nidle\n{}",
-                                       frames, name, sequence_.path(), happenings));
+                                       frames, name, sequence_.path(), events));
     return sequence_.path("recording.txt");
   }
   [[nodiscard]] std::string out(const std::string& name) const { return sequence_.path(name); }

@@ -82,7 +82,7 @@ TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
   const auto run = [&](const std::string& source, const char* threads, const std::string& out) {
     const CliResult result =
         run_cli({"run", source, "--method", method, "--frames", frames, "--seed", "3", "--threads", threads,
-                 "--set", "tracking.look_back_frames=6", "--out", folder.path(out)});
+                 "--set", "tracking.smoother_lag_frames=6", "--out", folder.path(out)});
     EXPECT_EQ(result.exit_code, 0) << result.err;
   };
   run(folder.path("film"), "1", "one");
@@ -102,7 +102,7 @@ TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
 INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values("none", "paper", "stillpoint"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-TEST(Determinism, AnotherSeedIsAnotherFilm) {
+TEST(Determinism, AnotherSeedIsAnotherSequence) {
   const TemporaryFolder folder;
   for (const char* seed : {"1", "2"})
     ASSERT_EQ(

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kFrames = 40, kWarmUp = 26;  // until method `stillpoint` looks as far back as it ever does
 
-const MemorySource& film() {
+const MemorySource& sequence() {
   static const auto source = [] {
     OpenOptions options;
     options.frames = kFrames;
@@ -51,7 +51,7 @@ PerFrame steady_state(const char* method, int threads) {
     after = allocations_so_far();
     frames = frame.record.index - kWarmUp + 1;
   };
-  (void)run_sequence(film(), config, options);
+  (void)run_sequence(sequence(), config, options);
   const Allocations spent = after - before;
   const auto a_frame = [&](long sum) { return static_cast<double>(sum) / frames; };
   return {a_frame(spent.large_calls), a_frame(spent.large_bytes), a_frame(spent.calls)};

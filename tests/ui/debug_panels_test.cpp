@@ -5,7 +5,7 @@
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint::testing {

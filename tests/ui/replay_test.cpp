@@ -21,25 +21,26 @@ constexpr int kFrames = 8;
 class Replay : public ::testing::Test {
  protected:
   /// Plays a recording on the small sequence. @returns what went wrong, "" when nothing did
-  std::string play(const std::string& happenings, const std::string& start = "") {
+  std::string play(const std::string& events, const std::string& start = "") {
     const Recording recording =
-        parse_recording("stillpoint recording 1\n" + start + "idle\n" + happenings, "recording.txt");
+        parse_recording("stillpoint recording 1\n" + start + "idle\n" + events, "recording.txt");
     const std::string layout = recording.start.layout;
     Offscreen offscreen({.width = 1280, .height = 800});
     std::string problem;
     {
-      Desk desk({.open_place =
-                     [](const std::string& where, const Config& config) {
-                       OpenedPlace place{
-                           .source = open_sequence(where), .config = config, .options = {}, .problem = {}};
-                       place.options.keep_times = false;
-                       return place;
-                     },
-                 .config = {},
-                 .settings = {},
-                 .marks_folder = {},
-                 .plays_when_opened = {},
-                 .wake = {}});
+      AppController desk(
+          {.open_source =
+               [](const std::string& where, const Config& config) {
+                 OpenedSource place{
+                     .source = open_sequence(where), .config = config, .options = {}, .problem = {}};
+                 place.options.keep_times = false;
+                 return place;
+               },
+           .config = {},
+           .settings = {},
+           .marks_folder = {},
+           .plays_when_opened = {},
+           .wake = {}});
       if (!layout.empty())
         desk.workbench().set_layout(parse_layout(layout, recording.file, desk.workbench().panel_names()));
       if (opens_) desk.open(folder_.path());

@@ -221,7 +221,7 @@ DirectionTrace handmade_direction(const cv::Mat& from, const cv::Mat& to) {
   return direction;
 }
 
-/// Method `stillpoint`'s stages, small images of a disc that moves.
+/// Method `stillpoint`'s stages, downsampled images of a disc that moves.
 StillpointTrace handmade_depth_motion() {
   StillpointTrace trace;
   const cv::Size small{160, 120};
@@ -245,7 +245,7 @@ StillpointTrace handmade_depth_motion() {
   for (int i = 0; i < 48; ++i) {
     const cv::Point2f centre{static_cast<float>(10 + 20 * (i % 8)), static_cast<float>(10 + 20 * (i / 8))};
     const bool moving = cv::norm(centre - cv::Point2f(96, 60)) < 26.0;
-    trace.segments.push_back({centre, 2.0F, 400, moving ? 2.1F : -0.8F, moving ? 3.0F : -1.2F, moving});
+    trace.superpixels.push_back({centre, 2.0F, 400, moving ? 2.1F : -0.8F, moving ? 3.0F : -1.2F, moving});
   }
   trace.small_mask = disc > 0.0;
   trace.mask = cv::Mat::zeros(240, 320, CV_8UC1);
@@ -362,7 +362,7 @@ SessionView debug_example() {
     RemovalError error{.frame = i,
                        .with_removal_m = 0.001 * (2 + i % 5),
                        .without_removal_m = 0.001 * (2 + i % 5) + 0.004 * (i % 3),
-                       .told_m = 0.0015};
+                       .oracle_m = 0.0015};
     error.helped = i % 3 != 0;
     if (i % 13 == 0) {
       error.with_removal_m = error.without_removal_m + 0.006;

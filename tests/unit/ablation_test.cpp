@@ -32,14 +32,14 @@ TEST(Ablation, EveryIngredientChangesTheConfigAndNothingElse) {
     EXPECT_EQ(ablated(other, &one).features.count, 321);
   }
   EXPECT_THROW((void)ingredient_by_name(method, "luck"), InputError);
-  EXPECT_EQ(ingredient_by_name(method, "memory").name, "memory");
+  EXPECT_EQ(ingredient_by_name(method, "prior").name, "prior");
 }
 
 TEST(Ablation, ChangesAreAgainstTheWholeMethod) {
   const AblationRow whole{
       "", {}, {cell(0.010, 0.8, 10, "a"), cell(0.020, std::nullopt, 12, "b"), cell({}, 0.5, 14, "c")}};
   const AblationRow without{
-      "memory", {}, {cell(0.020, 0.6, 8, "x"), cell(0.010, std::nullopt, 8, "b"), cell(0.5, 0.4, 8, "z")}};
+      "prior", {}, {cell(0.020, 0.6, 8, "x"), cell(0.010, std::nullopt, 8, "b"), cell(0.5, 0.4, 8, "z")}};
   const AblationChange change = change_of(without, whole);
   // Twice and half: the geometric mean is no change at all.
   ASSERT_TRUE(change.mean && change.worst && change.mask_iou);
@@ -53,27 +53,27 @@ TEST(Ablation, ChangesAreAgainstTheWholeMethod) {
 }
 
 TEST(Ablation, NothingToCompareIsSaidSo) {
-  const AblationRow whole{"", {}, {cell({}, {}, 1, "a")}}, without{"memory", {}, {cell({}, {}, 1, "b")}};
+  const AblationRow whole{"", {}, {cell({}, {}, 1, "a")}}, without{"prior", {}, {cell({}, {}, 1, "b")}};
   const AblationChange change = change_of(without, whole);
   EXPECT_FALSE(change.mean || change.worst || change.mask_iou);
   const Table table = ablation_summary("stillpoint", {whole, without}, {"room"});
   EXPECT_THAT(table.rows.at(1),
-              ::testing::ElementsAre("without memory", "–", "–", "–", "–", "–", "100.0 %", "1.0", "0 of 1"));
-  EXPECT_TRUE(ablation_summary("stillpoint", {{"", {}, {}}, {"memory", {}, {}}}, {}).rows.size() == 2);
+              ::testing::ElementsAre("without prior", "–", "–", "–", "–", "–", "100.0 %", "1.0", "0 of 1"));
+  EXPECT_TRUE(ablation_summary("stillpoint", {{"", {}, {}}, {"prior", {}, {}}}, {}).rows.size() == 2);
 }
 
 TEST(Ablation, TablesHoldEveryRun) {
   const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
-                                         {"memory", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+                                         {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
   const std::vector<std::string> sequences = {"one", "two"};
   const Table errors = ablation_errors(rows, sequences);
-  EXPECT_THAT(errors.header, ::testing::ElementsAre("RPE 1 s, RMSE [m]", "whole method", "without memory"));
+  EXPECT_THAT(errors.header, ::testing::ElementsAre("RPE 1 s, RMSE [m]", "whole method", "without prior"));
   EXPECT_THAT(errors.rows.at(1), ::testing::ElementsAre("two", "0.0200", "0.0400"));
   const Table list = ablation_list(rows, sequences);
   ASSERT_EQ(list.rows.size(), 4U);
   for (const auto& row : list.rows) EXPECT_EQ(row.size(), list.header.size());
   EXPECT_THAT(list.rows.at(2),
-              ::testing::ElementsAre("one", "memory", "0.030000", "0.6000", "1.0000", "8.00", "x"));
+              ::testing::ElementsAre("one", "prior", "0.030000", "0.6000", "1.0000", "8.00", "x"));
   const auto json = ablation_json("stillpoint", rows, sequences);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
   EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_1s_m"], 0.04);

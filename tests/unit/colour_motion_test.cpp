@@ -10,7 +10,7 @@
 #include "core/config.hpp"
 #include "core/error.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/motion/epipolar/camera_turn.hpp"
+#include "core/motion/epipolar/relative_orientation.hpp"
 
 namespace stillpoint {
 namespace {
@@ -195,33 +195,34 @@ std::vector<BearingPair> room(const Eigen::Matrix3d& rotation, const Eigen::Vect
   return pairs;
 }
 
-TEST(CameraTurn, FindsRotationAndDirectionAmongMovers) {
+TEST(RelativeOrientation, FindsRotationAndDirectionAmongMovers) {
   const Eigen::Matrix3d rotation = so3_exp({0.01, -0.05, 0.02});
   for (const Eigen::Vector3d& translation :
        {Eigen::Vector3d(0.1, 0.01, 0.02), Eigen::Vector3d(-0.02, 0.08, 0.01),
         Eigen::Vector3d(0.01, 0.0, 0.1)}) {
     const std::vector<BearingPair> pairs = room(rotation, translation, 90);
-    const CameraTurn motion = estimate_camera_turn(pairs, {});
-    EXPECT_FALSE(motion.turns_only);
+    const RelativeOrientation motion = estimate_relative_orientation(pairs, {});
+    EXPECT_FALSE(motion.rotation_only);
     EXPECT_LT(rotation_angle(motion.rotation.transpose() * rotation), 2e-3);
     EXPECT_GT(motion.direction.dot(translation.normalized()), 0.995);
     EXPECT_GT(motion.explained, 0.65);
     for (std::size_t i = 90; i < pairs.size(); ++i)
-      EXPECT_LT(unexplained(motion, pairs[i], 1e-3).norm(), 2e-3) << i;
-    EXPECT_GT(unexplained(motion, pairs[0], 1e-3).norm(), 5e-3);
+      EXPECT_LT(epipolar_residual(motion, pairs[i], 1e-3).norm(), 2e-3) << i;
+    EXPECT_GT(epipolar_residual(motion, pairs[0], 1e-3).norm(), 5e-3);
   }
 }
 
-TEST(CameraTurn, KnowsACameraThatOnlyTurns) {
+TEST(RelativeOrientation, KnowsACameraThatOnlyTurns) {
   const Eigen::Matrix3d rotation = so3_exp({0.0, 0.04, 0.0});
-  const CameraTurn motion = estimate_camera_turn(room(rotation, Eigen::Vector3d::Zero(), 90), {});
-  EXPECT_TRUE(motion.turns_only);
+  const RelativeOrientation motion =
+      estimate_relative_orientation(room(rotation, Eigen::Vector3d::Zero(), 90), {});
+  EXPECT_TRUE(motion.rotation_only);
   EXPECT_LT(rotation_angle(motion.rotation.transpose() * rotation), 1e-4);
   EXPECT_NEAR(motion.explained, 0.7, 1e-9);
 }
 
-TEST(CameraTurn, OfNothingIsRest) {
-  const CameraTurn motion = estimate_camera_turn({}, {});
+TEST(RelativeOrientation, OfNothingIsRest) {
+  const RelativeOrientation motion = estimate_relative_orientation({}, {});
   EXPECT_TRUE(motion.rotation.isIdentity());
   EXPECT_EQ(motion.explained, 0.0);
 }

@@ -10,6 +10,7 @@
 
 #include "core/assets.hpp"
 #include "core/motion/paper/paper_config.hpp"
+#include "core/motion/stillpoint/stillpoint_config.hpp"
 #include "core/text_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -115,6 +116,19 @@ TEST_F(ConfigFile, SectionsAndSwitchesOfEarlierVersionsAreStillRead) {
   Config config;
   set_parameter(config, "motion.max_corners=99");
   EXPECT_EQ(config.of<PaperConfig>().max_corners, 99);
+}
+
+TEST_F(ConfigFile, ConstantsAreStillReadUnderTheirFormerNames) {
+  const Config config = read(
+      "[tracking]\nlook_back_frames = 7\n[map]\npurge_moving = false\n[stillpoint]\nsegment_px = 12\n"
+      "memory = 0.5\n[depth_motion]\nfirm_log_odds = 2.0\n");
+  EXPECT_EQ(config.tracking.smoother_lag_frames, 7);
+  EXPECT_FALSE(config.map.cull_dynamic);
+  EXPECT_EQ(config.of<StillpointConfig>().superpixel_px, 12);
+  EXPECT_EQ(config.of<StillpointConfig>().prior_share, 0.5);
+  EXPECT_EQ(config.of<StillpointConfig>().confident_log_odds, 2.0);
+  EXPECT_EQ(to_toml(config).find("look_back_frames"), std::string::npos)
+      << "written under the new name alone";
 }
 
 TEST_F(ConfigFile, WholeNumbersServeAsReals) {

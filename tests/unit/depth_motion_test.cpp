@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/motion/stillpoint/depth_evidence.hpp"
-#include "core/motion/stillpoint/entering.hpp"
-#include "core/motion/stillpoint/patch_motion.hpp"
-#include "core/motion/stillpoint/segments.hpp"
+#include "core/motion/stillpoint/label_propagation.hpp"
+#include "core/motion/stillpoint/superpixel_motion.hpp"
+#include "core/motion/stillpoint/superpixels.hpp"
 #include "tests/support/board_scene.hpp"
 
 namespace stillpoint {
@@ -20,11 +20,11 @@ ReferenceView reference(const BoardScene& then, const BoardScene& now) {
 }
 
 StillpointTrace detect(const BoardScene& now, const std::vector<ReferenceView>& references,
-                       const MotionMemory* memory = nullptr) {
+                       const MotionPrior* prior = nullptr) {
   cv::Mat gray, depth;
   now.render(gray, depth);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
-  return detect_depth_motion(view, segment_surfaces(view, {}), depth, references, memory, Pose::Identity(),
+  return detect_depth_motion(view, make_superpixels(view, {}), depth, references, prior, Pose::Identity(),
                              {});
 }
 
@@ -57,8 +57,8 @@ TEST(DepthMotion, MotionAlongTheOpticalAxisIsSeen) {
   EXPECT_GT(overlap(trace.mask, truth), 0.8);
 }
 
-TEST(DepthMotion, WhatLeavesRevealsBackgroundThatIsTrusted) {
-  // The board was here a moment ago and is gone: what is seen now is the wall, and the wall stands still.
+TEST(DepthMotion, WhatLeavesRevealsBackgroundOfFullWeight) {
+  // The board was here a moment ago and is gone: what is seen now is the wall, and the wall is static.
   BoardScene now;
   now.board = false;
   const StillpointTrace trace = detect(now, {reference({}, now)});
@@ -70,33 +70,32 @@ TEST(DepthMotion, AMoverThatStopsIsRememberedForAWhile) {
   const StillpointTrace moving =
       detect(before, {reference({0.0, 0.20}, before), reference({0.0, 0.0}, before)});
   ASSERT_GT(cv::countNonZero(moving.mask), 0);
-  MotionMemory memory{std::make_shared<const RgbdView>(before.view()), moving.log_odds};
-  EXPECT_GT(cv::countNonZero(detect(now, {reference(before, now)}, &memory).mask), 0);
-  EXPECT_EQ(cv::countNonZero(detect(now, {reference(before, now)}).mask), 0)
-      << "without memory it stands still";
+  MotionPrior prior{std::make_shared<const RgbdView>(before.view()), moving.log_odds};
+  EXPECT_GT(cv::countNonZero(detect(now, {reference(before, now)}, &prior).mask), 0);
+  EXPECT_EQ(cv::countNonZero(detect(now, {reference(before, now)}).mask), 0) << "without prior it is static";
   int frames = 0;
   for (cv::Mat odds = moving.log_odds; frames < 300; ++frames) {
-    memory.log_odds = odds;
-    const StillpointTrace trace = detect(now, {reference(before, now)}, &memory);
+    prior.log_odds = odds;
+    const StillpointTrace trace = detect(now, {reference(before, now)}, &prior);
     if (cv::countNonZero(trace.mask) == 0) break;
     odds = trace.log_odds;
   }
   EXPECT_GE(frames, 2);
-  EXPECT_LT(frames, 300) << "what stands still for ten seconds is furniture again";
+  EXPECT_LT(frames, 300) << "what is static for ten seconds is furniture again";
 }
 
 TEST(DepthMotion, ASlowMoverIsSeenOverTime) {
-  // Five millimetres in some tenths of a second: too little for any pixel, not for patches.
+  // Five millimetres in some tenths of a second: too little for any pixel, not for superpixels.
   const BoardScene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
   ReferenceView then = reference(before, now);
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
   const auto detect_three_times = [&] {
-    MotionMemory memory{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
+    MotionPrior prior{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
     StillpointTrace trace;
     for (int i = 0; i < 3; ++i) {
-      trace = detect(now, {then}, &memory);
-      memory.log_odds = trace.log_odds;
+      trace = detect(now, {then}, &prior);
+      prior.log_odds = trace.log_odds;
     }
     return trace;
   };
@@ -118,7 +117,7 @@ TEST(DepthMotion, WhatIsNotMeasuredInsideAMoverMovesWithIt) {
   depth(hole).setTo(0);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   const StillpointTrace trace = detect_depth_motion(
-      view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
+      view, make_superpixels(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(trace.mask(hole)), hole.area());
 }
@@ -133,7 +132,7 @@ TEST(DepthMotion, AGapOpenToOneSideIsNoPartOfTheMover) {
   depth(shadow).setTo(0);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   const StillpointTrace trace = detect_depth_motion(
-      view, segment_surfaces(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
+      view, make_superpixels(view, {}), depth, {reference({0.04, 0.25}, now), reference({0.0, 0.0}, now)},
       nullptr, Pose::Identity(), {});
   EXPECT_GT(overlap(trace.mask, truth), 0.8);
   EXPECT_LT(cv::countNonZero(trace.mask(shadow)), 0.1 * shadow.area());
@@ -143,40 +142,41 @@ TEST(DepthMotion, ASlantedSurfaceSeenAPixelOffIsNoMover) {
   const BoardScene now{0.0, 0.0, 1.0, false, 0.0, true},
       then{0.0, 0.0, 1.1, false, 0.0, true};  // hills alone
   ReferenceView exact = reference(then, now), off = exact;
-  off.reference_from_current.translation().x() += 2.0 * 4.0 * 2.0 / board_camera().fx;  // 2 small px at 2 m
+  off.reference_from_current.translation().x() +=
+      2.0 * 4.0 * 2.0 / board_camera().fx;  // 2 downsampled px at 2 m
   const ReferenceEvidence known = detect(now, {exact}).references.front();
-  EXPECT_LT(known.misplacement_px, 0.2);
+  EXPECT_LT(known.registration_error_px, 0.2);
   const StillpointTrace trace = detect(now, {off});
-  EXPECT_GT(trace.references.front().misplacement_px, 0.2);
+  EXPECT_GT(trace.references.front().registration_error_px, 0.2);
   EXPECT_EQ(cv::countNonZero(trace.mask), 0);
 }
 
-/// The patches of a scene against an earlier one, from a pose that is off by `error`.
-PatchMotions patches_of(const BoardScene& now, const BoardScene& before, const Pose& error,
-                        std::vector<Segment>& segments) {
+/// The superpixels of a scene against an earlier one, from a pose that is off by `error`.
+SuperpixelMotions patches_of(const BoardScene& now, const BoardScene& before, const Pose& error,
+                             std::vector<Superpixel>& superpixels) {
   const RgbdView view = now.view();
-  const SurfacePatches patches = segment_surfaces(view, {});
-  segments = patches.segments;
+  const Superpixels made = make_superpixels(view, {});
+  superpixels = made.all;
   ReferenceView then = reference(before, now);
   then.reference_from_current = error * then.reference_from_current;
-  return measure_patches(view, then, patches.labels, segments, cv::Mat::zeros(view.depth.size(), CV_32FC1),
-                         {});
+  return measure_superpixels(view, then, made.labels, superpixels,
+                             cv::Mat::zeros(view.depth.size(), CV_32FC1), {});
 }
 
-TEST(PatchMotion, ShiftsAreMeasuredAndWeighed) {
+TEST(SuperpixelMotion, ShiftsAreMeasuredAndWeighed) {
   const BoardScene now{0.0, 0.105, 1.0, true, 0.0, true}, before{0.0, 0.100, 1.0, true, 0.0, true};
-  std::vector<Segment> segments;
-  const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
+  std::vector<Superpixel> superpixels;
+  const SuperpixelMotions motions = patches_of(now, before, Pose::Identity(), superpixels);
   const double expected = -board_camera().fx / 4 * 0.005 / 1.0;  // px: the board was farther left
   int board = 0, wall = 0, board_moves = 0, wall_moves = 0;
   double shift = 0.0;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i].pixels < 40) continue;
-    const PatchMotion& patch = motions.patches[i];
-    const bool on_board = segments[i].depth < 1.04F;
+  for (std::size_t i = 0; i < superpixels.size(); ++i) {
+    if (superpixels[i].pixels < 40) continue;
+    const SuperpixelMotion& superpixel = motions.motions[i];
+    const bool on_board = superpixels[i].depth < 1.04F;
     ++(on_board ? board : wall);
-    (on_board ? board_moves : wall_moves) += patch.log_odds > 0;
-    if (on_board) shift += patch.shift[0];
+    (on_board ? board_moves : wall_moves) += superpixel.log_odds > 0;
+    if (on_board) shift += superpixel.shift[0];
   }
   ASSERT_GT(board, 10);
   ASSERT_GT(wall, 50);
@@ -185,12 +185,12 @@ TEST(PatchMotion, ShiftsAreMeasuredAndWeighed) {
   EXPECT_LT(wall_moves, 0.1 * wall);
 }
 
-TEST(PatchMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
+TEST(SuperpixelMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
   Pose error = Pose::Identity();
   error.translation() = Eigen::Vector3d(0.008, -0.004, 0.0);
   const BoardScene now{0.02, 0.105}, before{0.0, 0.100};
-  std::vector<Segment> segments;
-  const PatchMotions motions = patches_of(now, before, error, segments);
+  std::vector<Superpixel> superpixels;
+  const SuperpixelMotions motions = patches_of(now, before, error, superpixels);
   // A sideways slide and a turn look alike on a wall: what counts is where the wall's points come to lie.
   for (const double x : {-0.6, 0.0, 0.6}) {
     const Eigen::Vector3d p(x, 0.3, 2.0), there = motions.reference_from_current * p;
@@ -200,67 +200,68 @@ TEST(PatchMotion, AnInexactPoseIsMadeGoodByWhatMostPatchesSay) {
   }
 }
 
-/// How many of the board's patches are found to move, and how far back most of them stepped.
+/// How many of the board's superpixels are found to move, and how far back most of them stepped.
 struct Receding {
-  int patches = 0, moving = 0;
+  int superpixels = 0, moving = 0;
   float step = 0.0F;  // m, mean of the moving ones
 };
 
 Receding receding(const BoardScene& now, const BoardScene& before) {
-  std::vector<Segment> segments;
-  const PatchMotions motions = patches_of(now, before, Pose::Identity(), segments);
+  std::vector<Superpixel> superpixels;
+  const SuperpixelMotions motions = patches_of(now, before, Pose::Identity(), superpixels);
   Receding result;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i].pixels < 40 || std::abs(segments[i].depth - static_cast<float>(now.board_z)) > 0.04F)
+  for (std::size_t i = 0; i < superpixels.size(); ++i) {
+    if (superpixels[i].pixels < 40 ||
+        std::abs(superpixels[i].depth - static_cast<float>(now.board_z)) > 0.04F)
       continue;
-    ++result.patches;
-    if (motions.patches[i].log_odds <= 0) continue;
+    ++result.superpixels;
+    if (motions.motions[i].log_odds <= 0) continue;
     ++result.moving;
-    result.step += motions.patches[i].step;
+    result.step += motions.motions[i].step;
   }
   if (result.moving > 0) result.step /= static_cast<float>(result.moving);
   return result;
 }
 
-TEST(RecedingPatches, WhatGoesBackAlongTheLineOfSightMoves) {
-  // Far more than depth's noise: the patches' own surface is not found where they are expected.
+TEST(AxialMotion, WhatGoesBackAlongTheLineOfSightMoves) {
+  // Far more than depth's noise: the superpixels' own surface is not found where they are expected.
   const Receding board = receding({0.0, 0.1, 1.15}, {0.0, 0.1, 1.0});
-  ASSERT_GT(board.patches, 10);
-  EXPECT_GT(board.moving, 0.8 * board.patches);
+  ASSERT_GT(board.superpixels, 10);
+  EXPECT_GT(board.moving, 0.8 * board.superpixels);
   EXPECT_NEAR(board.step, -0.15F, 0.01F);
   // Near the rim, along the optical axis (which takes it outwards by pixels) and along its own ray.
   const Receding axis = receding({0.0, 0.35, 1.15}, {0.0, 0.35, 1.0}),
                  ray = receding({0.0, 0.4025, 1.15}, {0.0, 0.35, 1.0});
-  EXPECT_GT(axis.moving, 0.7 * axis.patches);
-  EXPECT_GT(ray.moving, 0.7 * ray.patches);
+  EXPECT_GT(axis.moving, 0.7 * axis.superpixels);
+  EXPECT_GT(ray.moving, 0.7 * ray.superpixels);
   const Receding sideways = receding({0.0, 0.12, 1.15}, {0.0, 0.1, 1.0});
-  EXPECT_GT(sideways.moving, 0.8 * sideways.patches) << "two centimetres sideways are followed too";
+  EXPECT_GT(sideways.moving, 0.8 * sideways.superpixels) << "two centimetres sideways are followed too";
 }
 
-TEST(RecedingPatches, WhatAnotherThingStoodBeforeDoesNotMove) {
+TEST(AxialMotion, WhatAnotherThingStoodBeforeDoesNotMove) {
   BoardScene before{0.0, 0.1, 1.0};
   before.board_pitch = 1.9;
   const Receding revealed = receding({0.0, 0.1, 1.15}, before);
-  ASSERT_GT(revealed.patches, 10);
-  EXPECT_LT(revealed.moving, 0.1 * revealed.patches);
+  ASSERT_GT(revealed.superpixels, 10);
+  EXPECT_LT(revealed.moving, 0.1 * revealed.superpixels);
 }
 
-TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
+TEST(AxialMotion, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
   const BoardScene now{0.0, 0.1, 1.15}, before{0.0, 0.1, 1.0};
   cv::Mat gray, depth, truth;
   now.render(gray, depth, &truth);
   const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
   ReferenceView then = reference(before, now);
   then.old = true;
-  const auto mask = [&](int find_receding) {
+  const auto mask = [&](int find_axial_motion) {
     StillpointConfig config;
-    config.find_receding = find_receding;
-    MotionMemory memory{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
+    config.find_axial_motion = find_axial_motion;
+    MotionPrior prior{std::make_shared<const RgbdView>(now.view()), cv::Mat::zeros(120, 160, CV_32FC1)};
     StillpointTrace trace;
     for (int i = 0; i < 2; ++i) {
-      trace = detect_depth_motion(view, segment_surfaces(view, config), depth, {then}, &memory,
+      trace = detect_depth_motion(view, make_superpixels(view, config), depth, {then}, &prior,
                                   Pose::Identity(), config);
-      memory.log_odds = trace.log_odds;
+      prior.log_odds = trace.log_odds;
     }
     return trace.mask;
   };
@@ -272,38 +273,38 @@ TEST(RecedingPatches, ABoardThatGoesBackIsMaskedAndOnlyByThem) {
 /// knew, and what lay outside it.
 struct Entered {
   RgbdView view = BoardScene{0.0, 0.5}.view();
-  SurfacePatches patches = segment_surfaces(view, {});
+  Superpixels superpixels = make_superpixels(view, {});
   cv::Mat prior = cv::Mat::zeros(view.depth.size(), CV_32FC1);
-  cv::Mat entered;
+  cv::Mat newly_observed;
   cv::Mat fresh_board, fresh_wall;
 
   explicit Entered(double step_m) {
     Pose previous_from_current = Pose::Identity();
     previous_from_current.translation().x() = step_m;
-    const MotionMemory nothing{std::make_shared<const RgbdView>(view),
-                               cv::Mat::zeros(view.depth.size(), CV_32FC1)};
-    entered = carry_memory(view, nothing, previous_from_current, {}).entered;
+    const MotionPrior nothing{std::make_shared<const RgbdView>(view),
+                              cv::Mat::zeros(view.depth.size(), CV_32FC1)};
+    newly_observed = warp_prior(view, nothing, previous_from_current, {}).newly_observed;
     const cv::Mat board = (view.depth > 0) & (view.depth < 1.2F), wall = view.depth >= 1.2F;
-    prior.setTo(5.0F, board & ~entered);
-    prior.setTo(-2.0F, wall & ~entered);
-    fresh_board = board & entered;
-    fresh_wall = wall & entered;
+    prior.setTo(5.0F, board & ~newly_observed);
+    prior.setTo(-2.0F, wall & ~newly_observed);
+    fresh_board = board & newly_observed;
+    fresh_wall = wall & newly_observed;
   }
-  void inherit() { inherit_memory(entered, patches, prior); }
+  void inherit() { propagate_labels(newly_observed, superpixels, prior); }
 };
 
-TEST(CarryMemory, TellsWhatLayOutsideTheFrameBefore) {
-  const Entered entered(0.03);
-  // Slid by 3 cm, a surface at z metres has entered by fx * 0.03 / z small pixels at the right.
+TEST(WarpPrior, TellsWhatLayOutsideTheFrameBefore) {
+  const Entered newly_observed(0.03);
+  // Slid by 3 cm, a surface at z metres has newly_observed by fx * 0.03 / z downsampled pixels at the right.
   const double fx = board_camera().fx / 4;
   const cv::Rect rim(160 - static_cast<int>(fx * 0.03 / 2.0) - 1, 10, 1, 5);
-  EXPECT_EQ(cv::countNonZero(entered.entered(rim)), 5) << "the wall's, two metres off";
-  EXPECT_EQ(cv::countNonZero(entered.entered(cv::Rect(2, 2, 140, 116))), 0);
-  RgbdView unmeasured = entered.view;
+  EXPECT_EQ(cv::countNonZero(newly_observed.newly_observed(rim)), 5) << "the wall's, two metres off";
+  EXPECT_EQ(cv::countNonZero(newly_observed.newly_observed(cv::Rect(2, 2, 140, 116))), 0);
+  RgbdView unmeasured = newly_observed.view;
   unmeasured.depth = cv::Mat::zeros(unmeasured.depth.size(), CV_32FC1);
-  const MotionMemory nothing{std::make_shared<const RgbdView>(entered.view),
-                             cv::Mat::zeros(unmeasured.depth.size(), CV_32FC1)};
-  EXPECT_EQ(cv::countNonZero(carry_memory(unmeasured, nothing, Pose::Identity(), {}).entered), 0);
+  const MotionPrior nothing{std::make_shared<const RgbdView>(newly_observed.view),
+                            cv::Mat::zeros(unmeasured.depth.size(), CV_32FC1)};
+  EXPECT_EQ(cv::countNonZero(warp_prior(unmeasured, nothing, Pose::Identity(), {}).newly_observed), 0);
 }
 
 TEST(References, FarOnesTakeTurns) {
@@ -317,26 +318,28 @@ TEST(References, FarOnesTakeTurns) {
 }
 
 TEST(Entering, TakesOverWhatItsSurfaceIsKnownToDo) {
-  Entered entered(0.03);
-  ASSERT_GT(cv::countNonZero(entered.fresh_board), 100);
-  ASSERT_GT(cv::countNonZero(entered.fresh_wall), 100);
-  entered.prior.setTo(-1.0F, entered.fresh_wall);  // so that it is seen whether anything is written
-  entered.inherit();
-  EXPECT_GT(cv::mean(entered.prior, entered.fresh_board)[0], 4.0);
-  EXPECT_EQ(cv::mean(entered.prior, entered.fresh_wall)[0], 0.0) << "to stand still is not inherited";
-  EXPECT_EQ(cv::countNonZero(entered.prior == -2.0F),
-            cv::countNonZero((entered.view.depth > 1.2F) & (entered.fresh_wall == 0)))
+  Entered newly_observed(0.03);
+  ASSERT_GT(cv::countNonZero(newly_observed.fresh_board), 100);
+  ASSERT_GT(cv::countNonZero(newly_observed.fresh_wall), 100);
+  newly_observed.prior.setTo(-1.0F,
+                             newly_observed.fresh_wall);  // so that it is seen whether anything is written
+  newly_observed.inherit();
+  EXPECT_GT(cv::mean(newly_observed.prior, newly_observed.fresh_board)[0], 4.0);
+  EXPECT_EQ(cv::mean(newly_observed.prior, newly_observed.fresh_wall)[0], 0.0)
+      << "to are static is not inherited";
+  EXPECT_EQ(cv::countNonZero(newly_observed.prior == -2.0F),
+            cv::countNonZero((newly_observed.view.depth > 1.2F) & (newly_observed.fresh_wall == 0)))
       << "what was seen before keeps what it had";
 }
 
 TEST(Entering, NeighboursAloneMakeNothingFirm) {
-  // So much of the board is new that whole patches are.
-  Entered entered(0.2);
-  ASSERT_GT(cv::countNonZero(entered.fresh_board), 1500);
-  entered.inherit();
-  const double mean = cv::mean(entered.prior, entered.fresh_board)[0];
+  // So much of the board is new that whole superpixels are.
+  Entered newly_observed(0.2);
+  ASSERT_GT(cv::countNonZero(newly_observed.fresh_board), 1500);
+  newly_observed.inherit();
+  const double mean = cv::mean(newly_observed.prior, newly_observed.fresh_board)[0];
   EXPECT_GT(mean, 1.0);
-  EXPECT_LT(mean, StillpointConfig{}.firm_log_odds);
+  EXPECT_LT(mean, StillpointConfig{}.confident_log_odds);
 }
 
 TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
@@ -345,7 +348,7 @@ TEST(DepthMotion, WithoutReferencesOrDepthThereIsNoMask) {
   EXPECT_FALSE(alone.note.empty());
   const cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(90)), none = cv::Mat::zeros(480, 640, CV_32FC1);
   const RgbdView view = make_rgbd_view(gray, none, board_camera(), 4);
-  const StillpointTrace blind = detect_depth_motion(view, segment_surfaces(view, {}), none,
+  const StillpointTrace blind = detect_depth_motion(view, make_superpixels(view, {}), none,
                                                     {reference({}, {})}, nullptr, Pose::Identity(), {});
   EXPECT_EQ(cv::countNonZero(blind.mask), 0);
 }

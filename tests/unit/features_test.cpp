@@ -189,7 +189,7 @@ FeatureSet features_at(const std::vector<cv::Point2f>& pixels, const std::vector
     d[0] = std::uint64_t{1} << i;
     set.descriptors.push_back(d);
     set.depth.push_back(1.0F);
-    set.trust.push_back(1.0F);
+    set.static_weight.push_back(1.0F);
   }
   set.build_index(640, 480);
   return set;
@@ -232,7 +232,7 @@ TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {
   EXPECT_EQ(depth_at(pixels, {}), (std::vector<float>{0, 0, 0, 0}));
 }
 
-TEST(FeatureSet, DepthTakenFromElsewhereIsCarriedToNow) {
+TEST(FeatureSet, DepthTakenFromElsewhereIsWarpedToNow) {
   // The depth image was taken 2 cm to the left and 5 cm farther back, of a wall that slopes.
   const Camera camera = camera_by_name("freiburg3");
   Pose then_from_now = Pose::Identity();

@@ -42,7 +42,7 @@ class Wall : public ::testing::Test {
       d[static_cast<std::size_t>(i) / 32] = std::uint64_t{0xFFFF} << (i % 32);
       features->descriptors.push_back(d);
       features->depth.push_back(static_cast<float>(p.z()));
-      features->trust.push_back(1.0F);
+      features->static_weight.push_back(1.0F);
     }
     features->build_index(kCamera.width, kCamera.height);
     return features;
@@ -225,7 +225,7 @@ TEST_F(Wall, BundleAdjustmentDropsWrongObservations) {
   for (const Observation& o : map_.point(point).observations) EXPECT_NE(o.keyframe, keyframe);
 }
 
-TEST_F(Wall, ObservationsWithoutTrustMoveNothing) {
+TEST_F(Wall, ObservationsWithoutWeightMoveNothing) {
   const auto ids = begin();
   for (const double x : {0.1, 0.2, 0.3}) add(x, ids);
   BundleProblem problem = make_bundle_problem(map_, 3, config_);
@@ -233,9 +233,9 @@ TEST_F(Wall, ObservationsWithoutTrustMoveNothing) {
   for (auto& edge : problem.edges)
     if (edge.point % 3 == 0 && !problem.views[static_cast<std::size_t>(edge.view)].fixed)
       edge.pixel.x() += 1.5;
-  const auto worst_shift = [&](double trust) {
+  const auto worst_shift = [&](double static_weight) {
     for (auto& edge : problem.edges)
-      if (edge.point % 3 == 0) edge.trust = trust;
+      if (edge.point % 3 == 0) edge.static_weight = static_weight;
     const BundleSolution solution = solve_bundle(problem, kCamera, config_.bundle, 1.0);
     double worst = 0.0;
     for (std::size_t i = 0; i < problem.views.size(); ++i)

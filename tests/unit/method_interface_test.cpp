@@ -92,10 +92,10 @@ TEST(MotionMethods, AMinimalOneRunsAndIsInspectedAsAnyOther) {
   EXPECT_GT(run.scores[5].mask.found_rightly, 0);
 
   FrameCache cache(*source);
-  ShownRun shown(*source, cache, RunTrack(*source, config));
+  ShownRun shown(*source, cache, ReplayableRun(*source, config));
   for (int i = 0; i < 8; ++i) shown.process(source->read(i));
   EXPECT_TRUE(computed_alike(shown.track().records()[7], run.records[7]));
-  ShownRun later(*source, cache, RunTrack(*source, config));
+  ShownRun later(*source, cache, ReplayableRun(*source, config));
   for (int i = 0; i < 8; ++i) later.process(source->read(i));
   const auto view = later.frame_view(5);
   ASSERT_NE(view->motion->layer("mask"), nullptr);

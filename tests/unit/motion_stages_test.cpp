@@ -112,18 +112,18 @@ TEST(Compensation, ValidAreaAgreesWithWarpingAWhiteImage) {
   EXPECT_GT(cv::countNonZero(ours), 100000);
 }
 
-TEST(Compensation, CarriedMaskAgreesWithWarpingTheWholeMask) {
+TEST(Compensation, WarpedMaskAgreesWithWarpingTheWholeMask) {
   cv::Mat mask = cv::Mat::zeros(kVga, CV_8UC1);
   cv::circle(mask, {300, 200}, 60, 255, cv::FILLED);
   cv::rectangle(mask, {600, 400, 40, 80}, 255, cv::FILLED);
   const cv::Matx33d tilted(0.9, 0.1, 20, -0.15, 1.05, 11, 2e-4, -3e-4, 1);
   cv::Mat whole;
   cv::warpPerspective(mask, whole, tilted, kVga, cv::INTER_NEAREST);
-  const cv::Mat carried = carry_mask(mask, tilted);
+  const cv::Mat carried = warp_mask(mask, tilted);
   EXPECT_GT(cv::countNonZero(carried), 8000);
   EXPECT_LE(cv::countNonZero(carried != whole), 5);  // pixels exactly half-way may round either way
-  EXPECT_EQ(cv::countNonZero(carry_mask(cv::Mat::zeros(kVga, CV_8UC1), tilted)), 0);
-  EXPECT_EQ(cv::countNonZero(carry_mask(mask, {1, 0, 900, 0, 1, 0, 0, 0, 1})), 0);
+  EXPECT_EQ(cv::countNonZero(warp_mask(cv::Mat::zeros(kVga, CV_8UC1), tilted)), 0);
+  EXPECT_EQ(cv::countNonZero(warp_mask(mask, {1, 0, 900, 0, 1, 0, 0, 0, 1})), 0);
 }
 
 TEST(Difference, IsTheAbsoluteDifferenceWhereValid) {

@@ -59,25 +59,26 @@ TEST(RefinePose, TellsOutliersApart) {
 
 /// Exact observations, of which the first 40 of 100 are seen 1.5 px beside their place: no outliers, but all
 /// wrong the same way.
-std::vector<PoseObservation> drifting(double trust) {
+std::vector<PoseObservation> drifting(double static_weight) {
   auto observations = observe(some_pose(), 100, 0.0, true);
   for (std::size_t i = 0; i < 40; ++i) {
     observations[i].pixel.x() += 1.5;
-    observations[i].trust = trust;
+    observations[i].static_weight = static_weight;
   }
   return observations;
 }
 
-TEST(RefinePose, TrustWeighsObservations) {
-  const auto error = [](double trust) {
-    return distance(refine_pose(kCamera, drifting(trust), some_pose(), {}).camera_from_world, some_pose());
+TEST(RefinePose, WeightsWeighObservations) {
+  const auto error = [](double static_weight) {
+    return distance(refine_pose(kCamera, drifting(static_weight), some_pose(), {}).camera_from_world,
+                    some_pose());
   };
   EXPECT_LT(error(1e-6), 1e-5);
   EXPECT_LT(error(0.1), 0.5 * error(1.0));
   EXPECT_GT(error(1.0), 1e-3);
 }
 
-TEST(RefinePose, TrustDoesNotChangeWhatIsAnOutlier) {
+TEST(RefinePose, WeightsDoNotChangeWhatIsAnOutlier) {
   auto observations = drifting(1e-6);
   observations[3].pixel.x() += 20.0;
   const PoseRefinement refined = refine_pose(kCamera, observations, some_pose(), {});
@@ -133,8 +134,8 @@ TEST(RefinePose, AHeldStartIsNotDrawnAwayByWhatMoves) {
   }
   Pose start = some_pose();
   start.translation().y() += 0.002;
-  const auto error = [&](double looseness) {
-    return distance(refine_pose(kCamera, observations, start, {}, looseness).camera_from_world, some_pose());
+  const auto error = [&](double gate) {
+    return distance(refine_pose(kCamera, observations, start, {}, gate).camera_from_world, some_pose());
   };
   EXPECT_GT(error(0.0), 0.01);
   EXPECT_LT(error(2.0), 0.003);

@@ -97,7 +97,7 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
       EXPECT_EQ(back.features[f].map_point, record.features[f].map_point);
       EXPECT_EQ(back.features[f].octave, record.features[f].octave);
       EXPECT_EQ(back.features[f].fate, record.features[f].fate);
-      EXPECT_EQ(back.features[f].trust, record.features[f].trust);
+      EXPECT_EQ(back.features[f].static_weight, record.features[f].static_weight);
     }
     const cv::Mat mask = unpack_mask(recorded.masks[i]);
     ASSERT_EQ(mask.size(), masks_[i].size());

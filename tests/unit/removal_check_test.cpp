@@ -87,10 +87,10 @@ TEST_F(RemovalErrors, AreOfTheStepFromThePoseBefore) {
   EXPECT_EQ(errors[0].frame, 1);
   EXPECT_NEAR(errors[0].with_removal_m, 0.003, 1e-12);
   EXPECT_NEAR(errors[0].without_removal_m, 0.001, 1e-12);
-  EXPECT_NEAR(errors[0].told_m, 0.0005, 1e-12);
+  EXPECT_NEAR(errors[0].oracle_m, 0.0005, 1e-12);
   EXPECT_NEAR(errors[1].with_removal_m, 0.0, 1e-12);
   EXPECT_NEAR(errors[1].without_removal_m, 0.008, 1e-12);
-  EXPECT_TRUE(std::isnan(errors[1].told_m));
+  EXPECT_TRUE(std::isnan(errors[1].oracle_m));
 }
 
 TEST_F(RemovalErrors, RemovalHurtsOnlyBeyondTheNoiseOfTheRun) {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/geometry/se3.hpp"
-#include "core/motion/epipolar/camera_turn.hpp"
+#include "core/motion/epipolar/relative_orientation.hpp"
 
 namespace stillpoint {
 namespace {
@@ -15,17 +15,17 @@ namespace {
 /// Turns about y whose rate grows evenly: angle(t) = t + t^2 rad, so rate(t) = 1 + 2 t rad / s.
 double angle(double t) { return t + t * t; }
 
-TEST(TurnRates, AreExactWhereTheRateChangesEvenly) {
+TEST(AngularVelocities, AreExactWhereTheRateChangesEvenly) {
   const double times[] = {0.0, 0.03, 0.07, 0.1, 0.15};
-  TurnRates rates;
+  AngularVelocities rates;
   for (int i = 1; i < 5; ++i)
     rates.add({0.0, -(angle(times[i]) - angle(times[i - 1])), 0.0}, times[i] - times[i - 1], 12);
   for (int back = 0; back <= 4; ++back)
     EXPECT_NEAR(rates.at(back).y(), 1.0 + 2.0 * times[4 - back], 1e-9) << back;
 }
 
-TEST(TurnRates, OfOneTurnAreThatTurnsAndOfNoneAreRest) {
-  TurnRates rates;
+TEST(AngularVelocities, OfOneTurnAreThatTurnsAndOfNoneAreRest) {
+  AngularVelocities rates;
   EXPECT_TRUE(rates.at(0).isZero());
   EXPECT_EQ(rates.sigma(), 0.0);
   rates.add({0.0, 0.0, 0.06}, 0.03, 12);
@@ -36,14 +36,14 @@ TEST(TurnRates, OfOneTurnAreThatTurnsAndOfNoneAreRest) {
   EXPECT_NEAR(rates.sigma(), 1.0 / std::sqrt(3.0), 1e-12);
 }
 
-TEST(TurnRates, LookBackAsFarAsAsked) {
-  TurnRates rates;
+TEST(AngularVelocities, ReachBackAsFarAsAsked) {
+  AngularVelocities rates;
   for (int i = 0; i < 30; ++i) rates.add({0.01 * i, 0.0, 0.0}, 1.0, 5);
   EXPECT_NEAR(rates.at(0).x(), -0.295, 1e-12);
   EXPECT_NEAR(rates.at(5).x(), -0.245, 1e-12);
 }
 
-TEST(UndoShutter, CarriesRowsToTheMiddleOne) {
+TEST(UndoShutter, WarpsRowsToTheMiddleOne) {
   Camera camera;
   camera.width = 640, camera.height = 480;
   camera.fx = camera.fy = 500.0, camera.cx = 320.0, camera.cy = 240.0;
@@ -84,25 +84,25 @@ std::vector<BearingPair> room(const Eigen::Matrix3d& rotation, const Eigen::Vect
 const Eigen::Matrix3d kTurned = so3_exp({0.005, -0.04, 0.01});
 const Eigen::Vector3d kWent(0.03, 0.002, 0.004), kRate(0.25, -0.2, 0.1);
 
-TEST(CameraTurn, FindsTheRateThatARollingShutterShows) {
+TEST(RelativeOrientation, FindsTheRateThatARollingShutterShows) {
   const std::vector<BearingPair> pairs = room(kTurned, kWent, kRate, 60);
-  CameraTurnOptions options;
+  RelativeOrientationOptions options;
   options.rate_sigma = 0.3;
-  const CameraTurn motion = estimate_camera_turn(pairs, options);
-  ASSERT_FALSE(motion.turns_only);
+  const RelativeOrientation motion = estimate_relative_orientation(pairs, options);
+  ASSERT_FALSE(motion.rotation_only);
   EXPECT_GT(motion.direction.dot(kWent.normalized()), 0.99);
   EXPECT_LT(rotation_angle(motion.rotation.transpose() * kTurned), 2e-3);
   EXPECT_NEAR(motion.rate.x(), kRate.x(), 0.05);
   // Held to rest, it is taken for a motion that the camera has not made.
-  const CameraTurn held = estimate_camera_turn(pairs, {});
+  const RelativeOrientation held = estimate_relative_orientation(pairs, {});
   EXPECT_TRUE(held.rate.isZero());
   EXPECT_LT(held.direction.dot(kWent.normalized()), 0.97);
 }
 
-TEST(CameraTurn, KnowsWhatLiesBehindInfinity) {
+TEST(RelativeOrientation, KnowsWhatLiesBehindInfinity) {
   const int moving = 60;
   const std::vector<BearingPair> pairs = room(kTurned, kWent, Eigen::Vector3d::Zero(), moving);
-  const CameraTurn motion = estimate_camera_turn(pairs, {});
+  const RelativeOrientation motion = estimate_relative_orientation(pairs, {});
   ASSERT_GT(pairs.size(), static_cast<std::size_t>(moving)) << "some move and some do not";
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     double sigma = 0.0;

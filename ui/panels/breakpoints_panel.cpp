@@ -6,7 +6,7 @@
 
 #include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -22,7 +22,7 @@ constexpr std::array<Example, 6> kExamples{
     {{"lost", "No pose could be estimated"},
      {"inliers < 30", "Few matches agree with the pose"},
      {"rpe > 2 cm", "The step from the frame before is off"},
-     {"mask > 40%", "Much of the image is held to be moving"},
+     {"mask > 40%", "Much of the image is classified as dynamic"},
      {"keyframe && new_points < 20", "A keyframe that saw nothing new"},
      {"spike(residual, 4)", "The residual leaps above its usual"}}};
 

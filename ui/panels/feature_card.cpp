@@ -42,20 +42,21 @@ LegendEntry fate_look(FeatureFate fate, ThemeName theme) {
   return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
 }
 
-void draw_story_marks(const UiFrame& frame, const ImageResponse& response, const FeatureStory& story) {
+void draw_explanation_marks(const UiFrame& frame, const ImageResponse& response,
+                            const FeatureExplanation& explanation) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at = response.keypoint_to_screen(story.feature.pixel);
+  const ImVec2 at = response.keypoint_to_screen(explanation.feature.pixel);
   const float thick = 1.8F * frame.scale;
   std::vector<ImVec2> trail;
-  for (const TrailPoint& point : story.trail)
+  for (const TrailPoint& point : explanation.trail)
     trail.push_back(response.keypoint_to_screen(point.feature.pixel));
   for (const auto& [ink, width] :
        {std::pair{kShade, thick + 2.0F * frame.scale}, std::pair{to_u32(okabe_ito::kYellow), thick}})
     list.AddPolyline(trail.data(), static_cast<int>(trail.size()), ink, ImDrawFlags_None, width);
   for (std::size_t i = 1; i < trail.size(); ++i)
     list.AddCircleFilled(trail[i], 1.8F * frame.scale, to_u32(okabe_ito::kYellow));
-  if (story.if_static) {
-    const ImVec2 still = response.to_screen((story.if_static->array() + 0.5).matrix());
+  if (explanation.if_static) {
+    const ImVec2 still = response.to_screen((explanation.if_static->array() + 0.5).matrix());
     const Rgb colour = role_colour(Role::kBackward, ThemeName::kDark);
     draw_arrow(list, still, at, kShade, thick + 2.0F * frame.scale);
     draw_arrow(list, still, at, to_u32(colour), thick);
@@ -65,14 +66,14 @@ void draw_story_marks(const UiFrame& frame, const ImageResponse& response, const
   list.AddCircle(at, 8.0F * frame.scale, IM_COL32(255, 255, 255, 255), 0, thick);
 }
 
-void draw_story_tooltip(const UiFrame& frame, const FeatureStory& story) {
+void draw_explanation_tooltip(const UiFrame& frame, const FeatureExplanation& explanation) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(330.0F * frame.scale);
-  ImGui::TextUnformatted(story.verdict.c_str());
+  ImGui::TextUnformatted(explanation.verdict.c_str());
   ImGui::PushFont(frame.fonts.small);
-  for (const std::string& sentence : story.because) ImGui::TextUnformatted(sentence.c_str());
-  for (const Margin& margin : story.margins) ImGui::TextDisabled("%s", margin_text(margin).c_str());
-  if (const auto motion = story.own_motion_px())
+  for (const std::string& sentence : explanation.because) ImGui::TextUnformatted(sentence.c_str());
+  for (const Margin& margin : explanation.margins) ImGui::TextDisabled("%s", margin_text(margin).c_str());
+  if (const auto motion = explanation.own_motion_px())
     ImGui::TextDisabled("%s", fmt::format("{:.1f} px from where it would be if static", *motion).c_str());
   ImGui::TextDisabled("Click to keep it chosen");
   ImGui::PopFont();

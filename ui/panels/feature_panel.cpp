@@ -32,30 +32,32 @@ const char* link_text(TrailLink link) {
   return "";
 }
 
-Facts facts_of(const FeatureStory& story) {
-  const FeatureRecord& f = story.feature;
+Facts facts_of(const FeatureExplanation& explanation) {
+  const FeatureRecord& f = explanation.feature;
   Facts facts{{"Pixel", fmt::format("{:.1f}, {:.1f}, octave {}", f.pixel.x, f.pixel.y, f.octave)},
               {"Depth", f.depth > 0.0F ? fmt::format("{:.3f} m", f.depth) : "not measured"}};
   if (f.map_point != kNone) {
     facts.emplace_back("Map point",
-                       story.observations
-                           ? fmt::format("{}, seen by {} keyframes", f.map_point, *story.observations)
+                       explanation.observations
+                           ? fmt::format("{}, seen by {} keyframes", f.map_point, *explanation.observations)
                            : fmt::format("{}, since taken out of the map", f.map_point));
     facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
-    facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.trust));
+    facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.static_weight));
   } else {
     facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
   }
-  const std::size_t back = story.trail.size() - 1;
+  const std::size_t back = explanation.trail.size() - 1;
   facts.emplace_back("Followed back", fmt::format("{} frame{}", back, back == 1 ? "" : "s"));
-  if (story.mask_edge_px)
-    facts.emplace_back("To the mask's edge", fmt::format("{:.0f} px, {}", std::abs(*story.mask_edge_px),
-                                                         *story.mask_edge_px > 0.0 ? "inside" : "outside"));
-  if (const auto motion = story.own_motion_px())
-    facts.emplace_back("If static", fmt::format("{:.1f}, {:.1f}: {:.1f} px away, by {}", story.if_static->x(),
-                                                story.if_static->y(), *motion, story.static_by));
-  if (story.in_camera) facts.emplace_back("In the camera", metres(*story.in_camera));
-  if (story.in_world) facts.emplace_back("In the world", metres(*story.in_world));
+  if (explanation.mask_edge_px)
+    facts.emplace_back("To the mask's edge",
+                       fmt::format("{:.0f} px, {}", std::abs(*explanation.mask_edge_px),
+                                   *explanation.mask_edge_px > 0.0 ? "inside" : "outside"));
+  if (const auto motion = explanation.own_motion_px())
+    facts.emplace_back("If static",
+                       fmt::format("{:.1f}, {:.1f}: {:.1f} px away, by {}", explanation.if_static->x(),
+                                   explanation.if_static->y(), *motion, explanation.static_by));
+  if (explanation.in_camera) facts.emplace_back("In the camera", metres(*explanation.in_camera));
+  if (explanation.in_world) facts.emplace_back("In the world", metres(*explanation.in_world));
   return facts;
 }
 
@@ -92,8 +94,8 @@ class FeaturePanel final : public FramePanel {
         wide ? ImVec2{std::floor(0.42F * room.x), room.y} : ImVec2{room.x, std::floor(0.42F * room.y)};
     draw_picture(frame, {session, actions}, size);
     if (wide) ImGui::SameLine(0.0F, gap);
-    ImGui::BeginChild("story");
-    draw_story(frame, chosen.has_value());
+    ImGui::BeginChild("explanation");
+    draw_explanation(frame, chosen.has_value());
     ImGui::EndChild();
   }
 
@@ -110,14 +112,14 @@ class FeaturePanel final : public FramePanel {
 
   void tell(const SessionView& session, int index) {
     const bool same = !told_.owner_before(session.current) && !session.current.owner_before(told_);
-    if (same && story_.index == index) return;
+    if (same && explanation_.index == index) return;
     const FrameView& view = *session.current;
-    story_ = explain_feature(view, *session.run, session.camera, session.map_points, index);
+    explanation_ = explain_feature(view, *session.run, session.camera, session.map_points, index);
     told_ = session.current;
     const cv::Size size = view.frame.gray.size();
     view_.zoom = std::max(1.0, size.width / kShownPx);
-    view_.centre = {(static_cast<double>(story_.feature.pixel.x) + 0.5) / size.width,
-                    (static_cast<double>(story_.feature.pixel.y) + 0.5) / size.height};
+    view_.centre = {(static_cast<double>(explanation_.feature.pixel.x) + 0.5) / size.width,
+                    (static_cast<double>(explanation_.feature.pixel.y) + 0.5) / size.height};
   }
 
   void draw_picture(const UiFrame& frame, const FramePlace& place, ImVec2 size) {
@@ -132,28 +134,28 @@ class FeaturePanel final : public FramePanel {
     take_mouse("picture", response, *shared_, place);
     push_clip(response);
     draw_outlines(frame, response, outlines_, role_colour(Role::kUnion, frame.theme.name));
-    draw_story_marks(frame, response, story_);
+    draw_explanation_marks(frame, response, explanation_);
     pop_clip();
     draw_marks(frame, response, *shared_, place);
   }
 
-  void draw_story(const UiFrame& frame, bool chosen) const {
-    const LegendEntry look = fate_look(story_.feature.fate, frame.theme.name);
+  void draw_explanation(const UiFrame& frame, bool chosen) const {
+    const LegendEntry look = fate_look(explanation_.feature.fate, frame.theme.name);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float sign = 0.5F * ImGui::GetTextLineHeight();
     draw_sign(frame, *ImGui::GetWindowDrawList(), {at.x + sign, at.y + sign}, 4.5F * frame.scale, look.sign,
               to_u32(look.colour));
     ImGui::SetCursorScreenPos({at.x + 2.6F * sign, at.y});
     ImGui::PushFont(frame.fonts.strong);
-    text_in_lines(story_.verdict);
+    text_in_lines(explanation_.verdict);
     ImGui::PopFont();
-    for (const std::string& sentence : story_.because) text_in_lines(sentence);
-    for (const Margin& margin : story_.margins) draw_margin(frame, margin);
+    for (const std::string& sentence : explanation_.because) text_in_lines(sentence);
+    for (const Margin& margin : explanation_.margins) draw_margin(frame, margin);
     ImGui::PushFont(frame.fonts.small);
     if (ImGui::BeginTable("facts", 2, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed);
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
-      for (const auto& [name, value] : facts_of(story_)) {
+      for (const auto& [name, value] : facts_of(explanation_)) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextDisabled("%s", name.c_str());
@@ -165,19 +167,20 @@ class FeaturePanel final : public FramePanel {
     draw_trail(frame);
     if (!chosen)
       ImGui::TextWrapped("No feature is chosen: this is the %s. Click another in a features panel.",
-                         story_.feature.fate == FeatureFate::removed ? "removed one nearest to the middle"
-                                                                     : "one with the largest residual");
+                         explanation_.feature.fate == FeatureFate::removed
+                             ? "removed one nearest to the middle"
+                             : "one with the largest residual");
     ImGui::PopFont();
   }
 
   /// The last frames, newest first.
   void draw_trail(const UiFrame& frame) const {
-    if (story_.trail.size() < 2) return;
+    if (explanation_.trail.size() < 2) return;
     if (!ImGui::BeginTable("trail", 5, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp))
       return;
     for (const char* name : {"Frame", "Pixel", "Depth", "Then", "Found as"}) ImGui::TableSetupColumn(name);
     ImGui::TableHeadersRow();
-    for (const TrailPoint& point : story_.trail) {
+    for (const TrailPoint& point : explanation_.trail) {
       ImGui::TableNextRow();
       const FeatureRecord& f = point.feature;
       const LegendEntry look = fate_look(f.fate, frame.theme.name);
@@ -195,7 +198,7 @@ class FeaturePanel final : public FramePanel {
     ImGui::EndTable();
   }
 
-  FeatureStory story_;
+  FeatureExplanation explanation_;
   std::weak_ptr<const FrameView> told_;
   ImageView view_;
   FrameTexture ground_;

@@ -80,8 +80,8 @@ class FeaturesPanel final : public FramePanel {
     return feature.fate != FeatureFate::removed && (feature.fate != FeatureFate::unmatched || unmatched_);
   }
 
-  /// The feature under the mouse tells its story in short; a click chooses it for all panels, one beside
-  /// every feature lets go.
+  /// The feature under the mouse tells its explanation in short; a click chooses it for all panels, one
+  /// beside every feature lets go.
   void take_feature(const UiFrame& frame, const SessionView& session, const ImageResponse& response) {
     if (!response.image_point) return;
     const FrameRecord& record = *session.current->record;
@@ -93,14 +93,15 @@ class FeaturesPanel final : public FramePanel {
     if (response.clicked && !index) shared_->feature.reset();
     if (!index) return;
     if (hovered_ != *index || !same_view(session.current)) {
-      story_ = explain_feature(*session.current, *session.run, session.camera, session.map_points, *index);
+      explanation_ =
+          explain_feature(*session.current, *session.run, session.camera, session.map_points, *index);
       hovered_ = *index;
       hovered_in_ = session.current;
     }
     push_clip(response);
-    draw_story_marks(frame, response, story_);
+    draw_explanation_marks(frame, response, explanation_);
     pop_clip();
-    draw_story_tooltip(frame, story_);
+    draw_explanation_tooltip(frame, explanation_);
   }
 
   [[nodiscard]] bool same_view(const std::shared_ptr<const FrameView>& view) const {
@@ -122,7 +123,7 @@ class FeaturesPanel final : public FramePanel {
   [[nodiscard]] float strength(const FeatureRecord& feature) const {
     constexpr float kFaintest = 0.3F;
     const bool weighs = moment_ == FeatureMoment::kAfter && feature.fate == FeatureFate::inlier;
-    return weighs ? kFaintest + (1.0F - kFaintest) * feature.trust : 1.0F;
+    return weighs ? kFaintest + (1.0F - kFaintest) * feature.static_weight : 1.0F;
   }
 
   [[nodiscard]] Footer footer_of(const UiFrame& frame, const SessionView& session,
@@ -161,7 +162,7 @@ class FeaturesPanel final : public FramePanel {
   bool mask_ = true, unmatched_ = true, by_scale_ = false;
   int hovered_ = -1;
   std::weak_ptr<const FrameView> hovered_in_;
-  FeatureStory story_;
+  FeatureExplanation explanation_;
   FrameTexture ground_, tint_;
 };
 

@@ -17,8 +17,8 @@ std::string percent(std::optional<double> share) {
   return share ? fmt::format("{:.0f} %", 100.0 * *share) : std::string("–");
 }
 
-/// A mask over its frame or alone, beside what truly moves: the one that the run used, or one that a stage of
-/// its method made.
+/// A mask over its frame or alone, beside what is truly dynamic: the one that the run used, or one that a
+/// stage of its method made.
 class MaskPanel final : public FramePanel {
  public:
   MaskPanel(MaskPanelInfo info, Shared shared)

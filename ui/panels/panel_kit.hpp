@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/feature_story.hpp"
+#include "core/inspect/feature_explanation.hpp"
 #include "core/inspect/frame_stages.hpp"
 #include "core/inspect/scene_point.hpp"
 #include "ui/panels/panel.hpp"

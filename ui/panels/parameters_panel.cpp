@@ -104,7 +104,7 @@ class ParametersPanel final : public NamedPanel {
     }
     ImGui::Text("%d change%s not run with%s", static_cast<int>(pending.size()),
                 pending.size() == 1 ? "" : "s", working.c_str());
-    if (ImGui::IsItemHovered()) tell_changes(pending);
+    if (ImGui::IsItemHovered()) describe_changes(pending);
     Controls controls(frame);
     const int here = session.current->index;
     const std::string name = change_name(wanted_, session.config);
@@ -132,7 +132,7 @@ class ParametersPanel final : public NamedPanel {
     ImGui::SetCursorScreenPos({low.x, high.y + ImGui::GetStyle().ItemSpacing.y});
   }
 
-  static void tell_changes(const std::vector<ParameterChange>& pending) {
+  static void describe_changes(const std::vector<ParameterChange>& pending) {
     std::string text;
     for (const ParameterChange& one : pending)
       text += fmt::format("{}{}: {} → {}", text.empty() ? "" : "\n", one.key, one.before, one.value);

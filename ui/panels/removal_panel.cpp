@@ -7,14 +7,14 @@
 #include "ui/panels/removal_summary.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
 namespace {
 
 /// Did removal help? Each frame's step solved with what the method removed, with nothing removed and with
-/// what truly moves removed, from the same map.
+/// what is truly dynamic removed, from the same map.
 class RemovalPanel final : public NamedPanel {
  public:
   explicit RemovalPanel(Shared shared) : NamedPanel("removal", "Did removal help?", std::move(shared)) {}
@@ -79,7 +79,7 @@ class RemovalPanel final : public NamedPanel {
       };
       add(with_, one.with_removal_m);
       add(without_, one.without_removal_m);
-      add(told_, one.told_m);
+      add(told_, one.oracle_m);
       if (one.hurt) add(hurt_, one.with_removal_m);
     }
     summary_ = summarise(errors);
@@ -140,8 +140,8 @@ class RemovalPanel final : public NamedPanel {
     std::string text = fmt::format("Median step error {:.3g} mm with removal, {:.3g} mm without",
                                    1000.0 * summary_.median_with_m, 1000.0 * summary_.median_without_m);
     if (summary_.told > 0)
-      text += fmt::format(", {:.3g} mm told what moves; removal did better than being told in {} of {}",
-                          1000.0 * summary_.median_told_m, summary_.beat_told, summary_.told);
+      text += fmt::format(", {:.3g} mm told what is dynamic; removal did better than being told in {} of {}",
+                          1000.0 * summary_.median_oracle_m, summary_.beat_oracle, summary_.told);
     if (summary_.worst_frame >= 0)
       text += fmt::format(". It hurt most at frame {}, by {:.3g} mm", summary_.worst_frame,
                           1000.0 * summary_.greatest_harm_m);

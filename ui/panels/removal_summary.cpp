@@ -36,14 +36,14 @@ RemovalSummary summarise(const std::vector<RemovalError>& errors) {
       summary.greatest_harm_m = -gain;
       summary.worst_frame = one.frame;
     }
-    if (!std::isfinite(one.told_m)) continue;
+    if (!std::isfinite(one.oracle_m)) continue;
     ++summary.told;
-    summary.beat_told += one.with_removal_m < one.told_m ? 1 : 0;
-    told.push_back(one.told_m);
+    summary.beat_oracle += one.with_removal_m < one.oracle_m ? 1 : 0;
+    told.push_back(one.oracle_m);
   }
   summary.median_with_m = median(std::move(with));
   summary.median_without_m = median(std::move(without));
-  summary.median_told_m = median(std::move(told));
+  summary.median_oracle_m = median(std::move(told));
   return summary;
 }
 

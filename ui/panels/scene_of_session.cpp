@@ -113,7 +113,7 @@ void add_removed(const SessionView& session, const Pose& world_from_camera, Scen
 
 SceneBounds sight_of(const SceneData& data) {
   SceneBounds box = bounds(data);
-  // A camera that stands still trembles by millimetres, which are not to fill the view.
+  // A camera that is static trembles by millimetres, which are not to fill the view.
   const Eigen::Vector3d middle = 0.5 * (box.low + box.high);
   box.low = box.low.cwiseMin(middle - Eigen::Vector3d::Constant(0.5 * kLeastSight));
   box.high = box.high.cwiseMax(middle + Eigen::Vector3d::Constant(0.5 * kLeastSight));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 
 namespace stillpoint {
 namespace {

@@ -7,7 +7,7 @@
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

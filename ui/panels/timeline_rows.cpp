@@ -8,7 +8,7 @@
 
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 
 namespace stillpoint {
 

@@ -40,7 +40,7 @@ class TrajectoryPanel final : public NamedPanel {
       keeps_fitting_ = false;
     draw_ghost_signs(frame, session, response);
     footer.draw(frame);
-    if (response.pose) tell_pose(session, *response.pose, response.clicked, actions);
+    if (response.pose) explain_pose(session, *response.pose, response.clicked, actions);
   }
 
  private:
@@ -147,8 +147,8 @@ class TrajectoryPanel final : public NamedPanel {
     fit(view_, viewport, sight_);
   }
 
-  void tell_pose(const SessionView& session, const ScenePose& pose, bool clicked,
-                 PanelActions& actions) const {
+  void explain_pose(const SessionView& session, const ScenePose& pose, bool clicked,
+                    PanelActions& actions) const {
     const auto& frames = scene_.frames_of_path[pose.path];
     if (pose.index >= frames.size()) return;
     const ScenePath& path = scene_.data.paths[pose.path];

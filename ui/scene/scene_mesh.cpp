@@ -134,7 +134,7 @@ Segments grid_segments(const SceneView& view, const Eigen::Vector3d& up, double 
       std::abs(up.x()) < 0.9 ? Eigen::Vector3d::UnitX().eval() : Eigen::Vector3d::UnitY().eval();
   const Eigen::Vector3d first = (hint - hint.dot(up) * up).normalized();
   const Eigen::Vector3d second = up.cross(first);
-  // Lines lie at whole multiples of the spacing, so that the grid stands still while the view moves over it.
+  // Lines lie at whole multiples of the spacing, so that the grid is static while the view moves over it.
   const long centre_first = std::lround(view.target.dot(first) / spacing);
   const long centre_second = std::lround(view.target.dot(second) / spacing);
   const Eigen::Vector3d foot = view.target + (ground_m - view.target.dot(up)) * up;

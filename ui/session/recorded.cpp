@@ -15,12 +15,12 @@ constexpr auto kSlice = std::chrono::milliseconds(100);  // of work between look
 }  // namespace
 
 void Session::open_recorded() {
-  run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, options_.recorded));
+  run_ = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, options_.recorded));
   run_->lay_beside(beside_);
   baseline_.reset();
   if (options_.recorded_baseline)
     baseline_view_ = std::make_shared<const RunView>(
-        RunTrack(*source_, options_.recorded_baseline, {.keep_features = false}).view());
+        ReplayableRun(*source_, options_.recorded_baseline, {.keep_features = false}).view());
   message_ = options_.no_images;
 }
 

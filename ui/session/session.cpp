@@ -30,8 +30,8 @@ std::shared_ptr<const SessionView> Session::view() const {
 }
 
 void Session::restart(const Config& config) {
-  const RunTrackOptions keep{.keep_times = options_.keep_times};
-  run_ = std::make_unique<ShownRun>(*source_, frames_, RunTrack(*source_, config, keep));
+  const ReplayableRunOptions keep{.keep_times = options_.keep_times};
+  run_ = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, config, keep));
   run_->lay_beside(beside_);
   run_view_.reset();
   baseline_.reset();
@@ -39,11 +39,11 @@ void Session::restart(const Config& config) {
   if (options_.baseline && !method_of(config).baseline && source_->has_depth()) {
     Config plain = config;
     plain.run.method = baseline_method().name;
-    baseline_ = std::make_unique<RunTrack>(*source_, plain,
-                                           RunTrackOptions{.max_checkpoints = 1,
-                                                           .keep_features = false,
-                                                           .keep_times = options_.keep_times,
-                                                           .score_masks = false});
+    baseline_ = std::make_unique<ReplayableRun>(*source_, plain,
+                                                ReplayableRunOptions{.max_checkpoints = 1,
+                                                                     .keep_features = false,
+                                                                     .keep_times = options_.keep_times,
+                                                                     .score_masks = false});
   }
   for (Ghost& ghost : ghosts_) {
     ghost.diverged.reset();
@@ -75,7 +75,7 @@ void Session::show(int frame) {
   const bool follows = current_ && current_->index + 1 == frame && current_->record != nullptr;
   current_ = run_->frame_view(frame, follows ? alone(*current_) : nullptr);
   for (Ghost& ghost : ghosts_) {
-    const RunTrack& track = ghost.run->track();
+    const ReplayableRun& track = ghost.run->track();
     if (frame >= track.processed())
       ghost.current.reset();
     else

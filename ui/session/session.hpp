@@ -149,7 +149,7 @@ class Session {
   SessionOptions options_;
   FrameCache frames_;
   std::unique_ptr<ShownRun> run_;
-  std::unique_ptr<RunTrack> baseline_;
+  std::unique_ptr<ReplayableRun> baseline_;
   std::vector<Ghost> ghosts_;
   std::shared_ptr<const FrameView> current_;
   std::shared_ptr<const RunView> run_view_, baseline_view_;

@@ -171,7 +171,7 @@ void Session::carry_out(const request::ExportFrames& wanted) {
 
 void Session::carry_out(const request::ExportSession& wanted) {
   refuse_without_images("Its frames cannot be handed on");
-  const RunTrack& track = run_->track();
+  const ReplayableRun& track = run_->track();
   const int frames = debug_.span ? std::min(debug_.span->last + 1, track.processed()) : track.processed();
   if (frames == 0) throw InputError(fmt::format("{}: no frame has been processed yet", wanted.folder));
   RunHash hash;

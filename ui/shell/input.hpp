@@ -115,7 +115,7 @@ struct KeyChord {
 [[nodiscard]] std::string to_string(const KeyChord& chord);
 [[nodiscard]] std::optional<KeyChord> parse_key_chord(std::string_view text);
 
-// What a person does, one happening each. A window makes them from its system's events; a recording or a test
+// What a person does, one event each. A window makes them from its system's events; a recording or a test
 // makes them itself; both pass through one InputQueue. Positions are framebuffer pixels, origin top left.
 struct MouseMoved {
   float x = 0.0F, y = 0.0F;  ///< px
@@ -146,7 +146,7 @@ struct FilesDropped {
 using InputEvent =
     std::variant<MouseMoved, MouseButton, MouseWheel, KeyChanged, TextTyped, FocusChanged, FilesDropped>;
 
-/// Happenings on their way to the interface, which sees one state a frame: a press and its release between
+/// Events on their way to the interface, which sees one state a frame: a press and its release between
 /// two frames must reach it in two frames, or the click is lost.
 class InputQueue {
  public:

@@ -20,9 +20,9 @@ Recorder::Recorder(const std::filesystem::path& path, const RecordingStart& star
   if (!file_) throw InputError(fmt::format("{}: the recording cannot be written", path.string()));
 }
 
-void Recorder::write(const Happening& happening) {
+void Recorder::write(const RecordedEvent& event) {
   if (!intact_) return;
-  file_ << to_line(happening) << std::endl;
+  file_ << to_line(event) << std::endl;
   intact_ = file_.good();
 }
 
@@ -46,14 +46,14 @@ void Recorder::event(const InputEvent& event, double time_s, const RecordedState
   }
   flush_move();
   if (state.playing) {
-    write(happening::Until{state.frame});
+    write(event::Until{state.frame});
   } else if (state.idle && was_busy_) {
-    write(happening::Idle{});
+    write(event::Idle{});
     // Where playing stopped is chance; where it stopped in the recording is not.
-    if (was_playing_) write(happening::Frame{state.frame});
+    if (was_playing_) write(event::Frame{state.frame});
     was_busy_ = was_playing_ = false;
   }
-  if (pause >= kShortestPause) write(happening::Wait{std::min(pause, kLongestPause)});
+  if (pause >= kShortestPause) write(event::Wait{std::min(pause, kLongestPause)});
   last_s_ = time_s;
   if (moved)
     move_ = {event};
@@ -65,12 +65,12 @@ void Recorder::size(int width, int height) {
   if (size_ == std::array{width, height}) return;
   size_ = {width, height};
   flush_move();
-  write(happening::Resize{width, height});
+  write(event::Resize{width, height});
 }
 
 void Recorder::finish() {
   flush_move();
-  if (was_busy_) write(happening::Idle{});
+  if (was_busy_) write(event::Idle{});
   if (!intact_)
     throw InputError(
         fmt::format("{}: the recording could not be written to its end (the disk is full?)", path_.string()));

@@ -133,9 +133,9 @@ std::optional<std::vector<unsigned>> codepoints(const std::string& text) {
   return letters;
 }
 
-/// The happenings of one line: a click is a press and a release, a text one event a letter.
-std::vector<Happening> read_happening(const std::string& kind, Words& words) {
-  using namespace happening;
+/// The events of one line: a click is a press and a release, a text one event a letter.
+std::vector<RecordedEvent> read_event(const std::string& kind, Words& words) {
+  using namespace event;
   const auto position = [&](const char* what) { return words.number(what, -1e6, 1e6); };
   if (kind == "wait") return {Wait{words.number("seconds", 0.0, kLongestWait)}};
   if (kind == "idle") return {Idle{}};
@@ -164,7 +164,7 @@ std::vector<Happening> read_happening(const std::string& kind, Words& words) {
   if (kind == "press" || kind == "release" || kind == "click") {
     const int button = words.button();
     const Modifiers modifiers = words.modifiers();
-    std::vector<Happening> both;
+    std::vector<RecordedEvent> both;
     if (kind != "release") both.emplace_back(InputEvent{MouseButton{button, true, modifiers}});
     if (kind != "press") both.emplace_back(InputEvent{MouseButton{button, false, modifiers}});
     return both;
@@ -187,7 +187,7 @@ std::vector<Happening> read_happening(const std::string& kind, Words& words) {
     const std::string way = words.more() ? words.word("down or up") : "";
     if (!way.empty() && way != "down" && way != "up")
       words.fail(fmt::format("expected down or up, found '{}'", way));
-    std::vector<Happening> both;
+    std::vector<RecordedEvent> both;
     if (way != "up") both.emplace_back(InputEvent{KeyChanged{chord->key, true, chord->modifiers}});
     if (way == "down") return both;
     both.emplace_back(
@@ -200,7 +200,7 @@ std::vector<Happening> read_happening(const std::string& kind, Words& words) {
       words.fail(fmt::format("expected a text between quotes, found {}", quoted));
     const auto letters = codepoints(quoted.substr(1, quoted.size() - 2));
     if (!letters) words.fail("the text is not UTF-8");
-    std::vector<Happening> typed;
+    std::vector<RecordedEvent> typed;
     for (const unsigned letter : *letters) typed.emplace_back(InputEvent{TextTyped{letter}});
     return typed;
   }
@@ -253,22 +253,22 @@ void read_head(const std::string& line, const std::string& file) {
 }
 
 struct LineOf {
-  std::string operator()(const happening::Wait& one) const { return fmt::format("wait {:.3g}", one.seconds); }
-  std::string operator()(const happening::Idle&) const { return "idle"; }
-  std::string operator()(const happening::Until& one) const { return fmt::format("until {}", one.frame); }
-  std::string operator()(const happening::Frame& one) const { return fmt::format("frame {}", one.frame); }
-  std::string operator()(const happening::Act& one) const { return "action " + one.name; }
-  std::string operator()(const happening::Point& one) const {
+  std::string operator()(const event::Wait& one) const { return fmt::format("wait {:.3g}", one.seconds); }
+  std::string operator()(const event::Idle&) const { return "idle"; }
+  std::string operator()(const event::Until& one) const { return fmt::format("until {}", one.frame); }
+  std::string operator()(const event::Frame& one) const { return fmt::format("frame {}", one.frame); }
+  std::string operator()(const event::Act& one) const { return "action " + one.name; }
+  std::string operator()(const event::Point& one) const {
     return fmt::format("point {} {:.4g} {:.4g}", one.panel, one.x, one.y);
   }
-  std::string operator()(const happening::Resize& one) const {
+  std::string operator()(const event::Resize& one) const {
     return fmt::format("size {} {}", one.width, one.height);
   }
-  std::string operator()(const happening::Screenshot& one) const { return "screenshot " + one.file; }
-  std::string operator()(const happening::Expect& one) const {
+  std::string operator()(const event::Screenshot& one) const { return "screenshot " + one.file; }
+  std::string operator()(const event::Expect& one) const {
     return fmt::format("expect {} {}", one.what, one.value);
   }
-  std::string operator()(const happening::Quit&) const { return "quit"; }
+  std::string operator()(const event::Quit&) const { return "quit"; }
   std::string operator()(const InputEvent& event) const {
     return std::visit([this](const auto& one) { return (*this)(one); }, event);
   }
@@ -313,10 +313,10 @@ Recording parse_recording(const std::string& text, const std::string& file) {
     }
     Words words(file, number, line);
     if (!words.more() || line.front() == '#') continue;
-    const std::string kind = words.word("a happening");
+    const std::string kind = words.word("an event");
     if (started || !read_start(kind, words, number, recording.start)) {
       started = true;
-      for (Happening& one : read_happening(kind, words)) recording.lines.push_back({number, std::move(one)});
+      for (RecordedEvent& one : read_event(kind, words)) recording.lines.push_back({number, std::move(one)});
     }
     if (words.more()) words.fail(fmt::format("'{}' is more than '{}' takes", words.rest(""), kind));
   }
@@ -334,7 +334,7 @@ Recording read_recording(const std::filesystem::path& path) {
   return parse_recording(text.str(), path.string());
 }
 
-std::string to_line(const Happening& happening) { return std::visit(LineOf{}, happening); }
+std::string to_line(const RecordedEvent& event) { return std::visit(LineOf{}, event); }
 
 std::string to_text(const RecordingStart& start) {
   std::string text = fmt::format("{} {}\n", kHead, Recording::kVersion);

@@ -11,7 +11,7 @@
 
 namespace stillpoint {
 
-// A recorded interaction: a text file, one happening a line, that drives window and offscreen alike.
+// A recorded interaction: a text file, one event a line, that drives window and offscreen alike.
 //
 //   stillpoint recording 1
 //   sequence 300 generated:walking_static
@@ -24,12 +24,12 @@ namespace stillpoint {
 //   idle
 //   screenshot after.png
 //
-// What stands before the first happening says how things stood at the start, all of it optional: the sequence
+// What stands before the first event says how things stood at the start, all of it optional: the sequence
 // (frames and name) and where it was opened, size, look, layout, and parameters that differ from their
 // defaults. Lines that are empty or begin with # count for nothing.
 
-// Happenings besides input. Words below are those of the file.
-namespace happening {
+// Events besides input. Words below are those of the file.
+namespace event {
 struct Wait {
   double seconds = 0.0;
 };               ///< `wait 0.5`: the interface's clock goes on so far
@@ -52,20 +52,20 @@ struct Resize {
 };  ///< `size 800 600`, px
 struct Screenshot {
   std::string file;
-};  ///< `screenshot name.png`: what is shown, once it stands still
+};  ///< `screenshot name.png`: what is shown, once it is static
 struct Expect {
   std::string what, value;
 };               ///< `expect frame 12`: ends the replay with one sentence where it does not hold
 struct Quit {};  ///< `quit`
-}  // namespace happening
+}  // namespace event
 
-using Happening = std::variant<InputEvent, happening::Wait, happening::Idle, happening::Until,
-                               happening::Frame, happening::Act, happening::Point, happening::Resize,
-                               happening::Screenshot, happening::Expect, happening::Quit>;
+using RecordedEvent =
+    std::variant<InputEvent, event::Wait, event::Idle, event::Until, event::Frame, event::Act, event::Point,
+                 event::Resize, event::Screenshot, event::Expect, event::Quit>;
 
 struct RecordedLine {
   int line = 0;  ///< of the file, from 1
-  Happening what;
+  RecordedEvent what;
 };
 
 /// How things stood when recording began.
@@ -90,13 +90,13 @@ struct Recording {
 
 /// Reads a recording.
 /// @param file its name, for messages
-/// @throws InputError with file and line: no recording, another version, an unknown happening, a value that
+/// @throws InputError with file and line: no recording, another version, an unknown event, a value that
 /// cannot be
 [[nodiscard]] Recording parse_recording(const std::string& text, const std::string& file);
 [[nodiscard]] Recording read_recording(const std::filesystem::path& path);
 
-/// The file's words for one happening, and for the start.
-[[nodiscard]] std::string to_line(const Happening& happening);
+/// The file's words for one event, and for the start.
+[[nodiscard]] std::string to_line(const RecordedEvent& event);
 [[nodiscard]] std::string to_text(const RecordingStart& start);
 
 /// What a recorder has to know of the workbench at an event.
@@ -105,7 +105,7 @@ struct RecordedState {
   bool playing = false, idle = true;
 };
 
-/// Writes a recording while someone works. Each line is on disk before the next happening, so that nothing is
+/// Writes a recording while someone works. Each line is on disk before the next event, so that nothing is
 /// lost when the program ends badly.
 class Recorder {
  public:
@@ -124,7 +124,7 @@ class Recorder {
   [[nodiscard]] bool intact() const { return intact_; }
 
  private:
-  void write(const Happening& happening);
+  void write(const RecordedEvent& event);
   void flush_move();
 
   std::filesystem::path path_;

@@ -1,5 +1,5 @@
 // What leads to failures: worst frames, breakpoint hits, bookmarks, a range of frames, ghosts.
-#include "ui/session/places.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

@@ -158,8 +158,8 @@ std::vector<std::string> stage_panels(std::string_view method) {
 
 LayoutNode default_layout(std::string_view method) {
   using enum Division;
-  // Above, what is held to be moving and which features that takes, by what the method itself goes by; in the
-  // middle what comes of it; below, the whole run to go about in.
+  // Above, what is classified as dynamic and which features that takes, by what the method itself goes by; in
+  // the middle what comes of it; below, the whole run to go about in.
   const std::vector<std::string> stages = stage_panels(method);
   std::vector<LayoutNode> tiles{tile(stages.size() > 1 ? 0.25 : 0.29, "features_before")};
   for (std::size_t i = 0; i < std::min<std::size_t>(3, stages.size()); ++i)

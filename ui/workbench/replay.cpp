@@ -18,8 +18,9 @@ constexpr auto kNap = std::chrono::milliseconds(4);
 /// A recording on its way.
 class Player {
  public:
-  Player(const Recording& recording, Desk& desk, const ReplayShell& shell, const ReplayOptions& options)
-      : recording_(recording), desk_(desk), shell_(shell), options_(options) {}
+  Player(const Recording& recording, AppController& controller, const ReplayShell& shell,
+         const ReplayOptions& options)
+      : recording_(recording), controller_(controller), shell_(shell), options_(options) {}
 
   ReplayResult play() {
     // Events are written down when everything stands; so it is again before the first.
@@ -27,7 +28,7 @@ class Player {
     for (const RecordedLine& line : recording_.lines) {
       line_ = line.line;
       std::visit([this](const auto& one) { happen(one); }, line.what);
-      ++result_.happenings;
+      ++result_.events;
       if (result_.quit) break;
     }
     return result_;
@@ -40,7 +41,7 @@ class Player {
 
   void draw() {
     options_.between();
-    result_.quit = shell_.draw([this](UiFrame& frame) { desk_.draw(frame); }).quit || result_.quit;
+    result_.quit = shell_.draw([this](UiFrame& frame) { controller_.draw(frame); }).quit || result_.quit;
   }
 
   /// Draws until `holds()`, which may wait for work beside the interface.
@@ -57,7 +58,7 @@ class Player {
   }
 
   void settle(int frames) {
-    draw_until([this] { return desk_.idle(); }, "nothing came to rest");
+    draw_until([this] { return controller_.idle(); }, "nothing came to rest");
     for (int i = 0; i < frames; ++i) draw();
   }
 
@@ -66,62 +67,62 @@ class Player {
     while (shell_.canvas->has_pending_input() && !result_.quit) draw();
   }
 
-  void happen(const happening::Wait& wait) {
+  void happen(const event::Wait& wait) {
     const double end = shell_.canvas->time_s() + wait.seconds;
     while (shell_.canvas->time_s() < end && !result_.quit) draw();
   }
 
-  void happen(const happening::Idle&) { settle(kSettlingFrames); }
+  void happen(const event::Idle&) { settle(kSettlingFrames); }
 
-  void happen(const happening::Until& until) {
+  void happen(const event::Until& until) {
     draw_until(
         [&] {
-          const auto view = desk_.view();
-          return !view || view->current->index >= until.frame || (desk_.idle() && !view->playing);
+          const auto view = controller_.view();
+          return !view || view->current->index >= until.frame || (controller_.idle() && !view->playing);
         },
         "the frame was not reached");
   }
 
-  void happen(const happening::Frame& wanted) {
-    const auto view = desk_.view();
+  void happen(const event::Frame& wanted) {
+    const auto view = controller_.view();
     if (!view) fail("there is no sequence to go to a frame of");
     if (wanted.frame >= view->frame_count)
       fail(fmt::format("there is no frame {}; the sequence has frames 0 to {}", wanted.frame,
                        view->frame_count - 1));
-    if (view->current->index != wanted.frame) desk_.session()->request_frame(wanted.frame);
+    if (view->current->index != wanted.frame) controller_.session()->request_frame(wanted.frame);
     settle(kSettlingFrames);
   }
 
-  void happen(const happening::Act& act) {
-    const Actions& actions = desk_.workbench().actions();
+  void happen(const event::Act& act) {
+    const Actions& actions = controller_.workbench().actions();
     const Action* action = actions.find(act.name);
     if (action == nullptr) fail(fmt::format("there is no action '{}'", act.name));
     // Actions are run while a frame is drawn, as keys and buttons run them.
     options_.between();
     bool ran = false;
-    desk_.workbench().before_next_frame([&ran, &actions, &act] { ran = actions.run(act.name); });
+    controller_.workbench().before_next_frame([&ran, &actions, &act] { ran = actions.run(act.name); });
     draw();
     if (!ran) fail(fmt::format("the action '{}' is not possible now", act.name));
     draw();
   }
 
-  void happen(const happening::Point& point) {
-    const auto tile = desk_.workbench().tile_of(point.panel);
+  void happen(const event::Point& point) {
+    const auto tile = controller_.workbench().tile_of(point.panel);
     if (!tile) fail(fmt::format("the panel '{}' is not shown", point.panel));
     happen(InputEvent{MouseMoved{tile->x + static_cast<float>(point.x) * tile->width,
                                  tile->y + static_cast<float>(point.y) * tile->height}});
   }
 
-  void happen(const happening::Resize& size) {
+  void happen(const event::Resize& size) {
     shell_.resize(size.width, size.height);
     for (int i = 0; i < kSettlingFrames; ++i) draw();
   }
 
-  void happen(const happening::Screenshot& screenshot) {
+  void happen(const event::Screenshot& screenshot) {
     if (screenshot.file.find('/') != std::string::npos || !screenshot.file.ends_with(".png"))
       fail(fmt::format("expected a screenshot's name like after.png, found '{}'", screenshot.file));
     settle(kSettlingFrames);
-    const cv::Mat image = shell_.capture([this](UiFrame& frame) { desk_.draw(frame); });
+    const cv::Mat image = shell_.capture([this](UiFrame& frame) { controller_.draw(frame); });
     const std::filesystem::path path = options_.out / screenshot.file;
     bool written = false;
     try {
@@ -132,12 +133,12 @@ class Player {
     ++result_.screenshots;
   }
 
-  void happen(const happening::Expect& expected) {
+  void happen(const event::Expect& expected) {
     draw();
-    const auto view = desk_.view();
+    const auto view = controller_.view();
     const bool part = expected.what.ends_with("~");
     const std::string what = part ? expected.what.substr(0, expected.what.size() - 1) : expected.what;
-    const auto found = desk_.workbench().fact(what, view.get());
+    const auto found = controller_.workbench().fact(what, view.get());
     if (!found) fail(fmt::format("there is no fact '{}'; there are {}", what, Workbench::fact_names()));
     const bool holds = part ? found->find(expected.value) != std::string::npos : *found == expected.value;
     if (!holds)
@@ -145,10 +146,10 @@ class Player {
                        *found));
   }
 
-  void happen(const happening::Quit&) { result_.quit = true; }
+  void happen(const event::Quit&) { result_.quit = true; }
 
   const Recording& recording_;
-  Desk& desk_;
+  AppController& controller_;
   const ReplayShell& shell_;
   const ReplayOptions& options_;
   int line_ = 1;
@@ -184,9 +185,9 @@ void require_same_sequence(const Recording& recording, const FrameSource& source
                                start.sequence_frames, source.name(), source.size()));
 }
 
-ReplayResult replay(const Recording& recording, Desk& desk, const ReplayShell& shell,
+ReplayResult replay(const Recording& recording, AppController& controller, const ReplayShell& shell,
                     const ReplayOptions& options) {
-  return Player(recording, desk, shell, options).play();
+  return Player(recording, controller, shell, options).play();
 }
 
 }  // namespace stillpoint

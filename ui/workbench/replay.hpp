@@ -6,7 +6,7 @@
 #include "ui/shell/offscreen.hpp"
 #include "ui/shell/recording.hpp"
 #include "ui/shell/window.hpp"
-#include "ui/workbench/desk.hpp"
+#include "ui/workbench/app_controller.hpp"
 
 namespace stillpoint {
 
@@ -27,17 +27,17 @@ struct ReplayOptions {
 };
 
 struct ReplayResult {
-  int happenings = 0, screenshots = 0;
+  int events = 0, screenshots = 0;
   bool quit = false;  ///< it ended the program
 };
 
 /// Throws InputError, naming the line, when a recording was made of another sequence than `source`.
 void require_same_sequence(const Recording& recording, const FrameSource& source);
 
-/// Plays a recording on a desk that was opened as the recording's start says.
+/// Plays a recording on a controller that was opened as the recording's start says.
 /// @throws InputError with file and line: an action, panel or fact there is not, what was expected and does
 /// not hold, what does not come to rest, a screenshot that cannot be written
-ReplayResult replay(const Recording& recording, Desk& desk, const ReplayShell& shell,
+ReplayResult replay(const Recording& recording, AppController& controller, const ReplayShell& shell,
                     const ReplayOptions& options = {});
 
 }  // namespace stillpoint

@@ -43,10 +43,11 @@ void Workbench::draw_start_page(const LayoutRect& area) {
             "Drop a folder on this window. A folder in the TUM RGB-D layout gives everything; a folder of "
             "colour frames "
             "shows motion alone.");
-  paragraph(*frame_, icons::kPlay, "Press Space",
-            "Frames are processed in the background: what moves is masked, its features are removed, the "
-            "pose is estimated "
-            "from what stands still.");
+  paragraph(
+      *frame_, icons::kPlay, "Press Space",
+      "Frames are processed in the background: what is dynamic is masked, its features are removed, the "
+      "pose is estimated "
+      "from what is static.");
   paragraph(*frame_, icons::kSearch, "Look closer",
             "Step with the arrow keys, jump to lost frames with L, zoom into any picture with the wheel. "
             "Ctrl+Shift+P finds "

@@ -19,12 +19,12 @@ namespace {
 constexpr int kSmallerBy = 2;  // full-size pixels a side of a small pixel, in which points are followed
 constexpr int kFewestPairs = 40;
 constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
-constexpr float kExpectedNoise = 0.3F;  // px, small image: of a followed point
+constexpr float kExpectedNoise = 0.3F;  // px, downsampled image: of a followed point
 constexpr double kNowhere = 1e9;        // focal lengths behind infinity
 constexpr float kGreyNoise = 8.0F;      // grey levels, in a window that is followed
 constexpr float kEdge = 0.06F;          // smaller over larger eigenvalue, below which a point lies on an edge
-constexpr double kFar = 2.0;            // longest ways within which what looks like a mover is part of it
-constexpr int kAbout = 10;         // quarter-size px: what lies so near is what a mover is told apart from
+constexpr double kFar = 2.0;  // longest ways within which what looks like a dynamic object is part of it
+constexpr int kAbout = 10;  // quarter-size px: what lies so near is what a dynamic object is told apart from
 constexpr double kSure = 3.0;      // standard deviations beyond which places lie behind infinity
 constexpr double kPlainly = 4.0;   // so many times more must lie before the camera than behind infinity
 constexpr double kRestless = 1.5;  // the rate's own change, measured on few frames, is taken so much larger
@@ -63,8 +63,9 @@ double weighted_median(std::vector<std::pair<double, double>> value_and_weight) 
 
 /// Whether parallax plainly goes one way, so that where infinity lies is known. Before a plane, a turn of the
 /// camera mistaken for its going sideways looks like places behind infinity.
-bool lies_before_camera(const std::vector<BearingPair>& pairs, const CameraTurn& motion, double sigma) {
-  if (motion.turns_only) return false;
+bool lies_before_camera(const std::vector<BearingPair>& pairs, const RelativeOrientation& motion,
+                        double sigma) {
+  if (motion.rotation_only) return false;
   double before = 0.0, behind = 0.0;
   for (const BearingPair& pair : pairs) {
     if (std::abs(sampson_distance(motion, pair)) > kSure * sigma) continue;
@@ -102,10 +103,10 @@ cv::Mat disc(int radius) {
 }
 
 /// What points near by say moves, its gaps closed; and farther off, and at its outline, what looks like it.
-cv::Mat moving_pixels(const cv::Mat& image, const SpreadEvidence& spread, const EpipolarConfig& config) {
+cv::Mat moving_pixels(const cv::Mat& image, const PropagatedEvidence& spread, const EpipolarConfig& config) {
   const cv::Mat moving = spread.evidence > config.moving_evidence;
-  cv::Mat near = moving & (spread.way <= config.longest_way);
-  cv::Mat far = moving & (spread.way <= kFar * config.longest_way);
+  cv::Mat near = moving & (spread.way <= config.max_geodesic_distance);
+  cv::Mat far = moving & (spread.way <= kFar * config.max_geodesic_distance);
   cv::morphologyEx(near, near, cv::MORPH_OPEN, cv::Mat());
   cv::morphologyEx(far, far, cv::MORPH_OPEN, cv::Mat());
   if (config.close_px > 0) cv::morphologyEx(near, near, cv::MORPH_CLOSE, disc(config.close_px));
@@ -145,8 +146,8 @@ cv::Mat moving_regions(const cv::Mat& mask, const std::vector<PointTrack>& track
 ColourMotionDetector::ColourMotionDetector(const Camera& camera, const EpipolarConfig& config)
     : camera_(camera), config_(config) {}
 
-/// Points seen both now and `gap` frames ago, each with its share of the image and the trust that it stands
-/// still.
+/// Points seen both now and `gap` frames ago, each with its share of the image and the static_weight that it
+/// stands still.
 std::vector<BearingPair> ColourMotionDetector::pairs_with(int gap, bool level,
                                                           std::vector<int>& points) const {
   const std::vector<PointTrack>& tracks = tracks_.all();
@@ -167,14 +168,14 @@ std::vector<BearingPair> ColourMotionDetector::pairs_with(int gap, bool level,
   std::vector<BearingPair> pairs;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const float held = tracks[static_cast<std::size_t>(points[k])].evidence;
-    const double trust = 0.02 + 1.0 / (1.0 + std::exp(2.0 * held));
-    pairs.push_back({bearing(straight_now[k], small_), bearing(straight_then[k], small_), even[k] * trust,
-                     after_middle(small_, now[k].y)});
+    const double static_weight = 0.02 + 1.0 / (1.0 + std::exp(2.0 * held));
+    pairs.push_back({bearing(straight_now[k], small_), bearing(straight_then[k], small_),
+                     even[k] * static_weight, after_middle(small_, now[k].y)});
   }
   return pairs;
 }
 
-void ColourMotionDetector::measure_turn(double seconds) {
+void ColourMotionDetector::measure_rotation(double seconds) {
   std::vector<int> points;
   std::vector<BearingPair> pairs = pairs_with(1, false, points);
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
@@ -190,26 +191,26 @@ void ColourMotionDetector::judge(ColourReference& reference) {
     reference.points.clear();
     return;
   }
-  CameraTurnOptions options;
+  RelativeOrientationOptions options;
   options.sigma = kExpectedNoise / small_.fx;
   options.least_sigma = 1.2 * kLeastNoise / small_.fx;
   if (small_.readout_s != 0.0) options.rate_sigma = kRestless * rates_.sigma();
-  reference.motion = estimate_camera_turn(pairs, options);
+  reference.motion = estimate_relative_orientation(pairs, options);
   const bool sided = lies_before_camera(pairs, reference.motion, options.sigma);
   std::vector<std::pair<double, double>> noise;
   for (const BearingPair& pair : pairs) {
     double unsure = 0.0;
     (void)nearness(reference.motion, pair, unsure);
     const double tolerance = sided ? kSure * unsure : kNowhere;
-    const Eigen::Vector2d off = unexplained(reference.motion, pair, tolerance) * small_.fx;
+    const Eigen::Vector2d off = epipolar_residual(reference.motion, pair, tolerance) * small_.fx;
     const Eigen::Vector2d shift = parallax(reference.motion, pair) * small_.fx;
     reference.residuals.emplace_back(static_cast<float>(off.x()), static_cast<float>(off.y()));
     reference.shifts.emplace_back(static_cast<float>(-shift.x()), static_cast<float>(-shift.y()));
     noise.emplace_back(off.norm(), pair.weight);
   }
   const double to_sigma =
-      reference.motion.turns_only ? 1.0 / 1.1774 : 1.4826;  // of Rayleigh's and of half a
-                                                            // normal distribution's median
+      reference.motion.rotation_only ? 1.0 / 1.1774 : 1.4826;  // of Rayleigh's and of half a
+                                                               // normal distribution's median
   reference.sigma = std::clamp(to_sigma * weighted_median(noise), double{kLeastNoise}, double{kMostNoise});
   for (std::size_t k = 0; k < pairs.size(); ++k)
     reference.sigmas.push_back(in_sigmas(reference.residuals[k], reference.sigma, reference.gap,
@@ -221,12 +222,12 @@ void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& r
   std::vector<float> heard(tracks.size(), 0.0F), most(tracks.size(), -1.0F);
   std::vector<int> times(tracks.size(), 0);
   for (const ColourReference& reference : references) {
-    // Over less time than to the nearest reference, what moves may hardly have moved yet.
+    // Over less time than to the nearest reference, what is dynamic may hardly have moved yet.
     const double still = -0.5 * std::min(1.0, static_cast<double>(reference.gap) / config_.near_reference);
     for (std::size_t k = 0; k < reference.sigmas.size(); ++k) {
       const auto i = static_cast<std::size_t>(reference.points[k]);
       if (is_edge(tracks[i].gradients)) continue;
-      const double say = config_.evidence_a_sigma * (reference.sigmas[k] - config_.sigmas);
+      const double say = config_.evidence_per_sigma * (reference.sigmas[k] - config_.sigmas);
       const auto said = static_cast<float>(std::clamp(say, still, kMostSay));
       heard[i] += said;
       most[i] = std::max(most[i], said);
@@ -236,9 +237,9 @@ void ColourMotionDetector::gather_evidence(const std::vector<ColourReference>& r
   const auto limit = static_cast<float>(config_.max_evidence);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (times[i] == 0) continue;
-    // What stands still in one comparison may move in another, but one alone may be wrong.
+    // What is static in one comparison may move in another, but one alone may be wrong.
     const float now = 0.5F * (heard[i] / static_cast<float>(times[i]) + most[i]);
-    tracks[i].evidence = std::clamp(static_cast<float>(config_.memory) * tracks[i].evidence + now,
+    tracks[i].evidence = std::clamp(static_cast<float>(config_.prior_share) * tracks[i].evidence + now,
                                     -static_cast<float>(config_.max_static_evidence), limit);
   }
 }
@@ -262,7 +263,7 @@ void ColourMotionDetector::follow_points(const cv::Mat& image, std::optional<dou
   tracks_.advance(small, config_);
   ms.points = watch.lap();
   if (small_.readout_s != 0.0 && timestamp && timestamp_ && *timestamp > *timestamp_)
-    measure_turn(*timestamp - *timestamp_);
+    measure_rotation(*timestamp - *timestamp_);
   else
     rates_.clear();
   timestamp_ = timestamp;
@@ -291,9 +292,9 @@ void ColourMotionDetector::paint_mask(const cv::Mat& image, const std::vector<fl
   cv::Mat smaller;
   cv::resize(image, smaller, small_size() / 2, 0, 0, cv::INTER_AREA);
   cv::GaussianBlur(smaller, smaller, {3, 3}, 0);
-  const SpreadEvidence spread = spread_evidence(smaller, tracks_.all(), shared, config_);
+  const PropagatedEvidence spread = propagate_evidence(smaller, tracks_.all(), shared, config_);
   trace.evidence = spread.evidence.clone();
-  trace.evidence.setTo(0.0F, spread.way > config_.longest_way);
+  trace.evidence.setTo(0.0F, spread.way > config_.max_geodesic_distance);
   trace.ms.spread = watch.lap();
   const cv::Mat small_mask =
       moving_regions(moving_pixels(smaller, spread, config_), tracks_.all(), shared, config_);

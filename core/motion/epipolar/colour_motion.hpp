@@ -6,31 +6,34 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
-#include "core/motion/epipolar/camera_turn.hpp"
 #include "core/motion/epipolar/epipolar_config.hpp"
 #include "core/motion/epipolar/point_tracks.hpp"
+#include "core/motion/epipolar/relative_orientation.hpp"
 #include "core/motion/epipolar/shutter.hpp"
 #include "core/motion/regions.hpp"
 
 namespace stillpoint {
 
-// What moves, judged from colour alone: points are followed over some tenths of a second, the camera's own
-// motion is found from where they go, and what no place in a still room explains is held to move. A point may
-// shift along its epipolar line up to infinity, for that is what parallax does; beside the line, and beyond
-// infinity, only what moves can go. Rows that a rolling shutter took at other times are first carried to
-// where the middle one's time would show them. Evidence stays with its point from frame to frame, is shared
-// among neighbours that have moved alike all along, and spreads to the image up to colour's edges.
+// What is dynamic, judged from colour alone: points are followed over some tenths of a second, the camera's
+// own motion is found from where they go, and what no place in a still room explains is classified as
+// dynamic. A point may shift along its epipolar line up to infinity, for that is what parallax does; beside
+// the line, and beyond infinity, only what is dynamic can go. Rows that a rolling shutter took at other times
+// are first carried to where the middle one's time would show them. Evidence stays with its point from frame
+// to frame, is shared among neighbours that have moved alike all along, and spreads to the image up to
+// colour's edges.
 
 /// Comparison of the current frame with one some frames back.
 struct ColourReference {
-  int gap = 0;                      ///< frames back
-  CameraTurn motion;                ///< the camera's, and whether it only turned
-  std::vector<int> points;          ///< indices into EpipolarTrace::points, those seen in both
-  std::vector<cv::Point2f> shifts;  ///< px, small image, of each of `points` since then beside its rotation
-  std::vector<cv::Point2f> residuals;  ///< px, small image: what the camera's motion leaves unexplained
-  std::vector<float> sigmas;           ///< the same by its own noise, standard deviations
-  double sigma = 0.0;                  ///< px, small image: noise of the residuals of what stands still
-  double ms = 0.0;                     ///< wall time of the comparison; for reading only
+  int gap = 0;                 ///< frames back
+  RelativeOrientation motion;  ///< the camera's, and whether it only turned
+  std::vector<int> points;     ///< indices into EpipolarTrace::points, those seen in both
+  std::vector<cv::Point2f>
+      shifts;  ///< px, downsampled image, of each of `points` since then beside its rotation
+  std::vector<cv::Point2f>
+      residuals;              ///< px, downsampled image: what the camera's motion leaves epipolar_residual
+  std::vector<float> sigmas;  ///< the same by its own noise, standard deviations
+  double sigma = 0.0;         ///< px, downsampled image: noise of the residuals of what is static
+  double ms = 0.0;            ///< wall time of the comparison; for reading only
 };
 
 /// A followed point and what is held of it.
@@ -38,7 +41,7 @@ struct ColourPoint {
   cv::Point2f at;         ///< px, full size
   int age = 0;            ///< frames it has been followed
   float evidence = 0.0F;  ///< of moving: its own, accumulated
-  float shared = 0.0F;    ///< after listening to neighbours that move alike
+  float shared = 0.0F;    ///< after smoothing with neighbours that move alike
 };
 
 /// What each step took, ms of wall time. For reading only: no result depends on it.
@@ -80,15 +83,15 @@ class ColourMotionDetector {
   [[nodiscard]] std::vector<ColourReference> compare();
   void paint_mask(const cv::Mat& image, const std::vector<float>& shared, EpipolarTrace& trace) const;
   [[nodiscard]] std::vector<BearingPair> pairs_with(int gap, bool level, std::vector<int>& points) const;
-  void measure_turn(double seconds);
+  void measure_rotation(double seconds);
   void judge(ColourReference& reference);
   void gather_evidence(const std::vector<ColourReference>& references);
 
   Camera camera_;  ///< as given
-  Camera small_;   ///< of the small image
+  Camera small_;   ///< of the downsampled image
   EpipolarConfig config_;
   PointTracks tracks_;
-  TurnRates rates_;
+  AngularVelocities rates_;
   std::optional<double> timestamp_;  ///< of the last frame
   cv::Size size_;
 };

@@ -4,8 +4,8 @@
 
 namespace stillpoint {
 
-/// Method `epipolar`: what moves where there is colour alone. Small pixels are two full-size ones a side.
-/// Meanings, units and ranges: EpipolarConfig::list.
+/// Method `epipolar`: what is dynamic where there is colour alone. Small pixels are two full-size ones a
+/// side. Meanings, units and ranges: EpipolarConfig::list.
 struct EpipolarConfig {
   static constexpr const char* kSection = "epipolar";
   EpipolarConfig() { set_defaults(*this); }
@@ -18,17 +18,17 @@ struct EpipolarConfig {
   int near_reference;
   int far_reference;
   double sigmas;
-  double evidence_a_sigma;
-  double memory;
+  double evidence_per_sigma;
+  double prior_share;
   double max_evidence;
   double max_static_evidence;
   int close_px;
   int shave_px;
   int min_age;
   double same_motion_px;
-  double sharing;
-  double colour_price;
-  double longest_way;
+  double smoothing;
+  double colour_cost;
+  double max_geodesic_distance;
   double moving_evidence;
   double min_area_share;
   int min_points;

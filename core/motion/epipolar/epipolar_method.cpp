@@ -1,5 +1,5 @@
-// Method `epipolar`: what moves, from colour alone. Points are followed; what lies off the epipolar lines of
-// the camera's own motion, or behind infinity, is dynamic.
+// Method `epipolar`: what is dynamic, from colour alone. Points are followed; what lies off the epipolar
+// lines of the camera's own motion, or behind infinity, is dynamic.
 #include "core/motion/epipolar/epipolar_stages.hpp"
 #include "core/motion/methods.hpp"
 

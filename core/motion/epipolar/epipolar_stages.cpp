@@ -64,7 +64,7 @@ class EpipolarStages {
     return marked(name, frame_, std::move(marks));
   }
 
-  /// Each point's way against one reference, several times as long. @param ways px of the small image
+  /// Each point's way against one reference, several times as long. @param ways px of the downsampled image
   [[nodiscard]] Layer ways_layer(const char* name, const ColourReference& reference,
                                  const std::vector<cv::Point2f>& ways, float longer) const {
     std::vector<Mark> marks;
@@ -108,7 +108,7 @@ class EpipolarStages {
         .figure("Points it explains", 100.0 * reference.motion.explained, "%", 1)
         .figure("Points seen in both", static_cast<double>(reference.points.size()));
     const Eigen::Vector3d& way = reference.motion.direction;
-    turn.note = reference.motion.turns_only
+    turn.note = reference.motion.rotation_only
                     ? "The camera only turned: there is no parallax."
                     : fmt::format("The camera went elsewhere too, along ({:.2f}, {:.2f}, {:.2f}).", way.x(),
                                   way.y(), way.z());

@@ -10,8 +10,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMargin = 4;          // px, small image: closer to the border windows have no data
-constexpr int kLevels = 2;          // pyramid levels above the small image
+constexpr int kMargin = 4;          // px, downsampled image: closer to the border windows have no data
+constexpr int kLevels = 2;          // pyramid levels above the downsampled image
 constexpr int kBackLevels = 1;      // … on the way back, which starts where it should end
 constexpr float kMaxReturn = 0.5F;  // px: forth and back must end where it began
 

@@ -9,9 +9,10 @@ namespace stillpoint {
 
 /// A point followed over several frames.
 struct PointTrack {
-  std::vector<cv::Point2f> path;  ///< px of the small image, newest last; at most far_reference + 1 of them
-  int age = 0;                    ///< frames followed, also beyond `path`
-  float evidence = 0.0F;          ///< of moving
+  std::vector<cv::Point2f>
+      path;               ///< px of the downsampled image, newest last; at most far_reference + 1 of them
+  int age = 0;            ///< frames followed, also beyond `path`
+  float evidence = 0.0F;  ///< of moving
   cv::Matx22f gradients;  ///< summed products of the grey-level gradient about it, (grey levels / px)^2
 
   /// Where it was `gap` frames ago, or null.

@@ -65,7 +65,7 @@ std::vector<std::vector<Link>> link_neighbours(const std::vector<PointTrack>& tr
 }
 
 /// What a point's own evidence counts against its neighbours'. One that is new has nothing of its own to say.
-/// Off its line, a point has moved for sure; on it, it may move as well, and has been seen to stand still
+/// Off its line, a point has moved for sure; on it, it may move as well, and has been seen to are static
 /// only after some time.
 float own_weight(const PointTrack& track, const EpipolarConfig& config) {
   if (track.age < config.min_age) return 1e-3F;
@@ -74,7 +74,7 @@ float own_weight(const PointTrack& track, const EpipolarConfig& config) {
 }
 
 /// From a moving point towards the side on which others move: a window that sees an outline moves with what
-/// lies before, but its middle may lie beside it. None within what moves; up to a cell at its outline.
+/// lies before, but its middle may lie beside it. None within what is dynamic; up to a cell at its outline.
 cv::Point2f inward(const std::vector<PointTrack>& tracks, const std::vector<float>& shared, std::size_t point,
                    const EpipolarConfig& config) {
   const auto unit = static_cast<float>(config.cell_px);
@@ -99,7 +99,7 @@ std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Siz
   const std::vector<std::vector<Link>> links = link_neighbours(tracks, small, config);
   std::vector<float> shared;
   for (const PointTrack& track : tracks) shared.push_back(track.evidence);
-  const auto sharing = static_cast<float>(config.sharing);
+  const auto sharing = static_cast<float>(config.smoothing);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       const float own = own_weight(tracks[i], config);
@@ -113,8 +113,8 @@ std::vector<float> share_evidence(const std::vector<PointTrack>& tracks, cv::Siz
   return shared;
 }
 
-SpreadEvidence spread_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
-                               const std::vector<float>& shared, const EpipolarConfig& config) {
+PropagatedEvidence propagate_evidence(const cv::Mat& image, const std::vector<PointTrack>& tracks,
+                                      const std::vector<float>& shared, const EpipolarConfig& config) {
   const int rows = image.rows, cols = image.cols, channels = image.channels();
   cv::Mat way(rows, cols, CV_32FC1, cv::Scalar(1e6)), value = cv::Mat::zeros(rows, cols, CV_32FC1);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -126,7 +126,7 @@ SpreadEvidence spread_evidence(const cv::Mat& image, const std::vector<PointTrac
     way.at<float>(y, x) = 0.0F;
     value.at<float>(y, x) = shared[i];
   }
-  const auto price = static_cast<float>(config.colour_price);
+  const auto price = static_cast<float>(config.colour_cost);
   const auto reach_from = [&](int y, int x, int v, int u, float length) {
     if (v < 0 || u < 0 || v >= rows || u >= cols) return;
     const std::uint8_t *here = image.ptr(y) + x * channels, *there = image.ptr(v) + u * channels;

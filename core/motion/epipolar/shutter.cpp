@@ -6,12 +6,12 @@
 
 namespace stillpoint {
 
-void TurnRates::add(const Eigen::Vector3d& turn, double seconds, int most) {
+void AngularVelocities::add(const Eigen::Vector3d& turn, double seconds, int most) {
   if (static_cast<int>(turns_.size()) > most) turns_.erase(turns_.begin());
   turns_.push_back({-turn / seconds, seconds});
 }
 
-Eigen::Vector3d TurnRates::at(int back) const {
+Eigen::Vector3d AngularVelocities::at(int back) const {
   const int count = static_cast<int>(turns_.size());
   if (count == 0) return Eigen::Vector3d::Zero();
   const int after = std::clamp(count - back, std::min(1, count - 1), count - 1);
@@ -26,7 +26,7 @@ Eigen::Vector3d TurnRates::at(int back) const {
   return a.rate + share * (b.rate - a.rate);
 }
 
-double TurnRates::sigma() const {
+double AngularVelocities::sigma() const {
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   double sum = 0.0;
   int changes = 0;

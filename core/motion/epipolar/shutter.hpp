@@ -11,7 +11,7 @@ namespace stillpoint {
 /// How fast the camera turned when each of the last frames was taken, from how far it turned between them.
 /// A rolling shutter bends a frame by it from top to bottom, and between two frames taken at different rates
 /// the picture shears as no camera's motion could make it.
-class TurnRates {
+class AngularVelocities {
  public:
   /// A frame more. @param turn since the last one: log(before_from_now), rad @param seconds since then, > 0
   /// @param most frames that `at` is asked to look back

@@ -63,7 +63,7 @@ CompensatedFrame compensate(const cv::Mat& source, const cv::Matx33d& homography
   return frame;
 }
 
-cv::Mat carry_mask(const cv::Mat& mask, const cv::Matx33d& homography) {
+cv::Mat warp_mask(const cv::Mat& mask, const cv::Matx33d& homography) {
   cv::Mat carried = cv::Mat::zeros(mask.size(), CV_8UC1);
   const cv::Rect moving = cv::boundingRect(mask);
   if (moving.empty()) return carried;

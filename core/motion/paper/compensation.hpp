@@ -20,6 +20,6 @@ struct CompensatedFrame {
 [[nodiscard]] cv::Mat valid_area(const cv::Size& size, const cv::Matx33d& homography, int border_px);
 
 /// A mask carried by H into another camera: nearest pixel, 0 where there is no data.
-[[nodiscard]] cv::Mat carry_mask(const cv::Mat& mask, const cv::Matx33d& homography);
+[[nodiscard]] cv::Mat warp_mask(const cv::Mat& mask, const cv::Matx33d& homography);
 
 }  // namespace stillpoint

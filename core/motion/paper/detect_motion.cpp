@@ -17,7 +17,7 @@
 namespace stillpoint {
 namespace {
 
-/// A mask of more than this share of the frame says more about the homography than about what moves.
+/// A mask of more than this share of the frame says more about the homography than about what is dynamic.
 constexpr double kDoubtfulShare = 0.5;
 
 /// Runs two independent steps, beside each other when there are threads for it.
@@ -82,7 +82,7 @@ void unite_directions(MotionRound& round) {
   if (!backward.mask.empty()) {
     const cv::Matx33d target_from_reference =
         forward.mask.empty() ? backward.homography.matrix.inv() : forward.homography.matrix;
-    round.backward_mask_in_target = carry_mask(backward.mask, target_from_reference);
+    round.backward_mask_in_target = warp_mask(backward.mask, target_from_reference);
     if (!forward.valid.empty())
       cv::bitwise_and(round.backward_mask_in_target, forward.valid, round.backward_mask_in_target);
   }

@@ -8,7 +8,7 @@
 
 namespace stillpoint {
 
-/// METHOD.md §1 (Niu & Li 2019, section 1): what moves between two grey frames of one size.
+/// METHOD.md §1 (Niu & Li 2019, section 1): what is dynamic between two grey frames of one size.
 ///
 /// A pure function of its arguments: same frames and configuration, same bytes, whatever `threads` is.
 /// @param reference,target CV_8UC1 of one size

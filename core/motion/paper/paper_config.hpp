@@ -4,7 +4,7 @@
 
 namespace stillpoint {
 
-/// METHOD.md §1: what moves between two frames. Meanings, units and ranges: PaperConfig::list.
+/// METHOD.md §1: what is dynamic between two frames. Meanings, units and ranges: PaperConfig::list.
 struct PaperConfig {
   static constexpr const char* kSection = "paper";
   PaperConfig() { set_defaults(*this); }

@@ -67,7 +67,7 @@ struct PaperTrace {
   std::string note;        ///< why there is no mask, or why it is to be doubted; empty when all is well
   double tracks_ms = 0.0;  ///< wall time of following the corners, both directions
 
-  /// The mask of what moves in the target, CV_8UC1; empty when there is none.
+  /// The mask of what is dynamic in the target, CV_8UC1; empty when there is none.
   [[nodiscard]] cv::Mat mask() const { return rounds.empty() ? cv::Mat() : rounds.back().mask; }
 };
 

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/median.hpp"
-#include "core/motion/stillpoint/carrier.hpp"
+#include "core/motion/stillpoint/depth_warp.hpp"
 
 namespace stillpoint {
 namespace {
@@ -19,8 +19,8 @@ constexpr float kSeenThrough = 1.2F;  // free space where the surface is now
 constexpr float kStepsBack = 0.5F;    // a surface nearer by little: most likely the same one, moving off
 constexpr float kSteppedBack = 0.1F;  // … less likely the same one, the longer ago
 constexpr float kOtherBrightness = 0.6F;
-constexpr float kSameDepth = -0.25F;     // weak: the middle of a mover agrees with itself
-constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same does stand still
+constexpr float kSameDepth = -0.25F;     // weak: the middle of a dynamic object agrees with itself
+constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same is static
 constexpr float kStepBackLimit = 0.15F;  // m: a surface farther off than this was another one
 
 /// Of the nine measurements about a pixel, the one nearest to what is expected; 0 when there is none. Edges
@@ -44,7 +44,7 @@ struct Expected {
   const float* depth;  // m, there
   const float* here;   // m, as measured in the current view
   const float* slope;  // m a pixel, of its surface
-  float off = 0.0F;    // px, misplacement()
+  float off = 0.0F;    // px, registration_error()
 };
 
 /// Measured less expected depth, in standard deviations of both and of where on a slanted surface the pixel
@@ -72,34 +72,34 @@ void depth_residuals(const float* measured, const Expected& expected, int width,
 }
 
 /// By how much of a pixel slanted surfaces lie beside where they are expected: the pose is not exact, depth
-/// and colour are of different moments, and rows are read one after the other. Of what is not remembered to
-/// move; a median, so that other movers do not count.
-float misplacement(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
-                   const StillpointConfig& config) {
+/// and colour are of different moments, and rows are read one after the other. Of what is not in the prior to
+/// move; a median, so that other dynamic objects do not count.
+float registration_error(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
+                         const StillpointConfig& config) {
   constexpr int kEvery = 4;  // rows
   constexpr std::size_t kFewest = 100;
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
-  Carrier carried(current.camera, reference.reference_from_current);
+  DepthWarp warped(current.camera, reference.reference_from_current);
   const auto* then = reference.view->depth.ptr<float>();
   std::vector<float> squares;  // px²
   for (int y = kEvery / 2; y < current.depth.rows; y += kEvery) {
     const auto *depth = current.depth.ptr<float>(y), *slope = current.depth_slope.ptr<float>(y),
-               *remembered = prior.ptr<float>(y);
-    carried.carry_row(y, depth);
+               *known = prior.ptr<float>(y);
+    warped.warp_row(y, depth);
     for (int x = 0; x < current.depth.cols; ++x) {
-      if (!carried.inside(x) || remembered[x] > static_cast<float>(config.moving_log_odds)) continue;
-      const float measured = carried.at(then, x);
+      if (!warped.inside(x) || known[x] > static_cast<float>(config.moving_log_odds)) continue;
+      const float measured = warped.at(then, x);
       if (measured <= 0) continue;
       const float a = depth_sigma(depth[x]), b = depth_sigma(measured), noise = a * a + b * b;
-      const float step = measured - carried.z(x), steep = slope[x] * slope[x];
+      const float step = measured - warped.z(x), steep = slope[x] * slope[x];
       if (steep < noise || std::abs(step) > kStepBackLimit) continue;
       squares.push_back((step * step / kMedianOfSquare - noise) / steep);
     }
   }
   if (squares.size() < kFewest) return 0.0F;
   return std::clamp(std::sqrt(std::max(0.0F, median_of(squares))) - kRounding, 0.0F,
-                    static_cast<float>(config.max_misplacement_px));
+                    static_cast<float>(config.max_registration_error_px));
 }
 
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
@@ -109,26 +109,26 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
   evidence.depth_residual = cv::Mat(size, CV_32FC1);
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
   cv::Mat brightness(size, CV_32FC1, cv::Scalar(kUnknown));
-  Carrier carried(current.camera, reference.reference_from_current);
+  DepthWarp warped(current.camera, reference.reference_from_current);
   const auto limit = static_cast<float>(config.depth_sigmas);
   const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
   const auto* depth_then = then.ptr<float>();
-  std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is carried to
+  std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is warped to
   for (int y = 0; y < size.height; ++y) {
     const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
     auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
          *differences = brightness.ptr<float>(y);
-    carried.carry_row(y, depth);
-    const Expected there{carried.expected_depth(), depth, current.depth_slope.ptr<float>(y),
-                         static_cast<float>(evidence.misplacement_px)};
+    warped.warp_row(y, depth);
+    const Expected there{warped.expected_depth(), depth, current.depth_slope.ptr<float>(y),
+                         static_cast<float>(evidence.registration_error_px)};
     for (int x = 0; x < size.width; ++x)
-      measured[static_cast<std::size_t>(x)] = carried.inside(x) ? carried.at(depth_then, x) : 0.0F;
+      measured[static_cast<std::size_t>(x)] = warped.inside(x) ? warped.at(depth_then, x) : 0.0F;
     depth_residuals(measured.data(), there, size.width, residuals);
     for (int x = 0; x < size.width; ++x) {
-      if (!carried.inside(x)) continue;
+      if (!warped.inside(x)) continue;
       // Only what does not fit at its own pixel is sought beside it.
       if (!(std::abs(residuals[x]) <= limit)) {
-        const float expected = carried.z(x), beside = nearest_depth(then, carried.nearest(x), expected);
+        const float expected = warped.z(x), beside = nearest_depth(then, warped.nearest(x), expected);
         residuals[x] = depth_residual(beside, there, x);
         if (beside <= 0) continue;
         if (residuals[x] > limit) {
@@ -141,7 +141,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
         }
       }
       log_odds[x] = kSameDepth;
-      differences[x] = gray[x] - bilinear(gray_then, carried.u(x), carried.v(x));
+      differences[x] = gray[x] - bilinear(gray_then, warped.u(x), warped.v(x));
     }
   }
   return brightness;
@@ -152,7 +152,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
 ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
                                          const cv::Mat& prior, const StillpointConfig& config) {
   ReferenceEvidence evidence;
-  evidence.misplacement_px = static_cast<double>(misplacement(current, reference, prior, config));
+  evidence.registration_error_px = static_cast<double>(registration_error(current, reference, prior, config));
   const cv::Mat brightness = compare_depth(current, reference, config, evidence);
   if (!config.use_depth) evidence.log_odds.setTo(0.0F);
 
@@ -189,47 +189,48 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   return evidence;
 }
 
-CarriedMemory carry_memory(const RgbdView& current, const MotionMemory& memory,
-                           const Pose& previous_from_current, const StillpointConfig& config) {
-  constexpr int kReach = 3;            // small px a mover may have gone in a frame
+WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const Pose& previous_from_current,
+                       const StillpointConfig& config) {
+  constexpr int kReach = 3;            // downsampled px a dynamic object may have gone in a frame
   constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
   constexpr float kDepthShare = 0.02F;
-  constexpr float kArrived = 1.5F;  // log-odds that a mover's step carries at most
+  constexpr float kArrived = 1.5F;  // log-odds that a dynamic object's step warps at most
   const cv::Size size = current.depth.size();
-  CarriedMemory result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
+  WarpedPrior result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
   cv::Mat& prior = result.log_odds;
-  cv::Mat most_near;  // of what is remembered within reach: mostly nothing, and then nothing need be sought
+  cv::Mat most_near;  // the prior within reach: mostly nothing, and then nothing need be sought
   const int side = 2 * kReach + 1;
-  cv::dilate(memory.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
-  Carrier carried(current.camera, previous_from_current);
-  const auto keep = static_cast<float>(config.memory), firm = static_cast<float>(config.firm_log_odds);
-  const cv::Mat& depth_then = memory.view->depth;
-  const auto *there = depth_then.ptr<float>(), *known = memory.log_odds.ptr<float>(),
+  cv::dilate(before.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+  DepthWarp warped(current.camera, previous_from_current);
+  const auto keep = static_cast<float>(config.prior_share),
+             firm = static_cast<float>(config.confident_log_odds);
+  const cv::Mat& depth_then = before.view->depth;
+  const auto *there = depth_then.ptr<float>(), *known = before.log_odds.ptr<float>(),
              *about = most_near.ptr<float>();
   for (int y = 0; y < prior.rows; ++y) {
     const auto* depth = current.depth.ptr<float>(y);
     auto* out = prior.ptr<float>(y);
-    auto* entered = result.entered.ptr<uchar>(y);
-    carried.carry_row(y, depth);
+    auto* newly_observed = result.newly_observed.ptr<uchar>(y);
+    warped.warp_row(y, depth);
     for (int x = 0; x < prior.cols; ++x) {
-      if (!carried.inside(x)) {
-        if (depth[x] > 0) entered[x] = 255;
+      if (!warped.inside(x)) {
+        if (depth[x] > 0) newly_observed[x] = 255;
         continue;
       }
-      const float expected = carried.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
-      if (std::abs(carried.at(there, x) - expected) < tolerance) {
-        const float odds = carried.at(known, x);
+      const float expected = warped.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
+      if (std::abs(warped.at(there, x) - expected) < tolerance) {
+        const float odds = warped.at(known, x);
         out[x] = odds > firm ? odds : keep * odds;
         continue;
       }
-      if (carried.at(about, x) <= 0) continue;
+      if (warped.at(about, x) <= 0) continue;
       // A surface that was not here before came from beside, most likely: it is taken to move if what is
-      // there does, but not firmly.
-      const cv::Point at = carried.nearest(x);
+      // there does, but not confidently.
+      const cv::Point at = warped.nearest(x);
       float odds = 0.0F;
       for (int py = std::max(0, at.y - kReach); py <= std::min(prior.rows - 1, at.y + kReach); ++py)
         for (int px = std::max(0, at.x - kReach); px <= std::min(prior.cols - 1, at.x + kReach); ++px) {
-          const float near = memory.log_odds.ptr<float>(py)[px];
+          const float near = before.log_odds.ptr<float>(py)[px];
           if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < 0.5F * tolerance)
             odds = near;
         }

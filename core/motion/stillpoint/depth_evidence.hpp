@@ -6,22 +6,22 @@ namespace stillpoint {
 
 // The per-pixel part of detect_depth_motion; see there.
 
-/// Carries every pixel of `current` into the reference and compares depth, then brightness.
-/// @param prior CV_32FC1, log-odds remembered of each pixel: how exact the comparison can be is judged by
-/// what is not held to move
+/// Warps every pixel of `current` into the reference and compares depth, then brightness.
+/// @param prior CV_32FC1, prior log-odds of each pixel: how exact the comparison can be is judged by
+/// what is not classified as dynamic
 [[nodiscard]] ReferenceEvidence compare_with_reference(const RgbdView& current,
                                                        const ReferenceView& reference, const cv::Mat& prior,
                                                        const StillpointConfig& config);
 
-/// What is remembered, at a later frame's pixels.
-struct CarriedMemory {
-  cv::Mat log_odds;  ///< CV_32FC1, of moving; 0 = nothing is known
-  cv::Mat entered;   ///< CV_8UC1, 255: measured now, and outside the view of the frame before
+/// The prior, at a later frame's pixels.
+struct WarpedPrior {
+  cv::Mat log_odds;        ///< CV_32FC1, of moving; 0 = nothing is known
+  cv::Mat newly_observed;  ///< CV_8UC1, 255: measured now, and outside the view of the frame before
 };
 
 /// The log-odds of the frame before, brought to where they belong now: by the camera's motion for what stands
-/// still, and within reach of a mover's step for what does not, onto pixels at a like depth.
-[[nodiscard]] CarriedMemory carry_memory(const RgbdView& current, const MotionMemory& memory,
-                                         const Pose& previous_from_current, const StillpointConfig& config);
+/// still, and within reach of a dynamic object's step for what does not, onto pixels at a like depth.
+[[nodiscard]] WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before,
+                                     const Pose& previous_from_current, const StillpointConfig& config);
 
 }  // namespace stillpoint

@@ -9,46 +9,47 @@
 
 #include "core/image_memory.hpp"
 #include "core/motion/stillpoint/depth_evidence.hpp"
-#include "core/motion/stillpoint/entering.hpp"
-#include "core/motion/stillpoint/patch_motion.hpp"
-#include "core/motion/stillpoint/segments.hpp"
+#include "core/motion/stillpoint/label_propagation.hpp"
+#include "core/motion/stillpoint/superpixel_motion.hpp"
+#include "core/motion/stillpoint/superpixels.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr float kMostStill = 0.8F, kMostMoved = 1.6F;  // log-odds a patch's shift may give in one frame
+constexpr float kMostStill = 0.8F, kMostMoved = 1.6F;  // log-odds a superpixel's shift may give in one frame
 constexpr float kDoubt = 1.0F;                         // log-odds: registration has outliers of its own
-constexpr int kHole = 4;                               // small px: half of what a mover may have unmeasured
-constexpr float kStillLimit = 4.0F;                    // of log-odds: so that a change of mind stays possible
+constexpr int kHole = 4;             // downsampled px: half of what a dynamic object may have unmeasured
+constexpr float kStillLimit = 4.0F;  // of log-odds: so that a change of mind stays possible
 
-/// One value for each pixel, by its patch; `none` where it lies in no patch.
+/// One value for each pixel, by its superpixel; `none` where it lies in no superpixel.
 template <typename T>
-cv::Mat paint_patches(const cv::Mat& labels, const std::vector<T>& of_patch, T none) {
+cv::Mat paint_superpixels(const cv::Mat& labels, const std::vector<T>& of_superpixel, T none) {
   cv::Mat image(labels.size(), cv::DataType<T>::type);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     auto* out = image.ptr<T>(y);
     for (int x = 0; x < labels.cols; ++x)
-      out[x] = label[x] >= 0 ? of_patch[static_cast<std::size_t>(label[x])] : none;
+      out[x] = label[x] >= 0 ? of_superpixel[static_cast<std::size_t>(label[x])] : none;
   }
   return image;
 }
 
-/// The pixels of moving patches.
-cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Segment>& segments) {
-  std::vector<uchar> of_patch;
-  of_patch.reserve(segments.size());
-  for (const Segment& segment : segments) of_patch.push_back(segment.moving ? 255 : 0);
-  return paint_patches<uchar>(labels, of_patch, 0);
+/// The pixels of moving superpixels.
+cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Superpixel>& superpixels) {
+  std::vector<uchar> of_superpixel;
+  of_superpixel.reserve(superpixels.size());
+  for (const Superpixel& superpixel : superpixels) of_superpixel.push_back(superpixel.moving ? 255 : 0);
+  return paint_superpixels<uchar>(labels, of_superpixel, 0);
 }
 
-/// Adds what one reference says of each pixel. Where its patch was measured as a whole, that it looks the
-/// same says nothing more: a slow mover's pixels hardly change.
+/// Adds what one reference says of each pixel. Where its superpixel was measured as a whole, that it looks
+/// the same says nothing more: a slow dynamic object's pixels hardly change.
 void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
   std::vector<std::uint8_t> measured_whole;
-  measured_whole.reserve(reference.patches.size());
-  for (const PatchMotion& patch : reference.patches) measured_whole.push_back(patch.log_odds != 0.0F);
+  measured_whole.reserve(reference.motions.size());
+  for (const SuperpixelMotion& superpixel : reference.motions)
+    measured_whole.push_back(superpixel.log_odds != 0.0F);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* says = reference.log_odds.ptr<float>(y);
@@ -61,24 +62,26 @@ void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::M
   }
 }
 
-/// What patches say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each says
-/// only a part of it.
-cv::Mat evidence_of_patches(const StillpointTrace& trace, const StillpointConfig& config) {
-  std::vector<float> of_patch(trace.segments.size(), 0.0F);
+/// What superpixels say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each
+/// says only a part of it.
+cv::Mat evidence_of_superpixels(const StillpointTrace& trace, const StillpointConfig& config) {
+  std::vector<float> of_superpixel(trace.superpixels.size(), 0.0F);
   for (const ReferenceEvidence& reference : trace.references)
-    for (std::size_t i = 0; i < reference.patches.size(); ++i) {
-      if (reference.patches[i].log_odds == 0.0F) continue;
-      of_patch[i] +=
-          std::clamp(static_cast<float>(config.patch_share) * (reference.patches[i].log_odds - kDoubt),
+    for (std::size_t i = 0; i < reference.motions.size(); ++i) {
+      if (reference.motions[i].log_odds == 0.0F) continue;
+      of_superpixel[i] +=
+          std::clamp(static_cast<float>(config.superpixel_share) * (reference.motions[i].log_odds - kDoubt),
                      -kMostStill, kMostMoved);
     }
-  return paint_patches(trace.labels, of_patch, 0.0F);
+  return paint_superpixels(trace.labels, of_superpixel, 0.0F);
 }
 
-/// Memory and evidence together. What is firmly known to move is let go but slowly: people who stop go on.
-cv::Mat with_memory(const cv::Mat& prior, const cv::Mat& evidence, const StillpointConfig& config) {
-  const auto limit = static_cast<float>(config.max_log_odds), firm = static_cast<float>(config.firm_log_odds),
-             release = static_cast<float>(config.release);
+/// Memory and evidence together. What is confidently known to be dynamic is let go but slowly: people who
+/// stop go on.
+cv::Mat with_prior(const cv::Mat& prior, const cv::Mat& evidence, const StillpointConfig& config) {
+  const auto limit = static_cast<float>(config.max_log_odds),
+             firm = static_cast<float>(config.confident_log_odds),
+             release = static_cast<float>(config.hysteresis);
   cv::Mat odds(prior.size(), CV_32FC1);
   for (int y = 0; y < odds.rows; ++y) {
     const auto *before = prior.ptr<float>(y), *says = evidence.ptr<float>(y);
@@ -103,9 +106,9 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
       if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
 }
 
-/// Whether a pixel without depth lies in a mover: whether the nearest measured pixels to all four sides do.
-/// The image's end says nothing against it. A gap between a mover and what stands behind it, the sensor's
-/// shadow, is open to one side.
+/// Whether a pixel without depth lies in a dynamic object: whether the nearest measured pixels to all four
+/// sides do. The image's end says nothing against it. A gap between a dynamic object and what stands behind
+/// it, the sensor's shadow, is open to one side.
 bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
   constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   const cv::Rect image({0, 0}, mask.size());
@@ -119,20 +122,20 @@ bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y,
   });
 }
 
-/// Gives pixels without depth to the mover that encloses them: hair and dark cloth are seldom measured. The
-/// sensor's shadow beside a mover is background, and stays out.
+/// Gives pixels without depth to the dynamic object that encloses them: hair and dark cloth are seldom
+/// measured. The sensor's shadow beside a dynamic object is background, and stays out.
 void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
-  const cv::Rect movers = cv::boundingRect(mask);
+  const cv::Rect dynamic = cv::boundingRect(mask);
   std::vector<cv::Point> inside;
-  for (int y = movers.y; y < movers.br().y; ++y)
-    for (int x = movers.x; x < movers.br().x; ++x)
+  for (int y = dynamic.y; y < dynamic.br().y; ++y)
+    for (int x = dynamic.x; x < dynamic.br().x; ++x)
       if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
         inside.emplace_back(x, y);
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
 }
 
-/// The measured ones of the 3x3 small pixels about one: by whether they move, full-size pixels there are
-/// judged.
+/// The measured ones of the 3x3 downsampled pixels about one: by whether they move, full-size pixels there
+/// are judged.
 class Neighbourhood {
  public:
   Neighbourhood(const cv::Mat& small_mask, const cv::Mat& small_depth, int sx, int sy) {
@@ -206,8 +209,8 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   return mask;
 }
 
-/// What a patch was found to be is what its pixels are remembered as; but neighbours alone make nothing
-/// firm, or memory would creep along every surface a mover touches.
+/// What a superpixel was found to be becomes its pixels' prior; but neighbours alone make
+/// nothing confident, or the prior would creep along every surface a dynamic object touches.
 void remember_judgement(StillpointTrace& trace, const StillpointConfig& config) {
   const auto limit = static_cast<float>(config.moving_log_odds);
   for (int y = 0; y < trace.labels.rows; ++y) {
@@ -215,26 +218,26 @@ void remember_judgement(StillpointTrace& trace, const StillpointConfig& config) 
     auto* log_odds = trace.log_odds.ptr<float>(y);
     for (int x = 0; x < trace.labels.cols; ++x) {
       if (label[x] < 0) continue;
-      const Segment& segment = trace.segments[static_cast<std::size_t>(label[x])];
+      const Superpixel& superpixel = trace.superpixels[static_cast<std::size_t>(label[x])];
       const float odds = log_odds[x];
-      const bool agrees = segment.moving && odds > segment.log_odds;
-      const float joined = agrees ? odds : 0.5F * (odds + segment.log_odds);
-      log_odds[x] = std::min(joined, std::max({odds, segment.evidence, limit}));
+      const bool agrees = superpixel.moving && odds > superpixel.log_odds;
+      const float joined = agrees ? odds : 0.5F * (odds + superpixel.log_odds);
+      log_odds[x] = std::min(joined, std::max({odds, superpixel.evidence, limit}));
     }
   }
 }
 
-/// What one reference says, told by the patches' labels and what is remembered.
+/// What one reference says, given the superpixels' labels and the prior.
 ReferenceEvidence evidence_of_reference(const RgbdView& current, ReferenceView reference,
                                         const StillpointTrace& trace, const StillpointConfig& config) {
   const Stopwatch watch;
-  PatchMotions measured;
+  SuperpixelMotions measured;
   if (reference.old) {
-    measured = measure_patches(current, reference, trace.labels, trace.segments, trace.prior, config);
+    measured = measure_superpixels(current, reference, trace.labels, trace.superpixels, trace.prior, config);
     reference.reference_from_current = measured.reference_from_current;
   }
   ReferenceEvidence evidence = compare_with_reference(current, reference, trace.prior, config);
-  evidence.patches = std::move(measured.patches);
+  evidence.motions = std::move(measured.motions);
   evidence.reference = reference;
   evidence.ms = watch.milliseconds();
   return evidence;
@@ -242,22 +245,22 @@ ReferenceEvidence evidence_of_reference(const RgbdView& current, ReferenceView r
 
 }  // namespace
 
-StillpointTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
+StillpointTrace detect_depth_motion(const RgbdView& current, Superpixels superpixels,
                                     const cv::Mat& full_depth, const std::vector<ReferenceView>& references,
-                                    const MotionMemory* memory, const Pose& previous_from_current,
+                                    const MotionPrior* prior, const Pose& previous_from_current,
                                     const StillpointConfig& config, int threads) {
   StillpointTrace trace;
   Stopwatch watch;
-  if (memory) {
-    const CarriedMemory carried = carry_memory(current, *memory, previous_from_current, config);
-    trace.prior = carried.log_odds;
-    if (config.inherit) inherit_memory(carried.entered, patches, trace.prior);
+  if (prior) {
+    const WarpedPrior warped = warp_prior(current, *prior, previous_from_current, config);
+    trace.prior = warped.log_odds;
+    if (config.label_propagation) propagate_labels(warped.newly_observed, superpixels, trace.prior);
   } else {
     trace.prior = cv::Mat::zeros(current.depth.size(), CV_32FC1);
   }
-  trace.labels = std::move(patches.labels);
-  trace.segments = std::move(patches.segments);
-  trace.ms.memory = watch.lap();
+  trace.labels = std::move(superpixels.labels);
+  trace.superpixels = std::move(superpixels.all);
+  trace.ms.prior = watch.lap();
   // References know nothing of each other: all but the last are compared with beside it.
   std::vector<std::future<ReferenceEvidence>> compared;
   for (std::size_t i = 0; i < references.size(); ++i)
@@ -271,13 +274,13 @@ StillpointTrace detect_depth_motion(const RgbdView& current, SurfacePatches patc
     add_pixels(trace.references.back(), trace.labels, evidence);
   }
   (void)watch.lap();
-  trace.slow = evidence_of_patches(trace, config);
+  trace.slow = evidence_of_superpixels(trace, config);
   evidence += trace.slow;
-  trace.log_odds = with_memory(trace.prior, evidence, config);
+  trace.log_odds = with_prior(trace.prior, evidence, config);
 
-  judge_segments(trace.log_odds, trace.labels, patches.contacts, config, trace.segments);
-  trace.ms.segments = watch.lap();
-  trace.small_mask = paint_moving(trace.labels, trace.segments);
+  judge_superpixels(trace.log_odds, trace.labels, superpixels.adjacency, config, trace.superpixels);
+  trace.ms.superpixels = watch.lap();
+  trace.small_mask = paint_moving(trace.labels, trace.superpixels);
   drop_small_regions(trace.small_mask, config.min_area_share);
   fill_unmeasured(current.depth, kHole, trace.small_mask);
   trace.mask = fit_to_depth(trace.small_mask, current, full_depth);

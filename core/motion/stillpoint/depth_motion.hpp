@@ -14,8 +14,8 @@
 
 namespace stillpoint {
 
-// What moves, judged where there is depth: every pixel is carried by the camera's own motion into frames a
-// moment back and some tenths of a second back, and must be found there, as far away and as bright as it is
+// What is dynamic, judged where there is depth: every pixel is warped by the camera's own motion into frames
+// a moment back and some tenths of a second back, and must be found there, as far away and as bright as it is
 // now. What was seen *through* before is moving for certain; so is what the noise of depth and brightness
 // cannot explain. Evidence adds up over the frames.
 
@@ -23,7 +23,7 @@ namespace stillpoint {
 struct ReferenceView {
   std::shared_ptr<const RgbdView> view;
   Pose reference_from_current = Pose::Identity();
-  bool old = false;     ///< far enough back for slow movers to have gone somewhere
+  bool old = false;     ///< far enough back for slow dynamic objects to have gone somewhere
   int frames_back = 0;  ///< for display
 };
 
@@ -38,9 +38,9 @@ struct ReferenceView {
   return std::max({config.near_reference, config.far_reference, config.slow_reference});
 }
 
-/// How far a patch of surface lies from where the camera's motion alone would have it.
-struct PatchMotion {
-  cv::Vec2f shift;        ///< px, small image of the reference
+/// How far a superpixel lies from where the camera's motion alone would have it.
+struct SuperpixelMotion {
+  cv::Vec2f shift;        ///< px, downsampled image of the reference
   float step = 0.0F;      ///< m, along the reference's optical axis
   float log_odds = 0.0F;  ///< of moving; 0 = says nothing
 };
@@ -50,53 +50,54 @@ struct ReferenceEvidence {
   ReferenceView reference;  ///< what was compared with
   cv::Mat
       depth_residual;  ///< standard deviations: measured less expected depth there; NaN = cannot be compared
-  cv::Mat intensity_residual;        ///< grey levels beyond what gradient explains; NaN = cannot be compared
-  cv::Mat log_odds;                  ///< of moving; 0 = says nothing
-  double misplacement_px = 0.0;      ///< small px by which surfaces lie beside their place, estimated too
-  double intensity_sigma = 0.0;      ///< grey levels, estimated from this pair
-  std::vector<PatchMotion> patches;  ///< one a segment; empty where the reference is too young for it
-  double ms = 0.0;                   ///< wall time of the comparison; for reading only
+  cv::Mat intensity_residual;  ///< grey levels beyond what gradient explains; NaN = cannot be compared
+  cv::Mat log_odds;            ///< of moving; 0 = says nothing
+  double registration_error_px =
+      0.0;                       ///< downsampled px by which surfaces lie beside their place, estimated too
+  double intensity_sigma = 0.0;  ///< grey levels, estimated from this pair
+  std::vector<SuperpixelMotion> motions;  ///< one a superpixel; empty where the reference is too young for it
+  double ms = 0.0;                        ///< wall time of the comparison; for reading only
 };
 
-/// A patch of one surface (segment_surfaces), and how likely it moves.
-struct Segment {
-  cv::Point2f centre;  ///< px, small image
+/// A superpixel of one surface (make_superpixels), and how likely it moves.
+struct Superpixel {
+  cv::Point2f centre;  ///< px, downsampled image
   float depth = 0.0F;  ///< m
   int pixels = 0;
   float evidence = 0.0F;  ///< mean log-odds of its pixels
-  float log_odds = 0.0F;  ///< after listening to the neighbours on the same surface
+  float log_odds = 0.0F;  ///< after smoothing with the neighbours on the same surface
   bool moving = false;
 };
 
-/// Two patches that touch on one surface, and how many pixels of boundary they share: the weight of their
+/// Two superpixels that touch on one surface, and how many pixels of boundary they share: the weight of their
 /// agreement.
-struct Contact {
+struct AdjacencyEdge {
   int a = 0, b = 0;
   int boundary = 0;
 };
 
-/// The patches of one view.
-struct SurfacePatches {
-  cv::Mat labels;  ///< CV_32SC1: the patch of each pixel, -1 where there is no depth
-  std::vector<Segment> segments;
-  std::vector<Contact> contacts;  ///< all of them, by a, then b; a < b
+/// The superpixels of one view.
+struct Superpixels {
+  cv::Mat labels;  ///< CV_32SC1: the superpixel of each pixel, -1 where there is no depth
+  std::vector<Superpixel> all;
+  std::vector<AdjacencyEdge> adjacency;  ///< all of them, by a, then b; a < b
 };
 
 /// What each step took, ms of wall time. For reading only: no result depends on it.
 struct DepthMotionTimes {
-  double memory = 0.0;    ///< carrying along what is remembered
-  double segments = 0.0;  ///< the patches' judgement
-  double mask = 0.0;      ///< painting, cleaning and fitting the outline
+  double prior = 0.0;        ///< warping the prior
+  double superpixels = 0.0;  ///< the superpixels' judgement
+  double mask = 0.0;         ///< painting, cleaning and fitting the outline
 };
 
 /// What depth-aware motion detection saw, stage by stage.
 struct StillpointTrace {
   std::vector<ReferenceEvidence> references;
-  cv::Mat slow;      ///< CV_32FC1 log-odds that patches say by how far they shifted or went back
-  cv::Mat prior;     ///< CV_32FC1 log-odds remembered from the frame before, carried along and inherited
-  cv::Mat log_odds;  ///< CV_32FC1, all evidence and memory: becomes the next frame's memory
-  cv::Mat labels;    ///< CV_32SC1: segment of each pixel, -1 = no depth
-  std::vector<Segment> segments;
+  cv::Mat slow;   ///< CV_32FC1 log-odds that superpixels say by how far they shifted or went back
+  cv::Mat prior;  ///< CV_32FC1 log-odds from the frame before, warped here, newly observed regions labelled
+  cv::Mat log_odds;  ///< CV_32FC1, all evidence and the prior: becomes the next frame's prior
+  cv::Mat labels;    ///< CV_32SC1: superpixel of each pixel, -1 = no depth
+  std::vector<Superpixel> superpixels;
   cv::Mat small_mask;       ///< CV_8UC1, small
   cv::Mat mask;             ///< CV_8UC1, full size: 255 = moving
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
@@ -105,22 +106,21 @@ struct StillpointTrace {
 };
 
 /// What the next frame needs of this one.
-struct MotionMemory {
+struct MotionPrior {
   std::shared_ptr<const RgbdView> view;
   cv::Mat log_odds;  ///< CV_32FC1
 };
 
 /// A pure function of its arguments.
-/// @param patches of the current view, as segment_surfaces gives them
+/// @param superpixels of the current view, as make_superpixels gives them
 /// @param references earlier frames with depth; none gives an empty mask and a note
-/// @param memory of the frame before, with the motion to it; null where there is none
+/// @param prior of the frame before, with the motion to it; null where there is none
 /// @param full_depth CV_32FC1, m: the frame's own, to which the mask's outline is fitted
 /// @param threads above 1, references are compared with beside each other; the result is the same
-[[nodiscard]] StillpointTrace detect_depth_motion(const RgbdView& current, SurfacePatches patches,
+[[nodiscard]] StillpointTrace detect_depth_motion(const RgbdView& current, Superpixels superpixels,
                                                   const cv::Mat& full_depth,
                                                   const std::vector<ReferenceView>& references,
-                                                  const MotionMemory* memory,
-                                                  const Pose& previous_from_current,
+                                                  const MotionPrior* prior, const Pose& previous_from_current,
                                                   const StillpointConfig& config, int threads = 1);
 
 /// Standard deviation (m) of a Kinect-like sensor's depth at z metres: so much, and so much more with the

@@ -4,7 +4,8 @@
 
 namespace stillpoint {
 
-/// Method `stillpoint`: what moves where there is depth. Meanings, units and ranges: StillpointConfig::list.
+/// Method `stillpoint`: what is dynamic where there is depth. Meanings, units and ranges:
+/// StillpointConfig::list.
 struct StillpointConfig {
   static constexpr const char* kSection = "stillpoint";
   StillpointConfig() { set_defaults(*this); }
@@ -20,15 +21,15 @@ struct StillpointConfig {
   double depth_sigmas;
   double intensity_sigmas;
   double gradient_share;
-  double max_misplacement_px;
-  double memory;
+  double max_registration_error_px;
+  double prior_share;
   double max_log_odds;
-  double firm_log_odds;
-  double release;
-  bool find_receding;
-  bool inherit;
-  double patch_share;
-  int segment_px;
+  double confident_log_odds;
+  double hysteresis;
+  bool find_axial_motion;
+  bool label_propagation;
+  double superpixel_share;
+  int superpixel_px;
   double smoothing;
   double moving_log_odds;
   double min_area_share;

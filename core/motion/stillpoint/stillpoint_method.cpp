@@ -1,20 +1,20 @@
 // Method `stillpoint`: every frame against two earlier ones, in depth and brightness, under a first pose;
-// what was seen is remembered as log-odds.
+// evidence is kept as log-odds, the next frame's prior.
 #include <algorithm>
 #include <deque>
 
 #include "core/motion/methods.hpp"
 #include "core/motion/stillpoint/depth_evidence.hpp"
 #include "core/motion/stillpoint/depth_motion.hpp"
-#include "core/motion/stillpoint/segments.hpp"
 #include "core/motion/stillpoint/stillpoint_stages.hpp"
+#include "core/motion/stillpoint/superpixels.hpp"
 
 namespace stillpoint {
 namespace {
 
 struct Preparation final : MotionPreparation {
   std::shared_ptr<const RgbdView> view;
-  SurfacePatches patches;
+  Superpixels superpixels;
 };
 
 /// A downsampled frame that was tracked, and from where.
@@ -40,28 +40,28 @@ class StillpointMethod final : public MotionMethod {
       const Frame& frame, std::span<const std::shared_ptr<const MotionPreparation>>, int) const override {
     auto preparation = std::make_shared<Preparation>();
     preparation->view = view_of(frame);
-    preparation->patches = segment_surfaces(*preparation->view, config_);
+    preparation->superpixels = make_superpixels(*preparation->view, config_);
     return preparation;
   }
 
   [[nodiscard]] cv::Mat prior_mask(const MotionInput& input) const override {
     if (past_.empty() || !remembers_motion()) return {};
-    const MotionMemory memory{past_.back().view, log_odds_};
+    const MotionPrior before{past_.back().view, log_odds_};
     const cv::Mat prior =
-        carry_memory(*prepared(input).view, memory, last_from(*input.camera_from_world), config_).log_odds;
+        warp_prior(*prepared(input).view, before, last_from(*input.camera_from_world), config_).log_odds;
     return enlarged(prior > config_.moving_log_odds, config_.factor, input.frame.gray.size());
   }
 
   [[nodiscard]] MotionResult detect(const MotionInput& input) const override {
     const Preparation& ready = prepared(input);
     const Pose& pose = *input.camera_from_world;
-    std::optional<MotionMemory> memory;
-    if (!past_.empty()) memory = MotionMemory{past_.back().view, log_odds_};
+    std::optional<MotionPrior> prior;
+    if (!past_.empty()) prior = MotionPrior{past_.back().view, log_odds_};
     auto trace = std::make_shared<StillpointMotionTrace>();
     trace->view = ready.view;
     trace->judged =
-        detect_depth_motion(*ready.view, ready.patches, input.frame.depth,
-                            references(input.frame.index, pose), memory ? &*memory : nullptr,
+        detect_depth_motion(*ready.view, ready.superpixels, input.frame.depth,
+                            references(input.frame.index, pose), prior ? &*prior : nullptr,
                             past_.empty() ? Pose::Identity() : last_from(pose), config_, input.threads);
     MotionResult result;
     result.mask = trace->judged.mask;
@@ -94,7 +94,7 @@ class StillpointMethod final : public MotionMethod {
   [[nodiscard]] std::set<int> images_wanted(int first, int last) const override {
     std::set<int> frames;
     if (past_.empty()) return frames;
-    frames.insert(past_.back().frame_index);  // what is remembered lies in its pixels
+    frames.insert(past_.back().frame_index);  // the prior lies in its pixels
     for (int index = first; index <= last && index - past_.back().frame_index <= frames_back(); ++index)
       for (const int gap : reference_gaps(config_, index)) frames.insert(reference(index, gap).frame_index);
     std::erase_if(frames, [this](int frame) {
@@ -133,7 +133,7 @@ class StillpointMethod final : public MotionMethod {
     return std::make_shared<const RgbdView>(make_rgbd_view(frame.gray, frame.depth, camera_, config_.factor));
   }
 
-  /// Whether any pixel moves by what is remembered: carried along, none moves more.
+  /// Whether the prior alone makes any pixel dynamic: warped, none moves more.
   [[nodiscard]] bool remembers_motion() const {
     double most = 0.0;
     cv::minMaxLoc(log_odds_, nullptr, &most);
@@ -178,7 +178,8 @@ MethodInfo stillpoint_method() {
   MethodInfo info;
   info.name = "stillpoint";
   info.title = "Stillpoint";
-  info.summary = "Depth and brightness against two earlier frames, superpixel by superpixel, with memory.";
+  info.summary =
+      "Depth and brightness against two earlier frames, superpixel by superpixel, with a recursive prior.";
   info.needs.depth = info.needs.first_pose = info.needs.keeps_state = true;
   info.needs.checkpoint_every = 4;
   info.usual = info.extends_odometry = true;
@@ -188,20 +189,24 @@ MethodInfo stillpoint_method() {
   info.ingredients = {
       {"depth_evidence", "judging motion by depth", {"stillpoint.use_depth=false"}},
       {"brightness_evidence", "judging motion by brightness", {"stillpoint.use_brightness=false"}},
-      {"memory", "carrying evidence from frame to frame", {"stillpoint.memory=0"}},
-      {"firm_memory", "letting go but slowly of what firmly moves", {"stillpoint.release=1"}},
-      {"misplacement",
+      {"prior", "warping evidence from frame to frame", {"stillpoint.prior_share=0"}},
+      {"hysteresis", "letting go only slowly of what is confidently dynamic", {"stillpoint.hysteresis=1"}},
+      {"registration_error",
        "leave for surfaces that lie beside their place",
-       {"stillpoint.max_misplacement_px=0"}},
-      {"patch_shifts", "slow movers by the shifts of patches", {"stillpoint.patch_share=0"}},
-      {"receding", "patches that go back, away from the camera", {"stillpoint.find_receding=false"}},
-      {"inherit",
+       {"stillpoint.max_registration_error_px=0"}},
+      {"superpixel_shifts",
+       "slow dynamic objects by the shifts of superpixels",
+       {"stillpoint.superpixel_share=0"}},
+      {"axial_motion",
+       "superpixels that go back, away from the camera",
+       {"stillpoint.find_axial_motion=false"}},
+      {"label_propagation",
        "what comes into view taking over what its surface is known to do",
-       {"stillpoint.inherit=false"}},
+       {"stillpoint.label_propagation=false"}},
       {"slow_reference",
        "a far reference that lies farther back in every second frame",
        {"stillpoint.slow_reference=10"}},
-      {"neighbours", "patches of one surface agreeing", {"stillpoint.smoothing=0"}}};
+      {"neighbours", "superpixels of one surface agreeing", {"stillpoint.smoothing=0"}}};
   info.make = [](const Camera& camera, const Config& config) -> std::unique_ptr<MotionMethod> {
     return std::make_unique<StillpointMethod>(camera, config.of<StillpointConfig>());
   };

@@ -14,14 +14,14 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr FrameSpace kSmall = FrameSpace::kSmall;
 
-/// What is said of each pixel's patch; NaN where it is in none, or nothing is said of it.
-template <typename OfPatch>
-cv::Mat patch_values(const StillpointTrace& trace, const OfPatch& of_patch) {
+/// What is said of each pixel's superpixel; NaN where it is in none, or nothing is said of it.
+template <typename OfSuperpixel>
+cv::Mat superpixel_values(const StillpointTrace& trace, const OfSuperpixel& of_superpixel) {
   cv::Mat values(trace.labels.size(), CV_32FC1, cv::Scalar(kUnknown));
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
       if (const int label = trace.labels.at<int>(y, x); label >= 0)
-        values.at<float>(y, x) = of_patch(static_cast<std::size_t>(label));
+        values.at<float>(y, x) = of_superpixel(static_cast<std::size_t>(label));
   return values;
 }
 
@@ -42,7 +42,7 @@ class StillpointStages {
     small.figure("Width", view_.gray.cols, "px").figure("Height", view_.gray.rows, "px");
     small.add_side({target_}, small_);
     for (std::size_t i = 0; i < trace_.references.size(); ++i) add_reference(i);
-    add_memory();
+    add_prior();
     add_judgement();
   }
 
@@ -118,50 +118,51 @@ class StillpointStages {
     said.figure("Speaks for motion", percent_above(evidence.log_odds, 0.0), "%", 2)
         .figure("Speaks for static", percent_above(-evidence.log_odds, 0.0), "%", 2);
     said.add_side({depth_residual(evidence), brightness_residual(evidence)}, evidence_layer(evidence));
-    if (!evidence.patches.empty()) add_patch_shifts(index, evidence);
+    if (!evidence.motions.empty()) add_superpixel_shifts(index, evidence);
   }
 
-  void add_patch_shifts(std::size_t index, const ReferenceEvidence& evidence) {
+  void add_superpixel_shifts(std::size_t index, const ReferenceEvidence& evidence) {
     constexpr float kLonger = 4.0F;  // drawn at twice that
-    Stage& stage = add_of_reference(index, "patch_shifts", "Patch shifts",
-                                    "Shifts each patch to where it fits best, and takes off the camera's "
-                                    "motion that explains most: what is left tells slow objects.");
+    Stage& stage =
+        add_of_reference(index, "superpixel_shifts", "Superpixel shifts",
+                         "Shifts each superpixel to where it fits best, and takes off the camera's "
+                         "motion that explains most: what is left tells slow objects.");
     stage.overview = true;
     std::vector<double> shifts;
     int moving = 0;
     Layer layer = signed_layer("Shifts, 8 times as long",
-                               patch_values(trace_,
-                                            [&](std::size_t i) {
-                                              const float odds = evidence.patches[i].log_odds;
-                                              return odds != 0.0F ? odds : kUnknown;
-                                            }),
+                               superpixel_values(trace_,
+                                                 [&](std::size_t i) {
+                                                   const float odds = evidence.motions[i].log_odds;
+                                                   return odds != 0.0F ? odds : kUnknown;
+                                                 }),
                                4.0, "log-odds", kSmall, 0.0);
-    for (std::size_t i = 0; i < evidence.patches.size() && i < trace_.segments.size(); ++i) {
-      const PatchMotion& patch = evidence.patches[i];
-      if (patch.log_odds == 0.0F) continue;
-      shifts.push_back(cv::norm(patch.shift));
-      moving += patch.log_odds > 0.0F ? 1 : 0;
-      const cv::Point2f at = trace_.segments[i].centre, shift(patch.shift[0], patch.shift[1]);
+    for (std::size_t i = 0; i < evidence.motions.size() && i < trace_.superpixels.size(); ++i) {
+      const SuperpixelMotion& superpixel = evidence.motions[i];
+      if (superpixel.log_odds == 0.0F) continue;
+      shifts.push_back(cv::norm(superpixel.shift));
+      moving += superpixel.log_odds > 0.0F ? 1 : 0;
+      const cv::Point2f at = trace_.superpixels[i].centre, shift(superpixel.shift[0], superpixel.shift[1]);
       layer.marks.push_back(
-          {at, at + kLonger * shift, patch.log_odds > 0.0F ? MarkKind::kOutlier : MarkKind::kInlier});
+          {at, at + kLonger * shift, superpixel.log_odds > 0.0F ? MarkKind::kOutlier : MarkKind::kInlier});
     }
     stage.add_side({prior_layer(), small_}, std::move(layer));
-    stage.figure("Patches measured", static_cast<double>(shifts.size()));
+    stage.figure("Superpixels measured", static_cast<double>(shifts.size()));
     stage.figure("Of them speak for motion", moving);
     if (shifts.empty()) {
-      stage.note = "No patch has texture enough to say how far it shifted.";
+      stage.note = "No superpixel has texture enough to say how far it shifted.";
       return;
     }
     std::sort(shifts.begin(), shifts.end());
-    stage.figure("Median shift", shifts[shifts.size() / 2], "small px", 2);
-    stage.figure("Largest shift", shifts.back(), "small px", 2);
+    stage.figure("Median shift", shifts[shifts.size() / 2], "downsampled px", 2);
+    stage.figure("Largest shift", shifts.back(), "downsampled px", 2);
   }
 
-  void add_memory() {
+  void add_prior() {
     Stage& prior =
         log_.add("prior", "Judgement", "Prior",
                  "What the frame before classified as dynamic, warped here by the camera's motion.");
-    prior.ms = trace_.ms.memory;
+    prior.ms = trace_.ms.prior;
     prior.overview = true;
     prior.figure("Dynamic by the prior", percent_above(trace_.prior, config_.moving_log_odds), "%", 2);
     prior.add_side({small_}, prior_layer());
@@ -171,40 +172,42 @@ class StillpointStages {
     all.timed = false;
     all.overview = true;
     if (!trace_.slow.empty())
-      all.figure("Patches' shifts speak for motion", percent_above(trace_.slow, 0.0), "%", 2);
+      all.figure("Superpixels' shifts speak for motion", percent_above(trace_.slow, 0.0), "%", 2);
     all.figure("Dynamic with all evidence", percent_above(trace_.log_odds, config_.moving_log_odds), "%", 2);
     std::vector<Layer> inputs{prior_layer()};
     if (!trace_.slow.empty())
-      inputs.push_back(signed_layer("Patches' shifts", trace_.slow, 2.0, "log-odds", kSmall, 0.0));
+      inputs.push_back(signed_layer("Superpixels' shifts", trace_.slow, 2.0, "log-odds", kSmall, 0.0));
     for (const ReferenceEvidence& evidence : trace_.references) inputs.push_back(evidence_layer(evidence));
     all.add_side(std::move(inputs), all_layer());
   }
 
   void add_judgement() {
-    const Layer patches = signed_layer(
-        "Patches", patch_values(trace_, [&](std::size_t i) { return trace_.segments[i].log_odds; }),
-        config_.max_log_odds, "log-odds", kSmall, config_.moving_log_odds);
-    Stage& segments =
-        log_.add("patches", "Judgement", "Patches",
-                 "Patches of one surface; each takes the mean of its pixels and agrees with its "
+    const Layer judged =
+        signed_layer("Superpixels",
+                     superpixel_values(trace_, [&](std::size_t i) { return trace_.superpixels[i].log_odds; }),
+                     config_.max_log_odds, "log-odds", kSmall, config_.moving_log_odds);
+    Stage& stage =
+        log_.add("superpixels", "Judgement", "Superpixels",
+                 "Superpixels of one surface; each takes the mean of its pixels and agrees with its "
                  "neighbours.");
-    segments.ms = trace_.ms.segments;
-    segments.overview = true;
-    segments.figure("Patches", static_cast<double>(trace_.segments.size()));
-    segments.figure("Dynamic",
-                    static_cast<double>(std::count_if(trace_.segments.begin(), trace_.segments.end(),
-                                                      [](const Segment& s) { return s.moving; })));
-    segments.add_side({all_layer()}, patches);
+    stage.ms = trace_.ms.superpixels;
+    stage.overview = true;
+    stage.figure("Superpixels", static_cast<double>(trace_.superpixels.size()));
+    stage.figure("Dynamic",
+                 static_cast<double>(std::count_if(trace_.superpixels.begin(), trace_.superpixels.end(),
+                                                   [](const Superpixel& s) { return s.moving; })));
+    stage.add_side({all_layer()}, judged);
 
-    Stage& mask = log_.add("mask", "Judgement", "Mask",
-                           "Dynamic patches, small regions dropped, the outline fitted to the depth image.");
+    Stage& mask =
+        log_.add("mask", "Judgement", "Mask",
+                 "Dynamic superpixels, small regions dropped, the outline fitted to the depth image.");
     mask.ms = trace_.ms.mask;
     mask.overview = true;
     mask.figure("Downsampled mask", percent_set(trace_.small_mask), "%", 2)
         .figure("Mask", 100.0 * trace_.mask_share, "%", 2)
         .figure("Regions", static_cast<double>(find_regions(trace_.mask).regions.size()));
     mask.note = trace_.note;
-    mask.add_side({patches}, mask_layer("Mask", trace_.mask, target_, "mask"));
+    mask.add_side({judged}, mask_layer("Mask", trace_.mask, target_, "mask"));
   }
 
   const StillpointTrace& trace_;
@@ -222,16 +225,17 @@ std::vector<std::string> explain_pixel(const StillpointTrace& trace, const Still
   const cv::Rect image({0, 0}, trace.labels.size());
   const int label = image.contains({x, y}) ? trace.labels.at<int>(y, x) : -1;
   if (label < 0)
-    return std::vector<std::string>(1, "It has no depth: what has none beside a dynamic patch goes with it.");
-  const Segment& segment = trace.segments[static_cast<std::size_t>(label)];
-  if (segment.moving)
-    return {
-        fmt::format("Its patch, {} small pixels at {:.2f} m, is dynamic: its own evidence is {:.2f}, {:.2f} "
-                    "with its neighbours'.",
-                    segment.pixels, static_cast<double>(segment.depth), static_cast<double>(segment.evidence),
-                    static_cast<double>(segment.log_odds))};
+    return std::vector<std::string>(
+        1, "It has no depth: what has none beside a dynamic superpixel goes with it.");
+  const Superpixel& superpixel = trace.superpixels[static_cast<std::size_t>(label)];
+  if (superpixel.moving)
+    return {fmt::format(
+        "Its superpixel, {} downsampled pixels at {:.2f} m, is dynamic: its own evidence is {:.2f}, {:.2f} "
+        "with its neighbours'.",
+        superpixel.pixels, static_cast<double>(superpixel.depth), static_cast<double>(superpixel.evidence),
+        static_cast<double>(superpixel.log_odds))};
   return {
-      fmt::format("Its own patch is not classified as dynamic: the mask reaches it from beside, by its "
+      fmt::format("Its own superpixel is not classified as dynamic: the mask reaches it from beside, by its "
                   "outline or its margin of {} px.",
                   config.margin_px)};
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/sequence/generated/players.hpp"
+#include "core/sequence/generated/actors.hpp"
 
 namespace stillpoint::generated {
 namespace {
@@ -92,29 +92,29 @@ void stage(const Kind& kind, Furnisher& f, unsigned seed, double seconds, Act& a
     case Kind::kSitting: {
       chair(kLeftSeat, 0.62);
       chair(kRightSeat, 2.5);
-      const Player left = sitter(dress(0, f), kLeftSeat, 0.62, kRightSeat, seed + 1);
-      const Player right = sitter(dress(1, f), kRightSeat, 2.5, kLeftSeat, seed + 2);
+      const Actor left = sitter(appearance_of(0, f), kLeftSeat, 0.62, kRightSeat, seed + 1);
+      const Actor right = sitter(appearance_of(1, f), kRightSeat, 2.5, kLeftSeat, seed + 2);
       act.play = [=](double s, Instant& instant) { left(s, instant), right(s, instant); };
       break;
     }
     case Kind::kWalking:
       chair({-1.25, 1.75}, 1.2);
       chair({0.95, 1.62}, 1.75);
-      act.play = walkers(dress(0, f), dress(1, f), seconds, seed + 3);
+      act.play = walkers(appearance_of(0, f), appearance_of(1, f), seconds, seed + 3);
       break;
     case Kind::kWorking:
       chair({0.75, 1.58}, M_PI / 2);
       chair({-1.1, 1.6}, 1.0);
       act.camera.position = {0.1, 0.25, 1.5};
       act.camera.target = {0.25, 2.25, 0.85};
-      act.play = desk_worker(dress(2, f), {0.75, 1.58}, f, seed + 4);
+      act.play = desk_worker(appearance_of(2, f), {0.75, 1.58}, f, seed + 4);
       break;
     case Kind::kCart:
       chair({-1.1, 1.72}, 1.3);
       chair({1.15, 1.7}, 1.9);
       act.camera.position = {0, -1.15, 1.3};
       act.camera.target = {0, 1.2, 1.08};
-      act.play = cart_pusher(dress(2, f), f, seed + 5);
+      act.play = cart_pusher(appearance_of(2, f), f, seed + 5);
       break;
     case Kind::kCup:
       chair({-1.3, 1.6}, 1.2);

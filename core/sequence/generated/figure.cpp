@@ -17,7 +17,7 @@ Vector3d turn(const Vector3d& v, const Vector3d& axis, double angle) {
 class Body {
  public:
   Body(const FigureLook& look, const FigureState& state, Instant& instant)
-      : look_(look), state_(state), out_(instant.movers), scale_(look.height / 1.78) {
+      : look_(look), state_(state), out_(instant.actors), scale_(look.height / 1.78) {
     forward_ = {std::cos(state.heading), std::sin(state.heading), 0};
     left_ = kUp.cross(forward_);
   }

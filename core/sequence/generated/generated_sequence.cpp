@@ -77,7 +77,7 @@ class GeneratedSequence : public FrameSource {
     for (int y = 0; y < ideal.id.rows; ++y)
       for (int x = 0; x < ideal.id.cols; ++x) {
         const std::size_t id = ideal.id.at<std::uint16_t>(y, x);
-        truth.moving.at<std::uint8_t>(y, x) = id >= fixed && middle.movers[id - fixed].moving ? 255 : 0;
+        truth.moving.at<std::uint8_t>(y, x) = id >= fixed && middle.actors[id - fixed].moving ? 255 : 0;
       }
     return truth;
   }
@@ -113,7 +113,7 @@ class GeneratedSequence : public FrameSource {
   [[nodiscard]] std::vector<float> dropout(const Instant& middle) const {
     std::vector<float> shares;
     for (const Primitive& p : act_.scene.fixed) shares.push_back(p.dropout);
-    for (const Primitive& p : middle.movers) shares.push_back(p.dropout);
+    for (const Primitive& p : middle.actors) shares.push_back(p.dropout);
     return shares;
   }
 
@@ -124,9 +124,9 @@ class GeneratedSequence : public FrameSource {
     const double camera_blur =
         camera_.fx * (1.4 * rotation_angle(moved.linear()) + moved.translation().norm() / kNearest);
     double fastest = 0;
-    for (std::size_t i = 0; i < first.movers.size(); ++i) {
-      const Eigen::Vector3d a = first.movers[i].centre.cast<double>(),
-                            b = last.movers[i].centre.cast<double>();
+    for (std::size_t i = 0; i < first.actors.size(); ++i) {
+      const Eigen::Vector3d a = first.actors[i].centre.cast<double>(),
+                            b = last.actors[i].centre.cast<double>();
       const double distance = std::max(0.4, (a - first.world_from_camera.translation()).norm());
       fastest = std::max(fastest, camera_.fx * (b - a).norm() / distance);
     }

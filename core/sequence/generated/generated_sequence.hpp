@@ -25,8 +25,8 @@ namespace stillpoint {
 /// same.
 ///
 /// Poses and masks are those at the middle of the exposure. The moving mask holds people whole, also while
-/// they stand or sit (they belong to what moves in the sequence, and never keep quite still), the cart that
-/// is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
+/// they stand or sit (they belong to what is dynamic in the sequence, and never keep quite still), the cart
+/// that is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
 /// after. Furniture, chairs and shadows are not moving.
 /// @param frames how many; 0 = the kind's own length, 300.
 /// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above

@@ -11,14 +11,14 @@ namespace stillpoint::generated {
 struct Rendering {
   cv::Mat colour;  ///< CV_32FC3 BGR, 0 to 255 and beyond where it glares; empty when not asked for
   cv::Mat depth;   ///< CV_32FC1, m, at the middle of the exposure
-  cv::Mat id;      ///< CV_16UC1: scene.fixed first, then the movers
+  cv::Mat id;      ///< CV_16UC1: scene.fixed first, then the dynamic objects
 };
 
 /// Depth and ids alone, at one instant.
 [[nodiscard]] Rendering cast_depth(const Scene& scene, const Camera& camera, const Instant& middle);
 
 /// Depth and ids at `middle`, colour averaged over the exposure's instants: each gives every pixel one sample
-/// at its own place within the pixel, so that edges are smooth and what moves is blurred by how it truly
+/// at its own place within the pixel, so that edges are smooth and what is dynamic is blurred by how it truly
 /// moves.
 /// @param blur_px no surface moves farther than this in the image during the exposure.
 [[nodiscard]] Rendering cast_frame(const Scene& scene, const Camera& camera, const Instant& middle,

@@ -32,7 +32,7 @@ struct ShadowPlane {
   [[nodiscard]] float at(const Vector3f& world) const;
 };
 
-/// What stands still.
+/// What is static.
 struct Scene {
   std::vector<Texture> pictures;
   std::vector<Surface> surfaces;
@@ -47,10 +47,10 @@ struct Scene {
 [[nodiscard]] ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height,
                                        const Vector2f& corner, const Vector2f& size, float blur_m);
 
-/// What moves, at one instant. Every instant of a sequence lists the same primitives in the same order.
+/// What is dynamic, at one instant. Every instant of a sequence lists the same primitives in the same order.
 struct Instant {
   Pose world_from_camera = Pose::Identity();
-  std::vector<Primitive> movers;
+  std::vector<Primitive> actors;
   std::vector<Blob> blobs;
 };
 

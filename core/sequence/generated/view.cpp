@@ -56,7 +56,7 @@ Bounds bounds_of(const Primitive& p, const View& view, const Camera& camera) {
 
 View::View(const Scene& scene, const Camera& camera, const Instant& instant)
     : fixed(&scene.fixed),
-      movers(&instant.movers),
+      actors(&instant.actors),
       blobs(&instant.blobs),
       rotation(instant.world_from_camera.linear().cast<float>()),
       position(instant.world_from_camera.translation().cast<float>()),
@@ -65,9 +65,9 @@ View::View(const Scene& scene, const Camera& camera, const Instant& instant)
       inverse_fx(static_cast<float>(1.0 / camera.fx)),
       inverse_fy(static_cast<float>(1.0 / camera.fy)),
       inverse_focal(static_cast<float>(2.0 / (camera.fx + camera.fy))) {
-  seen.reserve(fixed->size() + movers->size());
+  seen.reserve(fixed->size() + actors->size());
   for (const Primitive& p : *fixed) seen.push_back(see(p, rotation, position));
-  for (const Primitive& p : *movers) seen.push_back(see(p, rotation, position));
+  for (const Primitive& p : *actors) seen.push_back(see(p, rotation, position));
 }
 
 TileLists::TileLists(const View& view, const Camera& camera)

@@ -18,13 +18,13 @@ struct View {
   }
   [[nodiscard]] const Primitive& primitive(std::uint16_t id) const {
     const std::size_t fixed_count = fixed->size();
-    return id < fixed_count ? (*fixed)[id] : (*movers)[id - fixed_count];
+    return id < fixed_count ? (*fixed)[id] : (*actors)[id - fixed_count];
   }
 
   const std::vector<Primitive>* fixed;
-  const std::vector<Primitive>* movers;
+  const std::vector<Primitive>* actors;
   const std::vector<Blob>* blobs;
-  std::vector<SeenPrimitive> seen;  ///< by id: the fixed ones, then the movers
+  std::vector<SeenPrimitive> seen;  ///< by id: the fixed ones, then the dynamic objects
   Matrix3f rotation;                ///< world from camera
   Vector3f position;                ///< of the camera, world, m
   float cx, cy, inverse_fx, inverse_fy, inverse_focal;

@@ -42,8 +42,8 @@ TEST_F(DirectSession, EqualsABatchRunWhicheverWayOneGoes) {
 TEST_F(DirectSession, AFrameGoneBackToIsAlignedAsItWas) {
   for (const char* method : {"stillpoint", "oracle"}) {
     config_.run.method = method;
-    RunTrack track(*source_, config_, {.checkpoint_every = 4});
-    const RunTrack::ReadFrame read = [](int index) { return source_->read(index); };
+    ReplayableRun track(*source_, config_, {.checkpoint_every = 4});
+    const ReplayableRun::ReadFrame read = [](int index) { return source_->read(index); };
     for (int i = 0; i < source_->size(); ++i) (void)track.process_next(read);
     int directly = 0;
     for (int i = source_->size() - 1; i >= 0; --i) {

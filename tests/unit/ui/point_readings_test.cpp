@@ -80,7 +80,7 @@ TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
   trace.log_odds = trace.prior = cv::Mat(30, 40, CV_32FC1, cv::Scalar(0.5));
   trace.labels = cv::Mat(30, 40, CV_32SC1, cv::Scalar(-1));
   trace.labels.at<int>(5, 5) = 0;
-  trace.segments = {{{}, 2.0F, 12, 0.1F, 0.9F, true}};
+  trace.superpixels = {{{}, 2.0F, 12, 0.1F, 0.9F, true}};
   trace.small_mask = cv::Mat::zeros(30, 40, CV_8UC1);
   trace.mask = cv::Mat::zeros(120, 160, CV_8UC1);
   scene.describe();
@@ -92,8 +92,8 @@ TEST(PointReadings, AreTheSameRowsForEveryPointOfAFrame) {
     for (std::size_t r = 0; r < one[g].readings.size(); ++r)
       EXPECT_EQ(one[g].readings[r].name, other[g].readings[r].name);
   }
-  EXPECT_EQ(reading(one, "stillpoint: Judgement", "Patches").value, "+0.90 > 0.35 log-odds");
-  EXPECT_EQ(reading(other, "stillpoint: Judgement", "Patches").value, "–");
+  EXPECT_EQ(reading(one, "stillpoint: Judgement", "Superpixels").value, "+0.90 > 0.35 log-odds");
+  EXPECT_EQ(reading(other, "stillpoint: Judgement", "Superpixels").value, "–");
   EXPECT_EQ(reading(one, "stillpoint: Judgement", "Prior").value, "+0.50 > 0.35 log-odds");
 }
 

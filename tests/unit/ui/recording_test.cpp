@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* kHead = "stillpoint recording 1\n";
 
-/// The words of each happening of a recording.
+/// The words of each event of a recording.
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   for (const RecordedLine& line : parse_recording(kHead + text, "a.txt").lines)
@@ -34,7 +34,7 @@ std::string complaint(const std::string& text) {
   return "";
 }
 
-TEST(Recording, EveryHappeningComesBackAsItWasWritten) {
+TEST(Recording, EveryEventComesBackAsItWasWritten) {
   const std::vector<std::string> lines = {"wait 0.5",
                                           "idle",
                                           "until 12",
@@ -84,7 +84,7 @@ TEST(Recording, TheStartComesBack) {
   EXPECT_EQ(read.sequence_line, 2);
 }
 
-TEST(Recording, SizeIsAStartBeforeTheFirstHappeningAndOneAfterIt) {
+TEST(Recording, SizeIsAStartBeforeTheFirstEventAndOneAfterIt) {
   const Recording recording =
       parse_recording(std::string(kHead) + "size 300 200\nidle\nsize 400 300\n", "a.txt");
   EXPECT_EQ(recording.start.size, (std::array{300, 200}));

@@ -19,7 +19,7 @@ RemovalError error_of(int frame, double with_m, double without_m, int sign) {
   return {.frame = frame,
           .with_removal_m = with_m,
           .without_removal_m = without_m,
-          .told_m = 0.002,
+          .oracle_m = 0.002,
           .hurt = sign<0, .helped = sign> 0};
 }
 
@@ -38,7 +38,7 @@ TEST(RemovalSummary, CountsAndFindsTheExtremes) {
   EXPECT_NEAR(summary.median_with_m, 0.003, 1e-12);
   EXPECT_NEAR(summary.median_without_m, 0.004, 1e-12);
   EXPECT_EQ(summary.told, 5);
-  EXPECT_EQ(summary.beat_told, 1);
+  EXPECT_EQ(summary.beat_oracle, 1);
   EXPECT_EQ(sentence_of(summary), "Removal helped in 2 of 5 frames, hurt in 2, and made no odds in 1.");
   EXPECT_THAT(by_harm(errors), ElementsAre(6, 7));
 }

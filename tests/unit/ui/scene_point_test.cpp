@@ -11,7 +11,7 @@ using Point = Eigen::Vector2d;
 
 PairGeometry pair_of(const InspectScene& scene) { return pair_geometry(scene.view, scene.run, scene.camera); }
 
-void expect_near(const std::optional<CarriedPoint>& carried, const Point& pixel, CarriedBy by) {
+void expect_near(const std::optional<WarpedPoint>& carried, const Point& pixel, WarpedBy by) {
   ASSERT_TRUE(carried);
   EXPECT_NEAR(carried->pixel.x(), pixel.x(), 1e-3);
   EXPECT_NEAR(carried->pixel.y(), pixel.y(), 1e-3);
@@ -22,9 +22,9 @@ TEST(ScenePoint, IsWhereTheCamerasMotionAndDepthPutIt) {
   const InspectScene scene;
   const PairGeometry pair = pair_of(scene);
   // The camera went right by 0.1 m: what is at 2 m was 5 px further right before.
-  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, CarriedBy::kDepth);
-  expect_near(target_point(pair, FrameSpace::kReference, {75, 50}), {70, 50}, CarriedBy::kDepth);
-  expect_near(scene_point_in(pair, FrameSpace::kTarget, {70, 50}), {70, 50}, CarriedBy::kItself);
+  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, WarpedBy::kDepth);
+  expect_near(target_point(pair, FrameSpace::kReference, {75, 50}), {70, 50}, WarpedBy::kDepth);
+  expect_near(scene_point_in(pair, FrameSpace::kTarget, {70, 50}), {70, 50}, WarpedBy::kItself);
 }
 
 TEST(ScenePoint, NearerThanTheHomographysPlaneItIsBesideItselfInTheCompensatedFrame) {
@@ -32,24 +32,24 @@ TEST(ScenePoint, NearerThanTheHomographysPlaneItIsBesideItselfInTheCompensatedFr
   // At 1 m parallax is 10 px; the homography takes back 5 of them.
   scene.view.frame.depth.at<float>(50, 70) = 1.0F;
   const PairGeometry pair = pair_of(scene);
-  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {80, 50}, CarriedBy::kDepth);
-  expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {70, 50}), {75, 50}, CarriedBy::kDepth);
-  expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {71, 50}), {71, 50}, CarriedBy::kDepth);
+  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {80, 50}, WarpedBy::kDepth);
+  expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {70, 50}), {75, 50}, WarpedBy::kDepth);
+  expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {71, 50}), {71, 50}, WarpedBy::kDepth);
 }
 
-TEST(ScenePoint, WithoutDepthOrPoseTheHomographyCarriesIt) {
+TEST(ScenePoint, WithoutDepthOrPoseTheHomographyWarpsIt) {
   InspectScene scene;
   scene.view.frame.depth.at<float>(50, 70) = 0.0F;
   PairGeometry pair = pair_of(scene);
-  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, CarriedBy::kHomography);
+  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, WarpedBy::kHomography);
   expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {70, 50}), {70, 50},
-              CarriedBy::kHomography);
+              WarpedBy::kHomography);
   scene.run.records[4].estimated = false;
   pair = pair_of(scene);
   EXPECT_FALSE(pair.reference_from_target);
-  expect_near(target_point(pair, FrameSpace::kReference, {75, 50}), {70, 50}, CarriedBy::kHomography);
+  expect_near(target_point(pair, FrameSpace::kReference, {75, 50}), {70, 50}, WarpedBy::kHomography);
   pair.backward.reset();  // then the other direction's, backwards
-  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, CarriedBy::kHomography);
+  expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, WarpedBy::kHomography);
   pair.forward.reset();
   EXPECT_FALSE(scene_point_in(pair, FrameSpace::kReference, {70, 50}));
   EXPECT_FALSE(scene_point_in(pair, FrameSpace::kCompensatedForward, {70, 50}));
@@ -76,8 +76,8 @@ TEST(ScenePoint, SmallPixelsCoverFactorTimesFactorPixels) {
   PairGeometry pair = pair_of(scene);
   pair.small_factor = 4;
   // Pixels 8 to 11 make small pixel 2, whose middle is between 9 and 10.
-  expect_near(scene_point_in(pair, FrameSpace::kSmall, {9.5, 9.5}), {2, 2}, CarriedBy::kItself);
-  expect_near(target_point(pair, FrameSpace::kSmall, {0, 0}), {1.5, 1.5}, CarriedBy::kItself);
+  expect_near(scene_point_in(pair, FrameSpace::kSmall, {9.5, 9.5}), {2, 2}, WarpedBy::kItself);
+  expect_near(target_point(pair, FrameSpace::kSmall, {0, 0}), {1.5, 1.5}, WarpedBy::kItself);
 }
 
 TEST(ScenePoint, BehindTheCameraThereIsNone) {

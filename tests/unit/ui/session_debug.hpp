@@ -79,12 +79,12 @@ inline std::vector<std::uint8_t> bytes_of(FrameRecord record) {
 /// A run that can be looked at, without a session about it.
 struct ShownRunFixture {
   ShownRunFixture(const FrameSource& source, const Config& config)
-      : frames(source), run(source, frames, RunTrack(source, config)) {}
+      : frames(source), run(source, frames, ReplayableRun(source, config)) {}
   FrameCache frames;
   ShownRun run;
 };
 
-/// True masks, one a frame: a square that stands for what moves.
+/// True masks, one a frame: a square that stands for what is dynamic.
 inline void write_masks(const SmallSequence& sequence) {
   std::string list;
   cv::Mat mask = cv::Mat::zeros(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1);

@@ -105,8 +105,8 @@ TEST_F(SessionDebug, AnotherMethodsStagesAreLaidBesideTheRuns) {
 TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   config_.run.method = "stillpoint";
   config_.of<StillpointConfig>().moving_log_odds = -3.9;  // all moves: what is left is too little
-  RunTrack track(*source_, config_);
-  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  ReplayableRun track(*source_, config_);
+  const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
   for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
   int harmed = 0;
@@ -128,8 +128,8 @@ TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
   config_.run.method = "stillpoint";
   config_.of<StillpointConfig>().far_reference = 9;  // old enough for patches' shifts
   config_.of<StillpointConfig>().slow_reference = 4;
-  RunTrack track(*source_, config_);
-  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  ReplayableRun track(*source_, config_);
+  const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
   for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
   const MotionStage describer(source_->camera(), config_);

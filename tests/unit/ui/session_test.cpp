@@ -19,7 +19,7 @@ Config config_of(const std::string& method) {
   Config config;
   config.run.method = method;
   config.features.count = 400;
-  config.tracking.look_back_frames = 4;  // within the few frames there are
+  config.tracking.smoother_lag_frames = 4;  // within the few frames there are
   return config;
 }
 
@@ -65,8 +65,8 @@ TEST_P(SessionTest, EqualsABatchRunWhicheverWayOneGoes) {
 }
 
 TEST_P(SessionTest, ReplayingAFrameGivesItsImagesAgain) {
-  RunTrack track(*source_, config_, {.checkpoint_every = 5, .max_checkpoints = 2});
-  const RunTrack::ReadFrame read = [this](int index) { return source_->read(index); };
+  ReplayableRun track(*source_, config_, {.checkpoint_every = 5, .max_checkpoints = 2});
+  const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
   for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
   EXPECT_LE(track.checkpoints(), 2);

@@ -62,8 +62,8 @@ void with_two_references(InspectScene& scene) {
   trace.labels.colRange(20, 40).setTo(1);
   trace.small_mask = cv::Mat::zeros(30, 40, CV_8UC1);
   trace.mask = cv::Mat::zeros(120, 160, CV_8UC1);
-  trace.segments.resize(2);
-  trace.segments[1].centre = {30.0F, 15.0F};
+  trace.superpixels.resize(2);
+  trace.superpixels[1].centre = {30.0F, 15.0F};
   trace.references.resize(2);
   for (ReferenceEvidence& evidence : trace.references)
     evidence.depth_residual = evidence.intensity_residual = evidence.log_odds = trace.log_odds;
@@ -80,7 +80,7 @@ TEST(Stages, OfTheOthersAreTheirOwn) {
   const auto stages = stages_of(scene.view);
   EXPECT_THAT(first_ids(stages, 11), ElementsAre("downsampled", "depth_residual", "brightness_residual",
                                                  "evidence", "depth_residual", "brightness_residual",
-                                                 "evidence", "prior", "all_evidence", "patches", "mask"));
+                                                 "evidence", "prior", "all_evidence", "superpixels", "mask"));
   EXPECT_EQ(figure_of(stages[1], "Farther than the limit").value, 0.0);
   EXPECT_EQ(figure_of(stages[4], "Farther than the limit").value, 100.0);
   EXPECT_EQ(telling_stage(stages), 10U);
@@ -90,17 +90,17 @@ TEST(Stages, OfTheOthersAreTheirOwn) {
   EXPECT_TRUE(stages_of(scene.view).empty());
 }
 
-TEST(Stages, PatchesShiftsStandWithTheReferenceTheyWereMeasuredAgainst) {
+TEST(Stages, SuperpixelShiftsStandWithTheReferenceTheyWereMeasuredAgainst) {
   InspectScene scene;
   with_two_references(scene);
-  scene.own.judged.references[1].patches = {{{0.0F, 0.0F}, 0.0F, 0.0F}, {{3.0F, 4.0F}, 0.0F, 1.5F}};
+  scene.own.judged.references[1].motions = {{{0.0F, 0.0F}, 0.0F, 0.0F}, {{3.0F, 4.0F}, 0.0F, 1.5F}};
   scene.describe();
   const auto stages = stages_of(scene.view);
-  const auto is_shifts = [](const Stage& stage) { return stage.id == "patch_shifts"; };
+  const auto is_shifts = [](const Stage& stage) { return stage.id == "superpixel_shifts"; };
   ASSERT_EQ(std::count_if(stages.begin(), stages.end(), is_shifts), 1);
   const Stage& stage = *std::find_if(stages.begin(), stages.end(), is_shifts);
   EXPECT_EQ(stage.reference, 1);
-  EXPECT_EQ(figure_of(stage, "Patches measured").value, 1.0);
+  EXPECT_EQ(figure_of(stage, "Superpixels measured").value, 1.0);
   EXPECT_EQ(figure_of(stage, "Of them speak for motion").value, 1.0);
   EXPECT_EQ(figure_of(stage, "Largest shift").value, 5.0);
   const Layer& layer = stage.sides.at(0).output;
@@ -126,7 +126,7 @@ TEST(Stages, OfAFrameWithoutDepthFollowPoints) {
   EXPECT_EQ(figure_of(stages[3], "… with their neighbours").value, 1.0);
   EXPECT_NEAR(figure_of(stages[4], "Above the limit").value, 100.0 * 100 / 1200, 1e-9);
   const auto output = [&](std::size_t i) -> const Layer& { return stages[i].sides.at(0).output; };
-  // Where it came from beside the rotation: 2 small px are 4, drawn at twice their length.
+  // Where it came from beside the rotation: 2 downsampled px are 4, drawn at twice their length.
   EXPECT_EQ(output(1).marks[0].from, cv::Point2f(46.0F, 40.0F));
   EXPECT_EQ(output(2).marks[0].kind, MarkKind::kOutlier);
   EXPECT_EQ(output(2).marks[1].kind, MarkKind::kInlier);

@@ -1,0 +1,93 @@
+#include "app/open_source.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "core/run/open_run.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run of the same sequence to stand beside `run`.
+/// @throws InputError for one that was named and is of another sequence
+std::shared_ptr<const RecordedRun> baseline_beside(const SourceArguments& arguments, const RecordedRun& run) {
+  if (!arguments.baseline.empty()) {
+    auto named = std::make_shared<const RecordedRun>(read_records(arguments.baseline));
+    if (named->origin.fingerprint != run.origin.fingerprint)
+      throw InputError(fmt::format("--baseline {}: is a run of {}, and {} is one of {}, not the same frames",
+                                   arguments.baseline, named->origin.name, arguments.place, run.origin.name));
+    return named;
+  }
+  if (method_of(run.run.config).baseline) return nullptr;
+  const fs::path beside =
+      (fs::path(arguments.place) / "." / "..").lexically_normal() / baseline_method().name;
+  try {
+    if (!is_run_folder(beside)) return nullptr;
+    auto found = std::make_shared<const RecordedRun>(read_records(beside));
+    if (found->origin.fingerprint == run.origin.fingerprint && method_of(found->run.config).baseline)
+      return found;
+  } catch (const InputError&) {  // nobody asked for it
+  }
+  return nullptr;
+}
+
+OpenedSource open_finished_run(const SourceArguments& arguments) {
+  if (arguments.config.given() || arguments.source.given())
+    throw InputError(
+        fmt::format("{}: is a finished run, which has its own configuration and frames; options that "
+                    "change them go with its sequence",
+                    arguments.place));
+  const OpenedRun run = open_run(arguments.place, arguments.sequence);
+  if (run.recorded->run.records.empty())
+    throw InputError(fmt::format("{}: is a run without frames", arguments.place));
+  OpenedSource opened;
+  opened.source = run.source;
+  opened.frames = static_cast<int>(run.recorded->run.records.size());
+  opened.config = run.recorded->run.config;
+  if (arguments.config.threads > 0) opened.config.run.threads = arguments.config.threads;
+  opened.options.recorded = run.recorded;
+  opened.options.recorded_baseline = baseline_beside(arguments, *run.recorded);
+  opened.options.no_images = opened.problem = run.no_images;
+  return opened;
+}
+
+OpenedSource open_sequence_at(const std::string& where, const SequenceArguments& source, Config config) {
+  OpenedSource opened;
+  opened.config = std::move(config);
+  opened.source = source.open(where, opened.config);
+  opened.frames = opened.source->size();
+  if (!opened.source->warnings().empty()) opened.problem = opened.source->warnings().front();
+  return opened;
+}
+
+}  // namespace
+
+void SourceArguments::add_to(CLI::App& command) {
+  command.add_option("--baseline", baseline,
+                     "Of a finished run: another run's folder to compare with; otherwise the folder none "
+                     "beside it, where there is one");
+  command.add_option("--sequence", sequence, "Of a finished run: where its sequence lies now");
+}
+
+OpenedSource open_source(const SourceArguments& arguments) {
+  if (is_run_folder(arguments.place)) return open_finished_run(arguments);
+  for (const auto& [option, value] :
+       {std::pair("--baseline", arguments.baseline), std::pair("--sequence", arguments.sequence)})
+    if (!value.empty())
+      throw InputError(
+          fmt::format("{}: goes with a finished run's folder, and {} is none", option, arguments.place));
+  return open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+}
+
+OpenedSource open_source_as(const std::string& where, const SequenceArguments& source, const Config& config) {
+  if (!is_run_folder(where)) return open_sequence_at(where, source, config);
+  SourceArguments run;
+  run.place = where;
+  return open_finished_run(run);
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "app/arguments.hpp"
+#include "ui/session/opened_source.hpp"
+
+namespace stillpoint {
+
+/// The options of commands that look at a sequence or at a finished run.
+struct SourceArguments {
+  std::string place;     ///< a sequence, or a run's folder
+  std::string baseline;  ///< a run's folder; empty = the one of method none beside it, where there is one
+  std::string sequence;  ///< where a run's sequence lies now; empty = where it lay
+  ConfigArguments config;
+  SequenceArguments source;
+
+  /// Adds --baseline and --sequence; the rest is the command's.
+  void add_to(CLI::App& command);
+};
+
+/// @throws InputError in one sentence for what cannot be opened, and for options that a finished run, which
+/// has its own, does not take
+[[nodiscard]] OpenedSource open_source(const SourceArguments& arguments);
+
+/// A finished run with its own config, or a sequence to be run with `config`.
+/// @throws InputError in one sentence for what cannot be opened
+[[nodiscard]] OpenedSource open_source_as(const std::string& where, const SequenceArguments& source,
+                                          const Config& config);
+
+}  // namespace stillpoint

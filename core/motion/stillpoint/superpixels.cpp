@@ -1,0 +1,279 @@
+#include "core/motion/stillpoint/superpixels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <opencv2/core/hal/intrin.hpp>
+#include <span>
+
+namespace stillpoint {
+namespace {
+
+constexpr int kRounds = 3;            // SLIC has settled by then
+constexpr float kDepthScale = 0.05F;  // share of the distance that weighs as much as a superpixel's side
+constexpr float kNearest = 1e-3F;     // m
+constexpr int kRelaxations = 15;
+constexpr float kMostSay = 2.5F;  // log-odds: the surest superpixel does not outvote its neighbours
+
+struct Sum {
+  double x = 0, y = 0, z = 0;
+  int count = 0;
+};
+
+/// How many superpixels lie along so many pixels: one at the least.
+int patches_along(int length, int side) { return std::max(1, (length + side - 1 - side / 2) / side); }
+
+std::vector<Superpixel> seeds(const RgbdView& view, int side) {
+  std::vector<Superpixel> superpixels;
+  for (int row = 0; row < patches_along(view.depth.rows, side); ++row)
+    for (int column = 0; column < patches_along(view.depth.cols, side); ++column) {
+      const int x = std::min(side / 2 + column * side, view.depth.cols - 1),
+                y = std::min(side / 2 + row * side, view.depth.rows - 1);
+      Superpixel superpixel;
+      superpixel.centre = {static_cast<float>(x), static_cast<float>(y)};
+      superpixel.depth = view.depth.at<float>(y, x);
+      superpixels.push_back(superpixel);
+    }
+  return superpixels;
+}
+
+constexpr int kLanes = cv::v_float32x4::nlanes;
+
+/// The nine superpixels that may have the pixels of one row of cells: a superpixel never wanders far from its
+/// seed. What a superpixel's distance needs stands at every column, so that several pixels are compared at
+/// once.
+struct Candidate {
+  std::vector<float> x, y, z;
+  std::vector<int> label;
+};
+
+class Candidates {
+ public:
+  Candidates(int width, int side, int columns, int rows) : side_(side), columns_(columns), rows_(rows) {
+    const auto n = static_cast<std::size_t>(width);
+    for (Candidate& c : all_)
+      c = {std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<int>(n)};
+  }
+
+  void gather(const std::vector<Superpixel>& superpixels, int row) {
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+      Candidate& candidate = all_[k];
+      const int r = row - 1 + static_cast<int>(k) / 3;
+      for (std::size_t x = 0; x < candidate.x.size(); ++x) {
+        const int c = std::min(static_cast<int>(x) / side_, columns_ - 1) - 1 + static_cast<int>(k) % 3;
+        const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
+        constexpr float kNowhere = 1e9F;  // px
+        const Superpixel* superpixel =
+            exists ? &superpixels[static_cast<std::size_t>(r * columns_ + c)] : nullptr;
+        candidate.x[x] = superpixel ? superpixel->centre.x : kNowhere;
+        candidate.y[x] = superpixel ? superpixel->centre.y : kNowhere;
+        candidate.z[x] = superpixel ? superpixel->depth : 0.0F;
+        candidate.label[x] = r * columns_ + c;
+      }
+    }
+  }
+
+  [[nodiscard]] const std::array<Candidate, 9>& all() const { return all_; }
+
+ private:
+  int side_, columns_, rows_;
+  std::array<Candidate, 9> all_;
+};
+
+/// A row's pixels, as many as fill the lanes, and the nearest superpixel found for each so far.
+struct Row {
+  std::vector<float> x, depth, by_depth;  // by_depth, 1 / m: what a difference in depth counts
+  std::vector<float> distance;
+  std::vector<int> label;
+};
+
+/// Weighs a superpixel against the nearest so far: by place in units of the superpixel's side, by depth in
+/// shares of the distance.
+void offer(const Candidate& candidate, float y, float side, Row& row) {
+  const cv::v_float32x4 no_depth =
+      cv::v_setall_f32(2.0F);  // how far in depth a superpixel lies that has none yet
+  const cv::v_float32x4 zero = cv::v_setzero_f32(), down = cv::v_setall_f32(y),
+                        by_side = cv::v_setall_f32(1.0F / side);
+  for (std::size_t x = 0; x < row.x.size(); x += kLanes) {
+    const cv::v_float32x4 z = cv::v_load(&candidate.z[x]);
+    const cv::v_float32x4 dx = (cv::v_load(&row.x[x]) - cv::v_load(&candidate.x[x])) * by_side;
+    const cv::v_float32x4 dy = (down - cv::v_load(&candidate.y[x])) * by_side;
+    const cv::v_float32x4 dz =
+        cv::v_select(z > zero, (cv::v_load(&row.depth[x]) - z) * cv::v_load(&row.by_depth[x]), no_depth);
+    const cv::v_float32x4 d = dx * dx + dy * dy + dz * dz, best = cv::v_load(&row.distance[x]);
+    const cv::v_float32x4 nearer = d < best;
+    cv::v_store(&row.distance[x], cv::v_select(nearer, d, best));
+    cv::v_store(&row.label[x], cv::v_select(cv::v_reinterpret_as_s32(nearer), cv::v_load(&candidate.label[x]),
+                                            cv::v_load(&row.label[x])));
+  }
+}
+
+/// What giving pixels to superpixels is done in, round after round.
+struct Workspace {
+  Workspace(int width, std::size_t superpixels, int side)
+      : columns(patches_along(width, side)),
+        rows(static_cast<int>(superpixels) / columns),
+        padded(static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes)),
+        candidates(static_cast<int>(padded), side, columns, rows),
+        row{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded),
+            std::vector<float>(padded), std::vector<int>(padded)},
+        sums(superpixels) {
+    std::iota(row.x.begin(), row.x.end(), 0.0F);
+  }
+
+  int columns, rows;   // of superpixels
+  std::size_t padded;  // px
+  Candidates candidates;
+  Row row;
+  std::vector<Sum> sums;
+};
+
+/// Gives each pixel to the nearest superpixel.
+void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, int side, Workspace& work,
+            cv::Mat& labels) {
+  const int rows = work.rows, width = view.depth.cols;
+  const std::size_t n = work.padded;
+  Candidates& candidates = work.candidates;
+  Row& row = work.row;
+  int gathered = -1;
+  for (int y = 0; y < view.depth.rows; ++y) {
+    if (const int r = std::min(y / side, rows - 1); r != gathered)
+      candidates.gather(superpixels, gathered = r);
+    const auto* depth = view.depth.ptr<float>(y);
+    std::copy(depth, depth + width, row.depth.begin());
+    for (std::size_t x = 0; x < n; ++x)
+      row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
+    std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
+    for (const Candidate& candidate : candidates.all())
+      offer(candidate, static_cast<float>(y), static_cast<float>(side), row);
+    auto* label = labels.ptr<int>(y);
+    for (int x = 0; x < width; ++x) label[x] = depth[x] > 0 ? row.label[static_cast<std::size_t>(x)] : -1;
+  }
+}
+
+/// Who touches whom, superpixel after superpixel in one list.
+class Neighbours {
+ public:
+  struct Neighbour {
+    std::size_t superpixel;
+    float weight;
+  };
+
+  Neighbours(const std::vector<AdjacencyEdge>& adjacency, std::size_t superpixels,
+             const StillpointConfig& config)
+      : start_(superpixels + 1, 0), all_(2 * adjacency.size()) {
+    for (const AdjacencyEdge& edge : adjacency)
+      ++start_[static_cast<std::size_t>(edge.a) + 1], ++start_[static_cast<std::size_t>(edge.b) + 1];
+    for (std::size_t s = 1; s < start_.size(); ++s) start_[s] += start_[s - 1];
+    std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+    for (const AdjacencyEdge& edge : adjacency) {
+      const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
+      const float weight = static_cast<float>(config.smoothing) * static_cast<float>(edge.boundary) /
+                           static_cast<float>(config.superpixel_px);
+      all_[next[a]++] = {b, weight};
+      all_[next[b]++] = {a, weight};
+    }
+  }
+
+  [[nodiscard]] std::span<const Neighbour> of(std::size_t superpixel) const {
+    return {all_.data() + start_[superpixel], start_[superpixel + 1] - start_[superpixel]};
+  }
+
+ private:
+  std::vector<std::size_t> start_;  // of each superpixel's part of all_
+  std::vector<Neighbour> all_;
+};
+
+/// Counts who touches whom. Superpixels lie in a grid of `columns`; a pixel's superpixel is at most one cell
+/// off its own, and neighbours' cells are at most one apart: superpixels that touch lie within three cells.
+std::vector<AdjacencyEdge> find_adjacency(const RgbdView& view, const cv::Mat& labels,
+                                          std::size_t superpixels, int columns) {
+  constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;
+  std::vector<int> counts(superpixels * kPlaces, 0);
+  const auto look = [&](int a, int b, float za, float zb) {
+    if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
+    const int first = std::min(a, b), second = std::max(a, b);
+    const int down = second / columns - first / columns, right = second % columns - first % columns;
+    ++counts[static_cast<std::size_t>(first * kPlaces + down * kWide + right + kFar)];
+  };
+  for (int y = 0; y < labels.rows; ++y) {
+    const bool last = y + 1 == labels.rows;
+    const auto *label = labels.ptr<int>(y), *label_below = last ? label : labels.ptr<int>(y + 1);
+    const auto *z = view.depth.ptr<float>(y), *z_below = last ? z : view.depth.ptr<float>(y + 1);
+    for (int x = 0; x < labels.cols; ++x) {
+      if (x + 1 < labels.cols) look(label[x], label[x + 1], z[x], z[x + 1]);
+      look(label[x], label_below[x], z[x], z_below[x]);
+    }
+  }
+  std::vector<AdjacencyEdge> result;
+  for (int a = 0; a < static_cast<int>(superpixels); ++a)
+    for (int place = 0; place < kPlaces; ++place)
+      if (const int count = counts[static_cast<std::size_t>(a * kPlaces + place)]; count > 0)
+        result.push_back({a, a + place / kWide * columns + place % kWide - kFar, count});
+  return result;
+}
+
+}  // namespace
+
+Superpixels make_superpixels(const RgbdView& view, const StillpointConfig& config) {
+  Superpixels made{
+      cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)), seeds(view, config.superpixel_px), {}};
+  auto& [labels, superpixels, adjacency] = made;
+  Workspace work(view.depth.cols, superpixels.size(), config.superpixel_px);
+  std::vector<Sum>& sums = work.sums;
+  for (int round = 0; round < kRounds; ++round) {
+    assign(view, superpixels, config.superpixel_px, work, labels);
+    std::fill(sums.begin(), sums.end(), Sum{});
+    for (int y = 0; y < labels.rows; ++y) {
+      const auto* label = labels.ptr<int>(y);
+      const auto* depth = view.depth.ptr<float>(y);
+      for (int x = 0; x < labels.cols; ++x) {
+        if (label[x] < 0) continue;
+        Sum& sum = sums[static_cast<std::size_t>(label[x])];
+        sum.x += x, sum.y += y, sum.z += depth[x], ++sum.count;
+      }
+    }
+    for (std::size_t i = 0; i < superpixels.size(); ++i) {
+      superpixels[i].pixels = sums[i].count;
+      if (sums[i].count == 0) continue;
+      const double n = sums[i].count;
+      superpixels[i].centre = {static_cast<float>(sums[i].x / n), static_cast<float>(sums[i].y / n)};
+      superpixels[i].depth = static_cast<float>(sums[i].z / n);
+    }
+  }
+  adjacency = find_adjacency(view, labels, superpixels.size(), work.columns);
+  return made;
+}
+
+void judge_superpixels(const cv::Mat& log_odds, const cv::Mat& labels,
+                       const std::vector<AdjacencyEdge>& adjacency, const StillpointConfig& config,
+                       std::vector<Superpixel>& superpixels) {
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    const auto* odds = log_odds.ptr<float>(y);
+    for (int x = 0; x < labels.cols; ++x)
+      if (label[x] >= 0) superpixels[static_cast<std::size_t>(label[x])].evidence += odds[x];
+  }
+  for (Superpixel& superpixel : superpixels) {
+    if (superpixel.pixels > 0) superpixel.evidence /= static_cast<float>(superpixel.pixels);
+    superpixel.evidence = std::clamp(superpixel.evidence, -kMostSay, kMostSay);
+    superpixel.log_odds = superpixel.evidence;
+  }
+
+  const Neighbours neighbours(adjacency, superpixels.size(), config);
+  for (int i = 0; i < kRelaxations; ++i)
+    for (std::size_t s = 0; s < superpixels.size(); ++s) {
+      float sum = superpixels[s].evidence, weights = 1.0F;
+      for (const Neighbours::Neighbour& n : neighbours.of(s)) {
+        sum += n.weight * superpixels[n.superpixel].log_odds;
+        weights += n.weight;
+      }
+      superpixels[s].log_odds = sum / weights;
+    }
+  for (Superpixel& superpixel : superpixels)
+    superpixel.moving =
+        superpixel.pixels > 0 && superpixel.log_odds > static_cast<float>(config.moving_log_odds);
+}
+
+}  // namespace stillpoint

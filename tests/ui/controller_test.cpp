@@ -1,0 +1,242 @@
+// The whole program but its command line, without a display: sequences opened and left.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "core/error.hpp"
+#include "tests/cli/small_sequence.hpp"
+#include "tests/ui/controller_example.hpp"
+#include "ui/shell/offscreen.hpp"
+#include "ui/workbench/app_controller.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Without a display -----------------------------------------------------------------------------------------
+
+/// A sequence made of nothing, which takes no time to open.
+class TinySource final : public FrameSource {
+ public:
+  TinySource() {
+    camera_.width = 64;
+    camera_.height = 48;
+    camera_.fx = camera_.fy = 50.0;
+    camera_.cx = 31.5;
+    camera_.cy = 23.5;
+    image_ = cv::Mat(48, 64, CV_8UC3);
+    cv::randu(image_, 0, 255);
+  }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const Camera& camera() const override { return camera_; }
+  [[nodiscard]] int size() const override { return 3; }
+  [[nodiscard]] double timestamp(int index) const override { return index / 30.0; }
+  [[nodiscard]] Frame read(int index) const override {
+    Frame frame;
+    frame.index = index;
+    frame.timestamp = timestamp(index);
+    frame.colour = image_.clone();
+    frame.gray = cv::Mat(48, 64, CV_8UC1, cv::Scalar(90));
+    return frame;
+  }
+  [[nodiscard]] FrameTruth truth(int) const override { return {}; }
+  [[nodiscard]] const Trajectory& ground_truth() const override { return truth_; }
+  [[nodiscard]] bool has_depth() const override { return false; }
+  [[nodiscard]] bool has_masks() const override { return false; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+
+ private:
+  std::string name_ = "tiny";
+  Camera camera_;
+  cv::Mat image_;
+  Trajectory truth_;
+  std::vector<std::string> warnings_;
+};
+
+/// The name the next texture gets: GL gives the smallest that is free.
+GLuint next_texture(const Gl& gl) {
+  GLuint name = 0;
+  gl.GenTextures(1, &name);
+  gl.DeleteTextures(1, &name);
+  return name;
+}
+
+double resident_mb() {
+  std::ifstream file("/proc/self/statm");
+  double whole = 0.0, resident = 0.0;
+  file >> whole >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+TEST(AppController, AThousandSequencesLeaveNothingBehind) {
+  Offscreen offscreen({.width = 200, .height = 150});
+  ControllerOptions options = controller_options();
+  options.config.run.method = "none";
+  options.open_source = [](const std::string&, const Config& config) {
+    return untimed(std::make_shared<const TinySource>(), config);
+  };
+  {
+    AppController controller(std::move(options));
+    controller.workbench().set_layout({.panel = "input"});
+    const auto open = [&](int times) {
+      for (int i = 0; i < times; ++i) {
+        controller.open("tiny");
+        while (!controller.idle()) offscreen.draw([&](UiFrame& frame) { controller.draw(frame); });
+        ASSERT_TRUE(controller.view());
+      }
+      offscreen.draw([&](UiFrame& frame) { controller.draw(frame); });
+    };
+    open(100);
+    const GLuint texture = next_texture(offscreen.gl());
+    const double before = resident_mb();
+    open(900);
+    EXPECT_LE(next_texture(offscreen.gl()), texture + 1);
+    EXPECT_LT(resident_mb() - before, 15.0);
+    EXPECT_EQ(controller.settings().recent, std::vector<std::string>{"tiny"});
+    offscreen.make_current();
+  }
+  EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+}
+
+TEST(AppController, ShellsLeaveNothingBehind) {
+  const auto open = [](int times) {
+    for (int i = 0; i < times; ++i) {
+      Offscreen offscreen({.width = 100, .height = 80});
+      offscreen.draw([](UiFrame&) {});
+    }
+  };
+  open(4);
+  const double before = resident_mb();
+  open(20);
+  EXPECT_LT(resident_mb() - before, 20.0);
+}
+
+TEST(AppController, WhatIsOpenedMeanwhileRunsWithTheConfigThatWasChosen) {
+  const SmallSequence folder(4);
+  Offscreen offscreen({.width = 500, .height = 400});
+  std::promise<void> gate;
+  const std::shared_future<void> opened(gate.get_future());
+  ControllerOptions options = controller_options();
+  options.config.run.method = "none";
+  options.open_source = [opened, &folder](const std::string& where, const Config& config) {
+    if (where == "slow") opened.wait();
+    return untimed(open_sequence(folder.path()), config);
+  };
+  {
+    AppController controller(std::move(options));
+    controller.workbench().set_layout({.panel = "removal"});
+    const auto draw = [&] { offscreen.draw([&](UiFrame& frame) { controller.draw(frame); }); };
+    controller.open("first");
+    EXPECT_TRUE(draw_until(draw, [&] { return controller.idle() && controller.view(); }));
+    draw();
+    controller.open("slow");
+    // The panel's button runs all anew with the check: it is found by pressing down the panel's left side.
+    const auto tile = controller.workbench().tile_of("removal");
+    ASSERT_TRUE(tile);
+    for (float y = tile->y; y < tile->y + tile->height && controller.config().run.check_removal == 0;
+         y += 8.0F) {
+      const std::vector<InputEvent> click{MouseMoved{tile->x + 40.0F, y}, MouseButton{0, true, {}},
+                                          MouseButton{0, false, {}}};
+      for (const InputEvent& event : click) {
+        offscreen.send(event);
+        draw();
+      }
+      draw();
+    }
+    ASSERT_EQ(controller.config().run.check_removal, 1);
+    const Session* first = controller.session();
+    gate.set_value();
+    EXPECT_TRUE(draw_until(draw, [&] { return controller.idle() && controller.session() != first; }));
+    EXPECT_EQ(controller.view()->config.run.check_removal, 1);
+    EXPECT_EQ(controller.view()->config.run.method, "none");
+    offscreen.make_current();
+  }
+  EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+}
+
+TEST(AppController, OpensBesideTheInterface) {
+  Offscreen offscreen({.width = 400, .height = 300});
+  std::promise<void> gate;
+  const std::shared_future<void> opened(gate.get_future());
+  ControllerOptions options = controller_options();
+  options.open_source = [opened](const std::string& where, const Config& config) {
+    if (where == "bad") throw InputError("bad: is no sequence.");
+    opened.wait();
+    return untimed(std::make_shared<const TinySource>(), config);
+  };
+  {
+    AppController controller(std::move(options));
+    const FrameFunction draw = [&](UiFrame& frame) { controller.draw(frame); };
+    controller.open("slow");
+    // It would wait here for ever if it opened by itself.
+    const UiFrame frame = offscreen.draw(draw);
+    EXPECT_TRUE(frame.busy);
+    EXPECT_LT(frame.redraw_after_s, 1.0);
+    EXPECT_FALSE(controller.idle());
+    EXPECT_FALSE(controller.view());
+    gate.set_value();
+    EXPECT_TRUE(
+        draw_until([&] { offscreen.draw(draw); }, [&] { return controller.idle() && controller.view(); }));
+    controller.open("bad");
+    EXPECT_TRUE(draw_until([&] { offscreen.draw(draw); }, [&] { return controller.idle(); }));
+    EXPECT_EQ(controller.workbench().message(), "bad: is no sequence.");
+    EXPECT_EQ(controller.workbench().log().errors(), 1);
+    EXPECT_TRUE(controller.view());
+    offscreen.make_current();
+  }
+}
+
+TEST(AppController, OfSeveralAskedForTheLastIsOpened) {
+  Offscreen offscreen({.width = 400, .height = 300});
+  std::vector<std::string> asked;
+  std::mutex mutex;
+  ControllerOptions options = controller_options();
+  options.open_source = [&](const std::string& where, const Config& config) {
+    const std::lock_guard lock(mutex);
+    asked.push_back(where);
+    return untimed(std::make_shared<const TinySource>(), config);
+  };
+  {
+    AppController controller(std::move(options));
+    for (const char* where : {"a", "b", "c"}) controller.open(where);
+    EXPECT_TRUE(draw_until([&] { offscreen.draw([&](UiFrame& frame) { controller.draw(frame); }); },
+                           [&] { return controller.idle() && controller.view(); }));
+    EXPECT_EQ(asked, (std::vector<std::string>{"a", "c"}));
+    EXPECT_EQ(controller.settings().recent, std::vector<std::string>{"c"});
+    offscreen.make_current();
+  }
+}
+
+TEST(Settings, AFullDiskLeavesWhatWasThere) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("settings.json");
+  Settings settings;
+  settings.window_size = {800, 600};
+  write_settings(path, settings);
+  const std::string before = folder.read("settings.json");
+  // As on a full disk: not a byte more may be written.
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  settings.window_size = {1234, 777};
+  EXPECT_THROW(write_settings(path, settings), InputError);
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(folder.read("settings.json"), before);
+  write_settings(path, settings);
+  EXPECT_EQ(read_settings(path, {}).window_size, settings.window_size);
+}
+
+}  // namespace
+}  // namespace stillpoint::testing

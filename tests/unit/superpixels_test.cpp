@@ -1,0 +1,105 @@
+// Small views and their superpixels of surface.
+#include "core/motion/stillpoint/superpixels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/support/board_scene.hpp"
+
+namespace stillpoint {
+namespace {
+
+TEST(Superpixels, NeverCrossADepthEdge) {
+  const RgbdView view = BoardScene{}.view();
+  const auto [labels, superpixels, adjacency] = make_superpixels(view, {});
+  std::vector<std::pair<float, float>> range(superpixels.size(), {1e9F, 0.0F});
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (const int l = labels.at<int>(y, x); l >= 0) {
+        auto& r = range[static_cast<std::size_t>(l)];
+        r.first = std::min(r.first, view.depth.at<float>(y, x));
+        r.second = std::max(r.second, view.depth.at<float>(y, x));
+      }
+  int with_pixels = 0;
+  for (const auto& r : range)
+    if (r.second > 0) {
+      EXPECT_LT(r.second - r.first, 0.5F);
+      ++with_pixels;
+    }
+  EXPECT_GE(with_pixels, 10);
+  // The scene has an edge to cross.
+  double nearest = 0.0, farthest = 0.0;
+  cv::minMaxLoc(view.depth, &nearest, &farthest, nullptr, nullptr, view.depth > 0);
+  EXPECT_GT(farthest - nearest, 0.5);
+}
+
+/// All pairs that touch, found the plain way, and their boundaries.
+std::map<std::pair<int, int>, int> adjacency_by_hand(const RgbdView& view, const cv::Mat& labels) {
+  std::map<std::pair<int, int>, int> found;
+  const auto look = [&](const cv::Point& p, const cv::Point& q) {
+    const int a = labels.at<int>(p), b = labels.at<int>(q);
+    const bool touch =
+        a >= 0 && b >= 0 && a != b && same_surface(view.depth.at<float>(p), view.depth.at<float>(q));
+    if (touch) ++found[std::minmax(a, b)];
+  };
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) {
+      if (x + 1 < labels.cols) look({x, y}, {x + 1, y});
+      if (y + 1 < labels.rows) look({x, y}, {x, y + 1});
+    }
+  return found;
+}
+
+TEST(Superpixels, AdjacencyEdgesAreAllPairsThatTouchOnASurface) {
+  cv::Mat gray, depth;
+  BoardScene{}.render(gray, depth);
+  // Whole superpixels and cut ones at the last rows and columns, down to one superpixel a side.
+  for (const cv::Size& size : {cv::Size(640, 480), cv::Size(628, 452), cv::Size(60, 480)})
+    for (const int side : {7, 10, 13, 64, 100}) {
+      SCOPED_TRACE(testing::Message() << size << " by " << side);
+      const cv::Rect part({0, 0}, size);
+      const RgbdView view = make_rgbd_view(gray(part), depth(part), board_camera(), 4);
+      StillpointConfig config;
+      config.superpixel_px = side;
+      const auto [labels, superpixels, adjacency] = make_superpixels(view, config);
+      const auto expected = adjacency_by_hand(view, labels);
+      ASSERT_EQ(adjacency.size(), expected.size());
+      auto edge = adjacency.begin();
+      for (const auto& [pair, boundary] : expected) {
+        EXPECT_EQ(std::make_pair(edge->a, edge->b), pair);
+        EXPECT_EQ(edge->boundary, boundary);
+        ++edge;
+      }
+      if (side <= 13) {
+        EXPECT_GT(expected.size(), 0U);
+        EXPECT_GE(expected.size() + 1, superpixels.size()) << "one column at the least hangs together";
+      }
+    }
+}
+
+TEST(Superpixels, EvenTheSmallestViewHasAPatch) {
+  for (const cv::Size& size : {cv::Size(1, 1), cv::Size(3, 2), cv::Size(13, 5), cv::Size(40, 3)}) {
+    const cv::Mat gray(size, CV_8UC1, cv::Scalar(90)), depth(size, CV_32FC1, cv::Scalar(1.5F));
+    const RgbdView view = make_rgbd_view(gray, depth, board_camera(), 4);
+    ASSERT_FALSE(view.depth.empty()) << size;
+    EXPECT_EQ(cv::norm(view.depth, cv::Mat(view.depth.size(), CV_32FC1, cv::Scalar(1.5F)), cv::NORM_INF),
+              0.0);
+    const auto [labels, superpixels, adjacency] = make_superpixels(view, {});
+    ASSERT_FALSE(superpixels.empty()) << size;
+    EXPECT_EQ(cv::countNonZero(labels < 0), 0) << size;
+    EXPECT_EQ(enlarged(view.depth > 1.0F, 4, size).size(), size);
+  }
+}
+
+TEST(RgbdView, ASmallMaskIsEnlargedByBlocks) {
+  const cv::Mat small = (cv::Mat_<uchar>(2, 3) << 255, 0, 255, 0, 255, 0);
+  const cv::Mat full = enlarged(small, 4, {14, 9});  // 2 columns and a row that no block covers
+  ASSERT_EQ(full.size(), cv::Size(14, 9));
+  for (int y = 0; y < full.rows; ++y)
+    for (int x = 0; x < full.cols; ++x)
+      EXPECT_EQ(full.at<uchar>(y, x), small.at<uchar>(std::min(y / 4, 1), std::min(x / 4, 2)));
+}
+
+}  // namespace
+}  // namespace stillpoint

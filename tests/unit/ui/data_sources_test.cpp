@@ -1,0 +1,124 @@
+#include "ui/session/data_sources.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/inspect/lane_figures.hpp"
+
+namespace stillpoint {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// A run whose steps are off by so many millimetres; below 0 the frame is lost.
+RunView run_of(const std::vector<double>& errors_mm) {
+  RunView run;
+  for (std::size_t i = 0; i < errors_mm.size(); ++i) {
+    FrameRecord record;
+    record.index = static_cast<int>(i);
+    record.timestamp = static_cast<double>(i) / 30.0;
+    record.status = errors_mm[i] < 0.0 ? FrameStatus::lost : FrameStatus::tracked;
+    record.inliers = 100 - static_cast<int>(i);
+    run.records.push_back(record);
+    if (i > 0 && errors_mm[i] >= 0.0)
+      run.evaluation.rpe_frame.errors.push_back(
+          {record.timestamp - 1.0 / 30.0, record.timestamp, 0.001 * errors_mm[i], 0.0});
+  }
+  return run;
+}
+
+TEST(LaneFigures, ErrorsStandAtTheEndOfTheirMotion) {
+  const std::vector<double> values = lane_values(run_of({0, 3, 5, -1, 2}), LaneFigure::kRpeFrame);
+  ASSERT_EQ(values.size(), 5U);
+  EXPECT_TRUE(std::isnan(values[0]));
+  EXPECT_NEAR(values[1], 3.0, 1e-9);
+  EXPECT_NEAR(values[2], 5.0, 1e-9);
+  EXPECT_TRUE(std::isnan(values[3]));
+  EXPECT_NEAR(values[4], 2.0, 1e-9);
+}
+
+TEST(LaneFigures, KeysAndNamesAreTheirOwn) {
+  ASSERT_GE(lane_infos().size(), 2U);
+  for (const LaneInfo& a : lane_infos()) {
+    EXPECT_EQ(&info_of(a.figure), &a);
+    for (const LaneInfo& b : lane_infos()) {
+      if (&a == &b) continue;
+      EXPECT_NE(a.key, b.key);
+      EXPECT_NE(a.name, b.name);
+    }
+  }
+}
+
+TEST(LaneFigures, WithoutTruthInliersTell) {
+  RunView run = run_of({0, 1, 2});
+  EXPECT_EQ(usual_figure(run), LaneFigure::kRpeFrame);
+  run.evaluation = {};
+  EXPECT_EQ(usual_figure(run), LaneFigure::kInliers);
+  // Fewer are worse: the last frame has the fewest.
+  // … and the better half is none of the worst.
+  EXPECT_THAT(worst_frames(run, LaneFigure::kInliers, 1), ElementsAre(2, 1));
+}
+
+TEST(WorstFrames, EachFailureIsNamedOnce) {
+  // Two spikes with slopes, one at 3 and a greater one at 9.
+  const RunView run = run_of({0, 1, 4, 6, 5, 1, 1, 2, 8, 9, 7, 1, 1});
+  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 4), ElementsAre(9, 3));
+  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 4, 1), ElementsAre(9));
+}
+
+TEST(WorstFrames, LostStretchesComeFirst) {
+  const RunView run = run_of({0, 1, -1, -1, 1, 1, 1, 50, 1, 1, -1, 1});
+  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 3, 3), ElementsAre(2, 10, 7));
+}
+
+TEST(WorstFrames, OneGoesDownAndUpTheList) {
+  const std::vector<int> worst{9, 3, 40};
+  EXPECT_EQ(next_worst(worst, 17), 9) << "from anywhere to the worst";
+  EXPECT_EQ(next_worst(worst, 9), 3);
+  EXPECT_EQ(next_worst(worst, 3), 40);
+  EXPECT_EQ(next_worst(worst, 40), std::nullopt);
+  EXPECT_EQ(previous_worst(worst, 40), 3);
+  EXPECT_EQ(previous_worst(worst, 9), std::nullopt);
+  EXPECT_EQ(previous_worst(worst, 17), std::nullopt);
+  EXPECT_EQ(next_worst({}, 0), std::nullopt);
+}
+
+TEST(Places, HitsOfEnabledBreakpointsAreOneList) {
+  DebugView debug;
+  debug.breakpoints = {
+      {{"a", true}, "", 0, {3, 8}}, {{"b", false}, "", 0, {5}}, {{"c", true}, "", 0, {1, 8}}};
+  EXPECT_THAT(hit_frames(debug), ElementsAre(1, 3, 8));
+  EXPECT_EQ(next_in(hit_frames(debug), 3), 8);
+  EXPECT_EQ(previous_in(hit_frames(debug), 3), 1);
+  EXPECT_EQ(next_in(hit_frames(debug), 8), std::nullopt);
+  EXPECT_EQ(previous_in(hit_frames(debug), 1), std::nullopt);
+}
+
+TEST(Places, TheFirstGhostToPartIsGoneTo) {
+  DebugView debug;
+  EXPECT_EQ(first_divergence(debug), std::nullopt);
+  debug.ghosts.resize(3);
+  debug.ghosts[0].diverged = 40;
+  debug.ghosts[2].diverged = 12;
+  EXPECT_EQ(first_divergence(debug), 12);
+}
+
+TEST(Bookmarks, StayInOrderAndKeepTheirNotes) {
+  std::vector<Bookmark> all = with_bookmark({{3, "a"}, {9, "b"}}, 5);
+  EXPECT_THAT(all, ElementsAre(Bookmark{3, "a"}, Bookmark{5, ""}, Bookmark{9, "b"}));
+  EXPECT_EQ(with_bookmark(all, 9), all);
+  EXPECT_THAT(without_bookmark(all, 3), ElementsAre(Bookmark{5, ""}, Bookmark{9, "b"}));
+  EXPECT_EQ(without_bookmark(all, 4), all);
+}
+
+TEST(Span, IsCutToTheSequence) {
+  EXPECT_EQ(span_between(7, 3, 100), (FrameSpan{3, 7}));
+  EXPECT_EQ(span_between(-4, 300, 100), (FrameSpan{0, 99}));
+  EXPECT_EQ(span_between(0, 0, 0), (FrameSpan{0, 0}));
+}
+
+}  // namespace
+}  // namespace stillpoint

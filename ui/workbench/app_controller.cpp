@@ -1,0 +1,220 @@
+#include "ui/workbench/app_controller.hpp"
+
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "ui/panels/panel.hpp"
+
+namespace stillpoint {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename T>
+bool is_ready(const std::future<T>& future) {
+  return future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+/// A path that means the same wherever the program is started.
+std::string lasting_name(const std::string& where) {
+  std::error_code ignored;
+  return fs::exists(where, ignored) ? fs::absolute(where, ignored).lexically_normal().string() : where;
+}
+
+/// Parameters that are not at their defaults, as --set takes them.
+std::vector<std::string> changed_settings(Config config) {
+  Config defaults;
+  const auto now = parameters(config), plain = parameters(defaults);
+  std::vector<std::string> changed;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    std::visit(
+        [&](auto* value) {
+          const auto* other = std::get<decltype(value)>(plain[i].value);
+          if (*value != *other) changed.push_back(fmt::format("{}={}", now[i].key, *value));
+        },
+        now[i].value);
+  }
+  return changed;
+}
+
+/// Has the calling thread, and those it begins, give way to the interface: it draws at once while frames are
+/// processed on every processor.
+void give_way() {
+#ifdef __linux__
+  constexpr int kNicer = 5;
+  // On Linux 0 is the calling thread alone. Where it is refused, work goes on as before.
+  (void)setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kNicer);
+#endif
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+AppController::AppController(ControllerOptions options)
+    : options_(std::move(options)), workbench_(make_panels(), host()) {
+  workbench_.set_layout(options_.settings.layout ? *options_.settings.layout
+                                                 : default_layout(options_.config.run.method));
+  workbench_.set_recent(options_.settings.recent);
+}
+
+AppController::~AppController() {
+  if (opening_.valid()) opening_.wait();
+}
+
+WorkbenchHost AppController::host() {
+  // Between sequences there is nobody to ask.
+  const auto ask = [this](auto request) {
+    return [this, request](auto value) {
+      if (session_) request(*session_, value);
+    };
+  };
+  return {.go_to_frame = ask([](Session& session, int frame) { session.request_frame(frame); }),
+          .play = ask([](Session& session, bool play) { session.request_play(play); }),
+          .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
+          .open = [this](const std::string& where) { open(where); },
+          .request =
+              [this](SessionRequest wanted) {
+                // What is opened next is run as this one is.
+                if (const auto* all = std::get_if<request::RunAll>(&wanted)) {
+                  options_.config = all->config;
+                  ++configured_;
+                }
+                if (session_) session_->request(std::move(wanted));
+              },
+          .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
+}
+
+std::unique_ptr<Session> AppController::make_session(const OpenedSource& place,
+                                                     const std::string& where) const {
+  SessionOptions options = place.options;
+  std::error_code none;
+  if (options_.marks_folder)
+    options.sidecar = SidecarPlaces{.folder = fs::is_directory(where, none) ? fs::path(where) : fs::path(),
+                                    .user_folder = *options_.marks_folder};
+  auto session = std::make_unique<Session>(place.source, place.config, options);
+  session->start(options_.wake ? options_.wake : [] {});
+  // What is dynamic shows from the first frame that has another to be compared with.
+  session->request_frame(1);
+  if (!where.empty() && where == options_.plays_when_opened) session->request_play(true);
+  return session;
+}
+
+void AppController::begin_opening(const std::string& where, std::optional<OpenedSource> place) {
+  workbench_.set_opening(where);
+  Opened begun{.where = where,
+               .problem = {},
+               .place = std::move(place),
+               .session = nullptr,
+               .configured = configured_};
+  opening_ =
+      std::async(std::launch::async, [this, opened = std::move(begun), config = options_.config]() mutable {
+        give_way();
+        try {
+          if (!opened.place) opened.place = options_.open_source(opened.where, config);
+          opened.session = make_session(*opened.place, opened.where);
+        } catch (const std::exception& error) {
+          opened.problem = error.what();
+        }
+        if (options_.wake) options_.wake();
+        return std::move(opened);
+      });
+}
+
+void AppController::open(const std::string& where) {
+  if (opening_.valid())
+    next_ = where;
+  else
+    begin_opening(where, std::nullopt);
+}
+
+void AppController::show(OpenedSource place, const std::string& where) {
+  if (opening_.valid()) opening_.get();
+  given_ = place.source;
+  opened_from_ = where;
+  begin_opening(where, std::move(place));
+}
+
+void AppController::take_opened() {
+  std::erase_if(retiring_, is_ready<void>);
+  if (!opening_.valid() || !is_ready(opening_)) return;
+  Opened opened = opening_.get();
+  workbench_.set_opening("");
+  if (next_) {
+    // Another was asked for meanwhile: this one ends unseen.
+    begin_opening(*std::exchange(next_, std::nullopt), std::nullopt);
+  } else if (!opened.problem.empty()) {
+    workbench_.say(opened.problem, true);
+    return;
+  } else {
+    std::swap(session_, opened.session);
+    // A finished run comes with a config of its own.
+    if (opened.place->options.recorded)
+      options_.config = opened.place->config;
+    else if (opened.configured != configured_)
+      session_->request_config(options_.config);
+    opened_from_ = opened.where;
+    remember(options_.settings.recent, lasting_name(opened.where));
+    workbench_.set_recent(options_.settings.recent);
+    const FrameSource& source = *opened.place->source;
+    workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
+    for (const std::string& warning : source.warnings()) workbench_.say(warning);
+    if (!opened.place->options.no_images.empty()) workbench_.say(opened.place->options.no_images, true);
+  }
+  // Its worker finishes the frame at hand first, which must not hold up the interface.
+  if (opened.session)
+    retiring_.push_back(
+        std::async(std::launch::async,
+                   [last = std::shared_ptr<Session>(std::move(opened.session))]() mutable { last.reset(); }));
+}
+
+void AppController::draw(UiFrame& frame) {
+  take_opened();
+  for (const std::string& path : frame.dropped_files) open(path);
+  const auto view = this->view();
+  workbench_.draw(frame, view.get());
+  frame.busy = frame.busy || !idle();
+  options_.settings.look = frame.wanted_look;
+}
+
+bool AppController::idle() const {
+  if (opening_.valid() || next_) return false;
+  return !session_ || session_->idle();
+}
+
+std::string AppController::title() const {
+  return session_ ? fmt::format("{} - Stillpoint", session_->source().name()) : "Stillpoint";
+}
+
+Settings AppController::settings() const {
+  Settings settings = options_.settings;
+  settings.layout = workbench_.layout();
+  return settings;
+}
+
+RecordingStart AppController::recording_start(std::array<int, 2> size) const {
+  RecordingStart start;
+  if (const FrameSource* source = session_ ? &session_->source() : given_.get()) {
+    start.sequence_name = source->name();
+    start.sequence_frames = source->size();
+    start.opened_from = opened_from_;
+  }
+  start.size = size;
+  start.theme = options_.settings.look.theme == ThemeName::kDark ? "dark" : "light";
+  start.scale = static_cast<double>(options_.settings.look.scale);
+  start.layout = one_line(to_json(workbench_.layout()));
+  start.settings = changed_settings(options_.config);
+  return start;
+}
+
+}  // namespace stillpoint

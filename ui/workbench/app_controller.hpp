@@ -1,0 +1,93 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ui/session/opened_source.hpp"
+#include "ui/shell/recording.hpp"
+#include "ui/workbench/settings.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint {
+
+/// What a AppController works with.
+struct ControllerOptions {
+  /// Opens a folder, a finished run's too, or generated:KIND, to be run with a config; called on threads of
+  /// its own. Throws InputError.
+  std::function<OpenedSource(const std::string& where, const Config& config)> open_source;
+  Config config{};
+  Settings settings{};  ///< look, layout and recent sequences as they were left
+  /// For marks in sequences that lie where nothing can be written; nothing: no marks are kept anywhere.
+  std::optional<std::filesystem::path> marks_folder{};
+  std::string plays_when_opened{};  ///< a sequence that plays at once; empty: none does
+  std::function<void()> wake{};     ///< has the interface drawn soon; called from any thread
+};
+
+/// The workbench with the sessions it shows: the one place where sequences are opened and left, in the window
+/// and offscreen alike. Opening, and waiting for a session to end, happen beside the interface. The GL
+/// context it was first drawn in must be current when it goes.
+class AppController {
+ public:
+  explicit AppController(ControllerOptions options);
+  /// Waits for what is being opened.
+  ~AppController();
+  AppController(const AppController&) = delete;
+  AppController& operator=(const AppController&) = delete;
+
+  /// Opens a sequence soon; when that fails the one open stays, and the workbench says why. Of several asked
+  /// for meanwhile, the last is opened.
+  void open(const std::string& where);
+  /// The same with what is open already.
+  void show(OpenedSource place, const std::string& where);
+
+  /// Draws the workbench, takes dropped folders, and takes in what was opened.
+  void draw(UiFrame& frame);
+
+  /// Nothing is being opened, asked for or worked on.
+  [[nodiscard]] bool idle() const;
+
+  [[nodiscard]] std::shared_ptr<const SessionView> view() const {
+    return session_ ? session_->view() : nullptr;
+  }
+  [[nodiscard]] Session* session() { return session_.get(); }
+  [[nodiscard]] Workbench& workbench() { return workbench_; }
+  [[nodiscard]] const Config& config() const { return options_.config; }
+  [[nodiscard]] std::string title() const;  ///< for the window
+
+  /// What is to be remembered.
+  [[nodiscard]] Settings settings() const;
+
+  /// How things stand, for the head of a recording.
+  [[nodiscard]] RecordingStart recording_start(std::array<int, 2> size) const;
+
+ private:
+  struct Opened {
+    std::string where, problem;
+    std::optional<OpenedSource> place;
+    std::unique_ptr<Session> session;
+    int configured = 0;  ///< configured_ when it began
+  };
+
+  WorkbenchHost host();
+  void begin_opening(const std::string& where, std::optional<OpenedSource> place);
+  void take_opened();
+  [[nodiscard]] std::unique_ptr<Session> make_session(const OpenedSource& place,
+                                                      const std::string& where) const;
+
+  ControllerOptions options_;
+  Workbench workbench_;
+  std::unique_ptr<Session> session_;
+  std::shared_ptr<const FrameSource> given_;  // the one shown first, while it is not in session_ yet
+  std::string opened_from_;
+  int configured_ = 0;  // how often the config was changed
+  std::future<Opened> opening_;
+  std::optional<std::string> next_;          // to be opened after that
+  std::vector<std::future<void>> retiring_;  // sessions that end
+};
+
+}  // namespace stillpoint
