@@ -107,7 +107,7 @@ std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
 std::vector<int> frames_where(const Condition& condition, const RunView& run,
                               const std::vector<int>& frames) {
   std::vector<int> chosen;
-  for (const int frame : condition.frames(FrameFigures(run.records, &run.evaluation, run.scores)))
+  for (const int frame : condition.frames(FrameFigures(run.measured())))
     if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
   return chosen;
 }

@@ -138,7 +138,12 @@ std::string trajectories(Painter& painter, const ReportGroup& group) {
 
 std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const ReportRun& run, int count,
                                const ReportProgress& progress) {
-  const std::vector<WorstFrame> worst = worst_frames(run.result(), run.report, count, kApart);
+  const std::vector<WorstFrame> worst = [&] {
+    const RunResult& result = run.result();
+    const MeasuredFrames frames{result.records, run.report.evaluation ? &*run.report.evaluation : nullptr,
+                                &result.scores};
+    return worst_frames(frames, usual_figure(frames), kApart, static_cast<std::size_t>(count));
+  }();
   if (worst.empty()) return {};
   const bool again = method_named(run.report.method).needs.keeps_state && run.opened.no_images.empty();
   const auto session = session_of(group, run, again);

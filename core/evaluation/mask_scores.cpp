@@ -64,13 +64,16 @@ RemovalScore& RemovalScore::operator+=(const RemovalScore& other) {
   return *this;
 }
 
+bool is_dynamic_at(const cv::Mat& truth, const cv::Point2f& pixel) {
+  return truth.at<uchar>(std::clamp(cvRound(pixel.y), 0, truth.rows - 1),
+                         std::clamp(cvRound(pixel.x), 0, truth.cols - 1)) != 0;
+}
+
 RemovalScore score_removal(const std::vector<FeatureVerdict>& features, const cv::Mat& truth) {
   RemovalScore score;
   if (truth.empty()) return score;
   for (const FeatureVerdict& feature : features) {
-    const int x = std::clamp(cvRound(feature.pixel.x), 0, truth.cols - 1);
-    const int y = std::clamp(cvRound(feature.pixel.y), 0, truth.rows - 1);
-    const bool moves = truth.at<uchar>(y, x) != 0;
+    const bool moves = is_dynamic_at(truth, feature.pixel);
     auto& count = feature.removed ? (moves ? score.removed_rightly : score.removed_wrongly)
                                   : (moves ? score.kept_wrongly : score.kept_rightly);
     ++count;

@@ -29,6 +29,9 @@ struct MaskScore {
 /// @throws InputError when the sizes differ
 [[nodiscard]] MaskScore score_mask(const cv::Mat& found, const cv::Mat& truth);
 
+/// Whether a mask (CV_8UC1, not empty) holds the pixel nearest to a place, px.
+[[nodiscard]] bool is_dynamic_at(const cv::Mat& truth, const cv::Point2f& pixel);
+
 /// A feature and whether it was taken out.
 struct FeatureVerdict {
   cv::Point2f pixel;  ///< px, in the image as it is

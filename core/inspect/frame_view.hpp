@@ -8,6 +8,7 @@
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/motion/stage_log.hpp"
 #include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/frame.hpp"
 
@@ -47,6 +48,9 @@ struct RunView {
   std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
   Trajectory trajectory;             ///< estimated poses so far
   TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
+
+  /// Its frames, as frame figures are asked of them; refers to this run.
+  [[nodiscard]] MeasuredFrames measured() const { return {records, &evaluation, &scores}; }
 };
 
 }  // namespace stillpoint

@@ -240,15 +240,16 @@ class Parser {
   NodePtr figure() {
     const Token token = tokens_[at_++];
     const auto& infos = frame_figure_infos();
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      if (infos[i].name != token.text) continue;
-      const int column = static_cast<int>(i);
+    if (const int column = frame_figure(token.text); column >= 0) {
       columns_.insert(column);
-      return node(infos[i].unit, token.column,
+      return node(infos[static_cast<std::size_t>(column)].unit, token.column,
                   [column](const FrameFigures& f, int row) { return f.value(row, column); });
     }
     std::vector<std::string_view> names;
-    for (const FigureInfo& info : infos) names.push_back(info.name);
+    for (const FigureInfo& info : infos) {
+      names.push_back(info.name);
+      if (!info.column.empty()) names.push_back(info.column);
+    }
     unknown(token, "name", names);
   }
 
@@ -363,7 +364,8 @@ std::string condition_help() {
       "  What is not known, such as errors without ground truth, makes a comparison false.\n"
       "Names:\n";
   for (const FigureInfo& info : frame_figure_infos())
-    text += fmt::format("  {:<18} {:<7} {}\n", info.name, to_string(info.unit), info.help);
+    text += fmt::format("  {:<18} {:<7} {}{}\n", info.name, to_string(info.unit), info.help,
+                        info.column.empty() ? "" : fmt::format(" (in frames.csv: {})", info.column));
   return text;
 }
 

@@ -10,19 +10,54 @@
 
 namespace stillpoint {
 
+// What is known of a frame in numbers: one table, from which conditions, the timeline's lanes, "worst", the
+// comparison of runs and frames.csv all come.
+
 [[nodiscard]] std::string_view to_string(FigureUnit unit);  ///< "m", …; "" for plain numbers, "yes/no"
 
-/// All there are, in the order help lists them; those that only one method has come last.
+/// How people are shown a figure: mm rather than m, % rather than a share.
+struct ShownUnit {
+  double factor = 1.0;  ///< times the figure's own unit
+  std::string_view unit;
+};
+[[nodiscard]] ShownUnit shown_unit(FigureUnit unit);
+/// "12.3 mm", "yes"; "–" where it is not known.
+[[nodiscard]] std::string shown_value(const FigureInfo& figure, double value);
+/// Its title, or its name.
+[[nodiscard]] const std::string& shown_name(const FigureInfo& figure);
+
+/// All there are, in the order in which help, lanes and columns have them; those that only one method has
+/// come last.
 [[nodiscard]] const std::vector<FigureInfo>& frame_figure_infos();
+
+/// Its head in CSV: FigureInfo::column, or the name.
+[[nodiscard]] const std::string& column_head(const FigureInfo& figure);
+
+/// Index of the first figure that only one method has.
+[[nodiscard]] int first_method_figure();
+
+/// Index into frame_figure_infos(), by a figure's name, column or old name; -1 where there is none.
+[[nodiscard]] int frame_figure(std::string_view name);
+
+/// Records and what was measured of them. Refers to all three.
+struct MeasuredFrames {
+  const std::vector<FrameRecord>& records;
+  const TrajectoryEvaluation* evaluation = nullptr;  ///< null, or of these records' poses
+  const std::vector<FrameScores>* scores = nullptr;  ///< null, or one a record
+};
+
+/// One figure of each record; NaN where it is not known.
+/// @param figure index into frame_figure_infos()
+[[nodiscard]] std::vector<double> frame_figure_values(const MeasuredFrames& frames, int figure);
+
+/// All figures of one record, in the order of frame_figure_infos(); NaN where one is not known. Those of the
+/// removal check are not: they are judged over a run.
+[[nodiscard]] std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t row);
 
 /// The figures of a run's frames as one table: a row a record, a column a figure; NaN where it is not known.
 class FrameFigures {
  public:
-  /// @param evaluation null, or of these records' poses
-  /// @param scores empty, or one a record
-  explicit FrameFigures(const std::vector<FrameRecord>& records,
-                        const TrajectoryEvaluation* evaluation = nullptr,
-                        const std::vector<FrameScores>& scores = {});
+  explicit FrameFigures(const MeasuredFrames& frames);
 
   [[nodiscard]] int rows() const { return static_cast<int>(frames_.size()); }
   [[nodiscard]] int frame(int row) const { return frames_[static_cast<std::size_t>(row)]; }

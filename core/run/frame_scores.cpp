@@ -7,6 +7,7 @@ FrameScores& FrameScores::operator+=(const FrameScores& other) {
   mask += other.mask;
   partial_mask += other.partial_mask;
   removal += other.removal;
+  dynamic_inliers += other.dynamic_inliers;
   return *this;
 }
 
@@ -20,8 +21,10 @@ FrameScores score_frame(const FrameResult& result, const cv::Mat& moving) {
   scores.partial_mask = score_mask(result.motion.partial_mask, moving);
   std::vector<FeatureVerdict> verdicts;
   verdicts.reserve(record.features.size());
-  for (const FeatureRecord& feature : record.features)
+  for (const FeatureRecord& feature : record.features) {
     verdicts.push_back({feature.pixel, feature.fate == FeatureFate::removed});
+    if (feature.fate == FeatureFate::inlier && is_dynamic_at(moving, feature.pixel)) ++scores.dynamic_inliers;
+  }
   scores.removal = score_removal(verdicts, moving);
   return scores;
 }

@@ -7,10 +7,11 @@ namespace stillpoint {
 
 /// A frame's masks and removals against what is truly dynamic.
 struct FrameScores {
-  bool known = false;      ///< the truth was there, and the frame had a reference to compare with
-  MaskScore mask;          ///< the method's mask
-  MaskScore partial_mask;  ///< MotionResult::partial_mask, where the method has one
-  RemovalScore removal;    ///< features taken out
+  bool known = false;       ///< the truth was there, and the frame had a reference to compare with
+  MaskScore mask;           ///< the method's mask
+  MaskScore partial_mask;   ///< MotionResult::partial_mask, where the method has one
+  RemovalScore removal;     ///< features taken out
+  int dynamic_inliers = 0;  ///< inliers of the pose that lie on what is truly dynamic
 
   FrameScores& operator+=(const FrameScores& other);
 };

@@ -126,6 +126,7 @@ void transfer_scores(Archive& archive, Scores& s) {
   for (auto* features : {&s.removal.removed_rightly, &s.removal.removed_wrongly, &s.removal.kept_wrongly,
                          &s.removal.kept_rightly})
     archive(*features);
+  archive(s.dynamic_inliers);
 }
 
 template <typename Archive, typename SavedKeyframeType>

@@ -27,7 +27,7 @@ namespace stillpoint {
 // its fields), then the mask. The end comes once the run has ended: map, trajectories, scores, and, last, the
 // run's hash.
 
-inline constexpr std::uint32_t kRecordsVersion = 5;
+inline constexpr std::uint32_t kRecordsVersion = 6;
 inline constexpr const char* kRecordsName = "records.bin";
 
 /// Writes records.bin while a run goes on. A frame that cannot be written, because the disk is full, does not

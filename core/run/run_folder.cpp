@@ -3,126 +3,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <map>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/tables.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
 namespace {
 
-/// A frame's own errors, NaN where there is none.
-struct FrameErrors {
-  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  double ate_m = kUnknown;
-  double rpe_frame_m = kUnknown, rpe_frame_deg = kUnknown;    // of the motion that ends here
-  double rpe_second_m = kUnknown, rpe_second_deg = kUnknown;  // … of the second that ends here
-};
-
-std::map<double, FrameErrors> errors_by_stamp(const RunReport& report) {
-  std::map<double, FrameErrors> errors;
-  if (!report.evaluation) return errors;
-  for (const AbsoluteError& e : report.evaluation->ate.errors) errors[e.timestamp].ate_m = e.translation_m;
-  for (const RelativeError& e : report.evaluation->rpe_frame.errors) {
-    errors[e.to_timestamp].rpe_frame_m = e.translation_m;
-    errors[e.to_timestamp].rpe_frame_deg = e.rotation_deg;
-  }
-  for (const RelativeError& e : report.evaluation->rpe_time.errors) {
-    errors[e.to_timestamp].rpe_second_m = e.translation_m;
-    errors[e.to_timestamp].rpe_second_deg = e.rotation_deg;
-  }
-  return errors;
-}
-
-/// Collects a row's cells beside their headings, so that the two cannot part.
-class Row {
- public:
-  void text(const char* name, std::string_view value) { add(name, std::string(value)); }
-  void count(const char* name, std::int64_t value) { add(name, fmt::format("{}", value)); }
-  void number(const char* name, double value, int digits = 4) {
-    add(name, std::isnan(value) ? std::string() : fmt::format("{:.{}f}", value, digits));
-  }
-  void share(const char* name, const std::optional<double>& value) {
-    number(name, value.value_or(FrameErrors::kUnknown));
-  }
-  std::vector<std::string> names, values;
-
- private:
-  void add(const char* name, std::string value) {
-    names.emplace_back(name);
-    values.push_back(std::move(value));
-  }
-};
-
-Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors& errors,
-              const MethodInfo& method) {
-  Row row;
-  row.count("frame", r.index);
-  row.number("timestamp_s", r.timestamp, 6);
-  row.text("status", to_string(r.status));
-  row.count("keyframe", r.keyframe ? 1 : 0);
-  row.count("features_found", r.features_found);
-  row.count("features_removed", r.features_removed);
-  row.count("features_kept", r.features_kept);
-  row.number("mask_share", r.mask_share);
-  row.count("motion_rounds", r.motion_rounds);
-  for (const FigureInfo& info : method.figures) {
-    const auto figure = std::find_if(r.motion_figures.begin(), r.motion_figures.end(),
-                                     [&](const MotionFigure& one) { return one.name == info.name; });
-    row.number(info.name.c_str(), figure == r.motion_figures.end() ? FrameErrors::kUnknown : figure->value,
-               info.digits);
-  }
-  row.text("pose_start", to_string(r.pose_start));
-  row.count("matches", r.matches);
-  row.count("inliers", r.inliers);
-  row.number("rms_px", r.rms_px);
-  row.count("refine_iterations", r.refine_iterations);
-  row.count("direct_patches", r.direct.patches);
-  row.number("direct_share", r.direct.share, 3);
-  row.count("map_points", r.map_points);
-  row.count("map_keyframes", r.map_keyframes);
-  row.count("new_points", r.new_points);
-  row.count("fused_points", r.fused_points);
-  row.count("culled_points", r.culled_points);
-  row.count("culled_keyframes", r.culled_keyframes);
-  row.number("bundle_rms_before_px", r.bundle_rms_before_px);
-  row.number("bundle_rms_px", r.bundle_rms_px);
-  row.count("bundle_iterations", r.bundle_iterations);
-  for (const auto& [name, ms] : {std::pair{"motion_ms", r.ms.motion},
-                                 {"features_ms", r.ms.features},
-                                 {"matching_ms", r.ms.matching},
-                                 {"pose_ms", r.ms.pose},
-                                 {"mapping_ms", r.ms.mapping},
-                                 {"bundle_ms", r.ms.bundle},
-                                 {"total_ms", r.ms.total}})
-    row.number(name, ms, 3);
-  row.number("ate_m", errors.ate_m, 6);
-  row.number("rpe_frame_m", errors.rpe_frame_m, 6);
-  row.number("rpe_frame_deg", errors.rpe_frame_deg);
-  row.number("rpe_second_m", errors.rpe_second_m, 6);
-  row.number("rpe_second_deg", errors.rpe_second_deg);
-  row.share("mask_precision", scores.mask.precision());
-  row.share("mask_recall", scores.mask.recall());
-  row.share("mask_iou", scores.mask.iou());
-  row.count("removed_rightly", scores.removal.removed_rightly);
-  row.count("removed_wrongly", scores.removal.removed_wrongly);
-  row.text("note", r.note);
-  return row;
-}
-
+/// What describes a frame in words, then every figure there is of any run or of this one's method, then the
+/// note.
 std::string frames_csv(const RunResult& run, const RunReport& report) {
-  const auto errors = errors_by_stamp(report);
+  const auto& infos = frame_figure_infos();
+  const std::vector<FigureInfo>& of_method = method_of(run.config).figures;
+  std::vector<int> columns;
+  for (int i = 0; i < static_cast<int>(infos.size()); ++i) {
+    const FigureInfo& info = infos[static_cast<std::size_t>(i)];
+    const bool of_any_run = i < first_method_figure();
+    if (of_any_run || std::any_of(of_method.begin(), of_method.end(),
+                                  [&](const FigureInfo& one) { return one.name == info.name; }))
+      columns.push_back(i);
+  }
   Table table;
-  const MethodInfo& method = method_of(run.config);
-  table.header = frame_row({}, {}, {}, method).names;
-  for (std::size_t i = 0; i < run.records.size(); ++i) {
-    const FrameRecord& record = run.records[i];
-    const auto known = errors.find(record.timestamp);
-    const bool has_errors = record.estimated && known != errors.end();
-    table.rows.push_back(
-        frame_row(record, run.scores[i], has_errors ? known->second : FrameErrors{}, method).values);
+  table.header = {"timestamp_s", "status", "pose_start"};
+  for (const int column : columns)
+    table.header.push_back(column_head(infos[static_cast<std::size_t>(column)]));
+  table.header.emplace_back("note");
+  const FrameFigures figures({run.records, report.evaluation ? &*report.evaluation : nullptr, &run.scores});
+  for (int row = 0; row < figures.rows(); ++row) {
+    const FrameRecord& record = run.records[static_cast<std::size_t>(row)];
+    std::vector<std::string> cells{fmt::format("{:.6f}", record.timestamp),
+                                   std::string(to_string(record.status)),
+                                   std::string(to_string(record.pose_start))};
+    for (const int column : columns) {
+      const double value = figures.value(row, column);
+      cells.push_back(std::isnan(value)
+                          ? std::string()
+                          : fmt::format("{:.{}f}", value, infos[static_cast<std::size_t>(column)].digits));
+    }
+    cells.push_back(record.note);
+    table.rows.push_back(std::move(cells));
   }
   return to_csv(table);
 }

@@ -3,71 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
-#include <map>
 
 namespace stillpoint {
 namespace {
 
-std::vector<WorstFrame> lost_frames(const RunResult& run) {
-  std::vector<WorstFrame> lost;
-  bool before = false;
-  for (const FrameRecord& record : run.records) {
-    if (!record.estimated && !before)
-      lost.push_back({record.index, fmt::format("{}{}{}", to_string(record.status),
-                                                record.note.empty() ? "" : ": ", record.note)});
-    before = !record.estimated;
-  }
-  return lost;
+bool has_no_pose(const FrameRecord& record) {
+  return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
 }
 
-std::vector<WorstFrame> by_error(const RunResult& run, const TrajectoryEvaluation& evaluation) {
-  std::map<double, int> index_of;
-  for (const FrameRecord& record : run.records) index_of[record.timestamp] = record.index;
-  std::vector<RelativeError> errors = evaluation.rpe_frame.errors;
-  std::stable_sort(errors.begin(), errors.end(), [](const RelativeError& a, const RelativeError& b) {
-    return a.translation_m > b.translation_m;
-  });
-  std::vector<WorstFrame> worst;
-  for (const RelativeError& error : errors) {
-    const auto frame = index_of.find(error.to_timestamp);
-    if (frame == index_of.end()) continue;
-    worst.push_back(
-        {frame->second, fmt::format("the motion from the frame before is {:.1f} mm and {:.2f}° off",
-                                    1000.0 * error.translation_m, error.rotation_deg)});
-  }
-  return worst;
-}
-
-std::vector<WorstFrame> by_inliers(const RunResult& run) {
-  std::vector<const FrameRecord*> records;
-  for (const FrameRecord& record : run.records)
-    if (record.estimated && record.status != FrameStatus::initialised) records.push_back(&record);
-  std::stable_sort(records.begin(), records.end(),
-                   [](const FrameRecord* a, const FrameRecord* b) { return a->inliers < b->inliers; });
-  std::vector<WorstFrame> worst;
-  for (const FrameRecord* record : records)
-    worst.push_back(
-        {record->index, fmt::format("its pose rests on {} inliers, few for this run", record->inliers)});
-  return worst;
+std::string in_lower_case(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 }  // namespace
 
-std::vector<WorstFrame> worst_frames(const RunResult& run, const RunReport& report, int count, int apart) {
-  std::vector<WorstFrame> candidates = lost_frames(run);
-  const std::vector<WorstFrame> rest =
-      report.evaluation ? by_error(run, *report.evaluation) : by_inliers(run);
-  candidates.insert(candidates.end(), rest.begin(), rest.end());
-  std::vector<WorstFrame> chosen;
-  for (const WorstFrame& candidate : candidates) {
-    if (static_cast<int>(chosen.size()) >= count) break;
-    if (std::none_of(chosen.begin(), chosen.end(), [&](const WorstFrame& other) {
-          return std::abs(other.index - candidate.index) < apart;
-        }))
-      chosen.push_back(candidate);
+int usual_figure(const MeasuredFrames& frames) {
+  const bool truth = frames.evaluation != nullptr && !frames.evaluation->rpe_frame.errors.empty();
+  return frame_figure(truth ? "rpe" : "inliers");
+}
+
+std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, int apart, std::size_t most) {
+  const std::vector<FrameRecord>& records = frames.records;
+  const FigureInfo& info = frame_figure_infos().at(static_cast<std::size_t>(figure));
+  std::vector<WorstFrame> worst;
+  for (std::size_t i = 0; i < records.size() && worst.size() < most; ++i)
+    if (has_no_pose(records[i]) && (i == 0 || !has_no_pose(records[i - 1])))
+      worst.push_back({records[i].index, fmt::format("{}{}{}", to_string(records[i].status),
+                                                     records[i].note.empty() ? "" : ": ", records[i].note)});
+  struct Ranked {
+    double badness;  // negated, so that ties stand in order of time
+    int index;
+    double value;
+  };
+  std::vector<Ranked> ranked;
+  const std::vector<double> values = frame_figure_values(frames, figure);
+  const double sign = info.worse == WorseWhen::low ? 1.0 : -1.0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::isfinite(values[i]) && !has_no_pose(records[i]) &&
+        (records[i].status != FrameStatus::initialised || info.worse != WorseWhen::low))
+      ranked.push_back({sign * values[i], records[i].index, values[i]});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.badness < b.badness; });
+  ranked.resize((ranked.size() + 1) / 2);
+  for (const Ranked& one : ranked) {
+    if (worst.size() >= most) break;
+    const auto near = [&](const WorstFrame& other) { return std::abs(other.index - one.index) < apart; };
+    if (std::none_of(worst.begin(), worst.end(), near))
+      worst.push_back(
+          {one.index, fmt::format("{} {}", in_lower_case(shown_name(info)), shown_value(info, one.value))});
   }
-  return chosen;
+  return worst;
 }
 
 }  // namespace stillpoint

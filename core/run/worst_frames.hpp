@@ -3,21 +3,26 @@
 #include <string>
 #include <vector>
 
-#include "core/run/run_report.hpp"
-#include "core/run/run_sequence.hpp"
+#include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
 
 /// A frame to look at first, and why.
 struct WorstFrame {
   int index = 0;
-  std::string why;  ///< "lost: …", "moved 12.3 mm other than it did since the frame before", …
+  std::string why;  ///< "lost: too few inliers", "step error 12.30 mm", …
 };
 
-/// The frames in which a run did worst, worst first: where it got lost, each stretch once; then by the error
-/// of the motion from the frame before, or, without ground truth, by how few inliers the pose rests on.
-/// @param count at most so many, and no two of them closer together than `apart` frames
-[[nodiscard]] std::vector<WorstFrame> worst_frames(const RunResult& run, const RunReport& report, int count,
-                                                   int apart);
+/// The figure that failures show in first, an index into frame_figure_infos(): the step error where there is
+/// ground truth, else inliers.
+[[nodiscard]] int usual_figure(const MeasuredFrames& frames);
+
+/// Frames worth looking at, worst first: the first of each stretch without a pose, in order of time, then
+/// those with the worst values, each at least `apart` frames from those before it, so that one failure is
+/// named once. The better half of the frames holds no failures, though nothing near some frame may be worse.
+/// @param figure index into frame_figure_infos(); one of which low values are the bad ones is ranked from
+/// below
+[[nodiscard]] std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, int apart = 8,
+                                                   std::size_t most = 50);
 
 }  // namespace stillpoint

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/motion/paper/paper_config.hpp"
+#include "core/run/worst_frames.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
@@ -85,8 +86,16 @@ class DebugKeys : public ::testing::Test {
   Workbench workbench_;
 };
 
+std::vector<int> worst_of(const SessionView& session) {
+  std::vector<int> frames;
+  const MeasuredFrames measured = session.run->measured();
+  for (const WorstFrame& frame : worst_frames(measured, usual_figure(measured)))
+    frames.push_back(frame.index);
+  return frames;
+}
+
 TEST_F(DebugKeys, LeadToWhatWentWrong) {
-  const std::vector<int> worst = worst_frames(*session_.run, usual_figure(*session_.run));
+  const std::vector<int> worst = worst_of(session_);
   strike(Key::kN);
   strike(Key::kF8);
   strike(Key::kF8, {.shift = true});
@@ -99,14 +108,22 @@ TEST_F(DebugKeys, LeadToWhatWentWrong) {
 }
 
 TEST_F(DebugKeys, TheListOfWorstFramesIsGoneThrough) {
-  const std::vector<int> worst = worst_frames(*session_.run, usual_figure(*session_.run));
+  const std::vector<int> worst = worst_of(session_);
   ASSERT_GE(worst.size(), 3U);
-  auto current = std::make_shared<FrameView>(*session_.current);
-  current->index = worst[1];
-  session_.current = current;
+  const auto stand_at = [this](int frame) {
+    auto current = std::make_shared<FrameView>(*session_.current);
+    current->index = frame;
+    session_.current = current;
+  };
+  stand_at(worst[1]);  // opened there, not led there: worse ones are not passed over
   strike(Key::kN);
+  stand_at(worst[0]);
+  strike(Key::kN);
+  stand_at(worst[1]);
+  strike(Key::kN);
+  stand_at(worst[2]);
   strike(Key::kN, {.shift = true});
-  EXPECT_THAT(gone_to_, ElementsAre(worst[2], worst[0]));
+  EXPECT_THAT(gone_to_, ElementsAre(worst[0], worst[1], worst[2], worst[1]));
 }
 
 TEST_F(DebugKeys, BookmarkAndRange) {
@@ -176,7 +193,7 @@ TEST(Timeline, AClickInTheTopRowGoesThere) {
 TEST(Timeline, ALaneChosenDecidesWhatIsWorst) {
   const SessionView session = debug_example();
   PanelStage stage("timeline", {}, kWidth, kHeight);
-  EXPECT_EQ(stage.click(session, 0.05, kSecondLaneY).worst_by, LaneFigure::kMask);
+  EXPECT_EQ(stage.click(session, 0.05, kSecondLaneY).worst_by, frame_figure("mask"));
 }
 
 TEST(Timeline, ThousandsOfFramesKeepTheirSpike) {

@@ -224,29 +224,33 @@ FrameRecord record_of(int index, bool estimated, int inliers) {
 }
 
 TEST(WorstFrames, LostStretchesComeFirstThenLargestErrorsApart) {
-  RunResult run;
-  for (int i = 0; i < 40; ++i) run.records.push_back(record_of(i, i != 20 && i != 21, 100 + i));
-  RunReport report;
-  report.evaluation.emplace();
-  for (const auto& [frame, error] :
-       {std::pair(5, 0.03), std::pair(6, 0.04), std::pair(30, 0.01), std::pair(35, 0.02)})
-    report.evaluation->rpe_frame.errors.push_back({frame - 1.0, static_cast<double>(frame), error, 0.0});
-  const auto worst = worst_frames(run, report, 3, 5);
+  std::vector<FrameRecord> records;
+  for (int i = 0; i < 40; ++i) records.push_back(record_of(i, i != 20 && i != 21, 100 + i));
+  TrajectoryEvaluation evaluation;
+  for (int i = 1; i < 40; ++i) {
+    const double error = i == 5 ? 0.03 : i == 6 ? 0.04 : i == 30 ? 0.01 : i == 35 ? 0.02 : 0.001;
+    if (i != 20 && i != 21)
+      evaluation.rpe_frame.errors.push_back({i - 1.0, static_cast<double>(i), error, 0.0});
+  }
+  const MeasuredFrames frames{records, &evaluation};
+  const auto worst = worst_frames(frames, usual_figure(frames), 5, 3);
   ASSERT_EQ(worst.size(), 3U);
   EXPECT_EQ(worst[0].index, 20);
   EXPECT_THAT(worst[0].why, HasSubstr("too few inliers"));
   EXPECT_EQ(worst[1].index, 6);  // 5 is too near to it
-  EXPECT_THAT(worst[1].why, HasSubstr("40.0 mm"));
+  EXPECT_EQ(worst[1].why, "step error 40.00 mm");
   EXPECT_EQ(worst[2].index, 35);
-  EXPECT_TRUE(worst_frames(run, report, 0, 5).empty());
+  EXPECT_TRUE(worst_frames(frames, usual_figure(frames), 5, 0).empty());
 }
 
 TEST(WorstFrames, WithoutTruthGoByInliers) {
-  RunResult run;
-  for (int i = 0; i < 10; ++i) run.records.push_back(record_of(i, true, i == 7 ? 21 : 100));
-  const auto worst = worst_frames(run, {}, 1, 1);
+  std::vector<FrameRecord> records;
+  for (int i = 0; i < 10; ++i) records.push_back(record_of(i, true, i == 7 ? 21 : 100));
+  const MeasuredFrames frames{records};
+  const auto worst = worst_frames(frames, usual_figure(frames), 1, 1);
   ASSERT_EQ(worst.size(), 1U);
   EXPECT_EQ(worst[0].index, 7);
+  EXPECT_EQ(worst[0].why, "inliers 21");
 }
 
 }  // namespace

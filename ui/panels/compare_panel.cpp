@@ -50,7 +50,7 @@ class ComparePanel final : public NamedPanel {
                                      here ? "\"" + ghost.name + "\"" : "this run"));
       return;
     }
-    difference_ = difference_of(session.run->records[*here], ghost.run->records[*there]);
+    difference_ = difference_of(session.run->measured(), *here, ghost.run->measured(), *there);
     draw_frame_shown(frame, session, ghost, actions);
   }
 
@@ -66,7 +66,7 @@ class ComparePanel final : public NamedPanel {
                             .diverged = {}};
     difference_ = {};
     if (session.current->record != nullptr && preview.current->record != nullptr)
-      difference_ = difference_of(*session.current->record, *preview.current->record);
+      difference_ = difference_of({{*session.current->record}}, 0, {{*preview.current->record}}, 0);
     draw_frame_shown(frame, session, preview, actions);
   }
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/inspect/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 
@@ -18,7 +17,8 @@ struct PanelActions {
   std::optional<int> go_to_frame;        ///< 0 to frame_count - 1
   std::vector<SessionRequest> requests;  ///< in order
   bool compare_frames = false;           ///< FrameView::before is wanted
-  std::optional<LaneFigure> worst_by;    ///< what "worst" is to go by from now on
+  std::optional<int> worst_by;  ///< the figure (frame_figure_infos()) that "worst" is to go by from now on
+  std::vector<std::string> perform;  ///< named actions to run, in order
 };
 
 /// Something a panel can have done, by menu, key and palette, whether or not it is drawn.

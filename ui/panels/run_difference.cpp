@@ -1,34 +1,32 @@
 #include "ui/panels/run_difference.hpp"
 
-#include <fmt/format.h>
+#include <cmath>
 
 #include "core/geometry/se3.hpp"
 
 namespace stillpoint {
 
-FrameDifference difference_of(const FrameRecord& run, const FrameRecord& ghost) {
+FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const MeasuredFrames& ghost,
+                              std::size_t ghost_row) {
   constexpr double kDegrees = 180.0 / 3.14159265358979;
+  const FrameRecord &here = run.records[row], &there = ghost.records[ghost_row];
   FrameDifference difference;
-  const Pose run_from_ghost = run.world_from_camera.inverse() * ghost.world_from_camera;
+  const Pose run_from_ghost = here.world_from_camera.inverse() * there.world_from_camera;
   difference.translation_m = run_from_ghost.translation().norm();
   difference.rotation_deg = kDegrees * rotation_angle(run_from_ghost.linear());
-  const auto add = [&](const char* name, std::string a, std::string b) {
+  const auto add = [&](const std::string& name, std::string a, std::string b) {
     const bool differs = a != b;
     difference.figures.push_back({name, std::move(a), std::move(b), differs});
   };
-  const auto count = [&](const char* name, int FrameRecord::*field) {
-    add(name, fmt::format("{}", run.*field), fmt::format("{}", ghost.*field));
-  };
-  add("Status", std::string(to_string(run.status)), std::string(to_string(ghost.status)));
-  add("Mask", fmt::format("{:.2f} %", 100.0 * run.mask_share),
-      fmt::format("{:.2f} %", 100.0 * ghost.mask_share));
-  count("Features removed", &FrameRecord::features_removed);
-  count("Features kept", &FrameRecord::features_kept);
-  count("Matches", &FrameRecord::matches);
-  count("Inliers", &FrameRecord::inliers);
-  add("Residual", fmt::format("{:.3f} px", run.rms_px), fmt::format("{:.3f} px", ghost.rms_px));
-  add("Keyframe", run.keyframe ? "yes" : "no", ghost.keyframe ? "yes" : "no");
-  count("Map points", &FrameRecord::map_points);
+  add("Status", std::string(to_string(here.status)), std::string(to_string(there.status)));
+  add("Keyframe", here.keyframe ? "yes" : "no", there.keyframe ? "yes" : "no");
+  const std::vector<double> a = figures_of_frame(run, row), b = figures_of_frame(ghost, ghost_row);
+  const auto& infos = frame_figure_infos();
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const bool of_time = infos[i].unit == FigureUnit::milliseconds;  // noise, and never the same twice
+    if (infos[i].title.empty() || of_time || (std::isnan(a[i]) && std::isnan(b[i]))) continue;
+    add(infos[i].title, shown_value(infos[i], a[i]), shown_value(infos[i], b[i]));
+  }
   return difference;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
 
@@ -22,7 +22,9 @@ struct FrameDifference {
   std::vector<FigurePair> figures;
 };
 
-[[nodiscard]] FrameDifference difference_of(const FrameRecord& run, const FrameRecord& ghost);
+/// Every figure people are shown that either run knows of the frame, times apart.
+[[nodiscard]] FrameDifference difference_of(const MeasuredFrames& run, std::size_t row,
+                                            const MeasuredFrames& ghost, std::size_t ghost_row);
 
 /// How two masks of one size share the image. A mask that is empty removes nothing.
 struct MaskOverlap {

@@ -23,6 +23,14 @@ std::pair<int, int> columns_of_frame(int frame, const AxisRange& range, int colu
   return {static_cast<int>(std::max(from, 0.0)), static_cast<int>(std::min(to, columns - 1.0))};
 }
 
+/// A figure of each frame as people are shown it.
+std::vector<double> lane_values(const RunView& run, int figure) {
+  std::vector<double> values = frame_figure_values(run.measured(), figure);
+  const double factor = shown_unit(frame_figure_infos().at(static_cast<std::size_t>(figure)).unit).factor;
+  for (double& value : values) value *= factor;
+  return values;
+}
+
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 double highest_of(const std::vector<double>& values, double so_far) {
@@ -85,7 +93,7 @@ FrameStatus status_of_badness(double badness) {
   return kByBadness.at(static_cast<std::size_t>(std::clamp(badness, 0.0, 4.0)));
 }
 
-void TimelineModel::update(const SessionView& session, const std::vector<LaneFigure>& wanted) {
+void TimelineModel::update(const SessionView& session, const std::vector<int>& wanted) {
   const RunView& run = *session.run;
   Key key{&run, session.revision, run.records.size(), {}, wanted};
   for (const GhostView& ghost : session.debug.ghosts)
@@ -111,7 +119,7 @@ void TimelineModel::update(const SessionView& session, const std::vector<LaneFig
   for (std::size_t g = 0; g < ghosts.size(); ++g) read(*ghosts[g].run, ghost_frames[g], ghost_badness[g]);
 
   lanes.clear();
-  for (const LaneFigure figure : wanted) {
+  for (const int figure : wanted) {
     TimelineLane lane{.figure = figure, .values = lane_values(run, figure), .ghosts = {}, .highest = 0.0};
     // Without a truth there are no errors, and without a clock no times.
     if (std::none_of(lane.values.begin(), lane.values.end(), [](double v) { return std::isfinite(v); }))

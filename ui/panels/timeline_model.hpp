@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/inspect/lane_figures.hpp"
+#include "core/run/frame_figures.hpp"
 #include "ui/plot/plot_axis.hpp"
 #include "ui/session/session_view.hpp"
 
@@ -38,8 +38,8 @@ struct ColumnRun {
 
 /// One lane: a figure of the run, and of each ghost beside it.
 struct TimelineLane {
-  LaneFigure figure = LaneFigure::kRpeFrame;
-  std::vector<double> values;               ///< one a record of the run
+  int figure = 0;              ///< index into frame_figure_infos()
+  std::vector<double> values;  ///< one a record of the run, in the unit people are shown (shown_unit)
   std::vector<std::vector<double>> ghosts;  ///< one a record of each ghost
   double highest = 1.0;                     ///< upper end of the lane, above 0
 };
@@ -47,7 +47,7 @@ struct TimelineLane {
 /// The run as the timeline shows it, made anew only when the run or the choice of lanes changes.
 class TimelineModel {
  public:
-  void update(const SessionView& session, const std::vector<LaneFigure>& wanted);
+  void update(const SessionView& session, const std::vector<int>& wanted);
 
   std::vector<int> frames;                     ///< of the run's records
   std::vector<double> badness;                 ///< of each record's status: 0 tracked … 4 unreadable
@@ -62,7 +62,7 @@ class TimelineModel {
     std::uint64_t revision = 0;
     std::size_t records = 0;
     std::vector<std::pair<const RunView*, std::size_t>> ghosts;  // with how many records
-    std::vector<LaneFigure> wanted;
+    std::vector<int> wanted;
     bool operator==(const Key&) const = default;
   };
   Key key_;

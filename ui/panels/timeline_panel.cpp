@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
@@ -39,7 +40,8 @@ class TimelinePanel final : public NamedPanel {
     update_worst(session);
     if (ImGui::GetContentRegionAvail().y > kRoomForControls * frame.scale)
       draw_controls(frame, session, actions);
-    const Footer footer = timeline_footer(frame, session, figure(session));
+    const Footer footer =
+        timeline_footer(frame, session, frame_figure_infos()[static_cast<std::size_t>(figure(session))]);
     const ImVec2 room = room_above(frame, footer);
     const ImVec2 low = ImGui::GetCursorScreenPos(), high{low.x + room.x, low.y + room.y};
     const TimelinePaint before(frame, low, high, range_.value_or(everything(session)));
@@ -64,8 +66,8 @@ class TimelinePanel final : public NamedPanel {
   [[nodiscard]] static AxisRange everything(const SessionView& session) {
     return {-0.5, static_cast<double>(session.frame_count) - 0.5};
   }
-  [[nodiscard]] LaneFigure figure(const SessionView& session) const {
-    return worst_by_.value_or(usual_figure(*session.run));
+  [[nodiscard]] int figure(const SessionView& session) const {
+    return worst_by_.value_or(usual_figure(session.run->measured()));
   }
 
   void update_worst(const SessionView& session) {
@@ -73,7 +75,9 @@ class TimelinePanel final : public NamedPanel {
         std::tuple(session.run.get(), session.revision, session.run->records.size(), figure(session));
     if (worst_key_ == key) return;
     worst_key_ = key;
-    worst_ = worst_frames(*session.run, figure(session));
+    worst_.clear();
+    for (const WorstFrame& frame : worst_frames(session.run->measured(), figure(session)))
+      worst_.push_back(frame.index);
   }
 
   void draw_controls(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
@@ -84,9 +88,14 @@ class TimelinePanel final : public NamedPanel {
       if (controls.button(label, tooltip) && to) actions.go_to_frame = to;
       ImGui::EndDisabled();
     };
-    jump("Next worst", "The next worse-off frame by the figure chosen (N); click a lane's name to choose it",
-         next_worst(worst_, here));
-    jump(icons::kChevronUp, "The one before it (Shift+N)", previous_worst(worst_, here));
+    ImGui::BeginDisabled(worst_.empty());
+    if (controls.button(
+            "Next worst",
+            "The next worse-off frame by the figure chosen (N); click a lane's name to choose it"))
+      actions.perform.emplace_back("next_worst");
+    if (controls.button(icons::kChevronUp, "The one before it (Shift+N)"))
+      actions.perform.emplace_back("previous_worst");
+    ImGui::EndDisabled();
     if (!session.debug.breakpoints.empty()) {
       const std::vector<int> hits = hit_frames(session.debug);
       jump(earlier("Hit").c_str(), "Breakpoint hit before this frame (Shift+F8)", previous_in(hits, here));
@@ -109,20 +118,29 @@ class TimelinePanel final : public NamedPanel {
     if (session.debug.span) draw_span_controls(controls, session, actions);
   }
 
+  /// A figure that people are offered: one with a title, or a method's own.
+  [[nodiscard]] static bool is_lane(int figure) {
+    return figure >= first_method_figure() ||
+           !frame_figure_infos()[static_cast<std::size_t>(figure)].title.empty();
+  }
+
   void draw_lane_choice() {
     if (!ImGui::BeginPopup("which lanes")) return;
-    for (const LaneInfo& info : lane_infos()) {
-      const auto at = std::find(lanes_.begin(), lanes_.end(), info.figure);
+    const auto& infos = frame_figure_infos();
+    for (int figure = 0; figure < static_cast<int>(infos.size()); ++figure) {
+      const FigureInfo& info = infos[static_cast<std::size_t>(figure)];
+      if (!is_lane(figure)) continue;
+      const auto at = std::find(lanes_.begin(), lanes_.end(), figure);
       bool on = at != lanes_.end();
-      if (ImGui::Checkbox(std::string(info.name).c_str(), &on)) {
+      if (ImGui::Checkbox(shown_name(info).c_str(), &on)) {
         if (on)
-          lanes_.push_back(info.figure);
+          lanes_.push_back(figure);
         else
           lanes_.erase(at);
         // Lanes stand in the order of the list.
         std::sort(lanes_.begin(), lanes_.end());
       }
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(info.help).c_str());
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.help.c_str());
     }
     ImGui::EndPopup();
   }
@@ -228,12 +246,12 @@ class TimelinePanel final : public NamedPanel {
 
   void draw_lane(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
                  const TimelineLane& lane, float top, float bottom, PanelActions& actions) {
-    const LaneInfo& info = info_of(lane.figure);
+    const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
     const bool chosen = lane.figure == figure(session);
     const float line = frame.fonts.small->FontSize;
-    const Rgb colour = lane_colour(lane.figure, frame.theme.name);
+    const Rgb colour = lane_colour(info, frame.theme.name);
     paint.ground(top, bottom, model_.frames.back());
-    ImGui::PushID(static_cast<int>(lane.figure));
+    ImGui::PushID(lane.figure);
     const ImVec2 low{ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMin().x, top};
     ImGui::SetCursorScreenPos(low);
     if (ImGui::InvisibleButton("name", {std::max(paint.left - low.x - 4.0F, 1.0F), bottom - top})) {
@@ -241,16 +259,17 @@ class TimelinePanel final : public NamedPanel {
       actions.worst_by = lane.figure;
     }
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s\n%s", std::string(info.help).c_str(),
+      ImGui::SetTooltip("%s\n%s", info.help.c_str(),
                         chosen ? "What \"worst\" goes by." : "Click: \"worst\" goes by it.");
     ImGui::PopID();
     if (chosen)
       ImGui::GetWindowDrawList()->AddRectFilled({low.x - 5.0F * frame.scale, top},
                                                 {low.x - 2.0F * frame.scale, bottom},
                                                 to_u32(frame.theme.accent));
-    paint.name(top, std::string(info.name), frame.theme.text);
+    paint.name(top, shown_name(info), frame.theme.text);
     if (bottom - top > 2.0F * line)
-      paint.name(top + line + 1.0F, fmt::format("0–{}", format_value(lane.highest / 1.05, info.unit)),
+      paint.name(top + line + 1.0F,
+                 fmt::format("0–{}", format_value(lane.highest / 1.05, shown_unit(info.unit).unit)),
                  frame.theme.text_dim);
     paint.lane(model_.frames, lane.values, lane.highest, colour, top, bottom);
     for (std::size_t g = 0; g < lane.ghosts.size() && g < model_.ghost_frames.size(); ++g)
@@ -271,10 +290,10 @@ class TimelinePanel final : public NamedPanel {
   }
 
   TimelineModel model_;
-  std::vector<LaneFigure> lanes_{LaneFigure::kRpeFrame, LaneFigure::kMask, LaneFigure::kInliers,
-                                 LaneFigure::kKept, LaneFigure::kTotalMs};
-  std::optional<LaneFigure> worst_by_;
-  std::tuple<const RunView*, std::uint64_t, std::size_t, LaneFigure> worst_key_{};
+  std::vector<int> lanes_{frame_figure("rpe"), frame_figure("mask"), frame_figure("kept"),
+                          frame_figure("inliers"), frame_figure("ms.total")};
+  std::optional<int> worst_by_;
+  std::tuple<const RunView*, std::uint64_t, std::size_t, int> worst_key_{};
   std::vector<int> worst_;
   std::string title_;               // of the sequence shown last
   std::optional<AxisRange> range_;  // frames; none shows all

@@ -12,25 +12,24 @@
 
 namespace stillpoint {
 
-Rgb lane_colour(LaneFigure figure, ThemeName theme) {
-  switch (figure) {
-    case LaneFigure::kRpeFrame:
-    case LaneFigure::kError:
+Rgb lane_colour(const FigureInfo& figure, ThemeName theme) {
+  switch (figure.unit) {
+    case FigureUnit::metres:
+    case FigureUnit::degrees:
       return role_colour(Role::kEstimate, theme);
-    case LaneFigure::kMask:
+    case FigureUnit::share:
       return role_colour(Role::kUnion, theme);
-    case LaneFigure::kInliers:
-    case LaneFigure::kKept:
-      return role_colour(Role::kInlier, theme);
-    case LaneFigure::kRemoved:
-      return role_colour(Role::kRemoved, theme);
     default:
-      return theme == ThemeName::kDark ? okabe_ito::kOrange : Rgb{0xB0, 0x75, 0x00};
+      break;
   }
+  if (figure.worse == WorseWhen::low) return role_colour(Role::kInlier, theme);
+  return theme == ThemeName::kDark ? okabe_ito::kOrange : Rgb{0xB0, 0x75, 0x00};
 }
 
-std::string lane_text(double value, const LaneInfo& info) {
-  return std::isfinite(value) ? format_value(std::round(value * 10.0) / 10.0, info.unit) : "–";
+std::string lane_text(double value, const FigureInfo& figure) {
+  if (!std::isfinite(value)) return "–";
+  if (figure.unit == FigureUnit::truth) return value != 0.0 ? "yes" : "no";
+  return format_value(std::round(value * 10.0) / 10.0, shown_unit(figure.unit).unit);
 }
 
 void TimelineRows::status(float top, float bottom) const {
@@ -89,9 +88,9 @@ std::string frame_report(const SessionView& session, const TimelineModel& model,
   if (record.keyframe) text += ", keyframe";
   if (!record.note.empty()) text += "\n" + record.note;
   for (const TimelineLane& lane : model.lanes) {
-    const LaneInfo& info = info_of(lane.figure);
+    const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
     if (!std::isfinite(lane.values[*at])) continue;
-    text += fmt::format("\n{} {}", info.name, lane_text(lane.values[*at], info));
+    text += fmt::format("\n{} {}", shown_name(info), lane_text(lane.values[*at], info));
     for (std::size_t g = 0; g < lane.ghosts.size(); ++g)
       if (const auto there = record_of(*session.debug.ghosts[g].run, index))
         text += fmt::format(", ghost {} {}", g + 1, lane_text(lane.ghosts[g][*there], info));
@@ -106,7 +105,7 @@ std::string frame_report(const SessionView& session, const TimelineModel& model,
   return text;
 }
 
-Footer timeline_footer(const UiFrame& frame, const SessionView& session, LaneFigure worst_by) {
+Footer timeline_footer(const UiFrame& frame, const SessionView& session, const FigureInfo& worst_by) {
   const ThemeName theme = frame.theme.name;
   Footer footer;
   std::array<int, 5> counts{};
@@ -125,7 +124,7 @@ Footer timeline_footer(const UiFrame& frame, const SessionView& session, LaneFig
   if (!hurt_frames(session.debug).empty())
     footer.legend.push_back({"removal hurt", role_colour(Role::kOutlier, theme), Sign::kCross});
   footer.legend.push_back(
-      {"worst by " + std::string(info_of(worst_by).name), role_colour(Role::kWarning, theme), Sign::kRing});
+      {"worst by " + shown_name(worst_by), role_colour(Role::kWarning, theme), Sign::kRing});
   footer.caption = fmt::format(
       "Frame {} of {}; {} processed. Drag in the top row, or with Shift, to select a "
       "range.",

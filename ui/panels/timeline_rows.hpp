@@ -27,13 +27,14 @@ class TimelineRows {
   const TimelinePaint& paint_;
 };
 
-[[nodiscard]] Rgb lane_colour(LaneFigure figure, ThemeName theme);
-/// To a tenth, with its unit; "–" for none.
-[[nodiscard]] std::string lane_text(double value, const LaneInfo& info);
+[[nodiscard]] Rgb lane_colour(const FigureInfo& figure, ThemeName theme);
+/// A lane's value to a tenth, with its unit; "–" for none.
+[[nodiscard]] std::string lane_text(double value, const FigureInfo& figure);
 
 /// All that is known of a frame, for the box beside the mouse.
 [[nodiscard]] std::string frame_report(const SessionView& session, const TimelineModel& model, int index);
 
-[[nodiscard]] Footer timeline_footer(const UiFrame& frame, const SessionView& session, LaneFigure worst_by);
+[[nodiscard]] Footer timeline_footer(const UiFrame& frame, const SessionView& session,
+                                     const FigureInfo& worst_by);
 
 }  // namespace stillpoint

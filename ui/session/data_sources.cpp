@@ -4,17 +4,18 @@
 
 namespace stillpoint {
 
-std::optional<int> next_worst(const std::vector<int>& worst, int frame) {
-  if (worst.empty()) return std::nullopt;
-  const auto at = std::find(worst.begin(), worst.end(), frame);
-  if (at == worst.end()) return worst.front();
-  return at + 1 == worst.end() ? std::nullopt : std::optional(*(at + 1));
+std::optional<int> next_worst(const std::vector<int>& worst, int frame, std::optional<int> gone_to) {
+  auto next = worst.begin();
+  if (gone_to == frame)
+    if (const auto at = std::find(worst.begin(), worst.end(), frame); at != worst.end()) next = at + 1;
+  if (next != worst.end() && *next == frame) ++next;  // the worst is shown already
+  return next == worst.end() ? std::nullopt : std::optional(*next);
 }
 
-std::optional<int> previous_worst(const std::vector<int>& worst, int frame) {
+std::optional<int> previous_worst(const std::vector<int>& worst, int frame, std::optional<int> gone_to) {
+  if (gone_to != frame) return std::nullopt;
   const auto at = std::find(worst.begin(), worst.end(), frame);
-  if (at == worst.end() || at == worst.begin()) return std::nullopt;
-  return *(at - 1);
+  return at == worst.end() || at == worst.begin() ? std::nullopt : std::optional(*(at - 1));
 }
 
 std::vector<int> hit_frames(const DebugView& debug) {

@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/inspect/lane_figures.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint {
@@ -11,10 +10,14 @@ namespace stillpoint {
 // Places to go to from the frame shown: what keys, menus and panels' buttons lead to. Nothing where there is
 // no such place.
 
-/// Down the list of worst frames: from one of them to the next worse-off, from elsewhere to the worst.
-[[nodiscard]] std::optional<int> next_worst(const std::vector<int>& worst, int frame);
-/// Up the list again.
-[[nodiscard]] std::optional<int> previous_worst(const std::vector<int>& worst, int frame);
+/// Down the list of worst frames: on from where the list last led, if one still stands there; else to the
+/// worst, though the frame shown may itself be in the list.
+/// @param gone_to the frame the list was last gone to; nothing before that
+[[nodiscard]] std::optional<int> next_worst(const std::vector<int>& worst, int frame,
+                                            std::optional<int> gone_to);
+/// Up the list again; nothing where one did not come by it.
+[[nodiscard]] std::optional<int> previous_worst(const std::vector<int>& worst, int frame,
+                                                std::optional<int> gone_to);
 
 /// Frames at which an enabled breakpoint holds, ascending, each once.
 [[nodiscard]] std::vector<int> hit_frames(const DebugView& debug);

@@ -138,7 +138,7 @@ void Session::preview_step() {
 void Session::update_breakpoints() {
   if (!breakpoints_due_ || breakpoints_.empty()) return;
   const auto run = run_->run_view();
-  breakpoints_.update(FrameFigures(run->records, &run->evaluation, run->scores));
+  breakpoints_.update(FrameFigures(run->measured()));
   breakpoints_due_ = false;
 }
 

@@ -1,4 +1,5 @@
 // What leads to failures: worst frames, breakpoint hits, bookmarks, a range of frames, ghosts.
+#include "core/run/worst_frames.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
@@ -14,10 +15,11 @@ using Target = std::optional<int>;
 
 const std::vector<int>& Workbench::worst() {
   const RunView& run = *session_->run;
-  const LaneFigure figure = worst_by_.value_or(usual_figure(run));
+  const int figure = worst_by_.value_or(usual_figure(run.measured()));
   const WorstKey key{&run, session_->revision, run.records.size(), figure};
   if (!(key == worst_key_)) {
-    worst_ = worst_frames(run, figure);
+    worst_.clear();
+    for (const WorstFrame& frame : worst_frames(run.measured(), figure)) worst_.push_back(frame.index);
     worst_key_ = key;
   }
   return worst_;
@@ -39,10 +41,25 @@ void Workbench::add_debug_actions() {
                   .run = [this, target] { go_to(*target()); }});
   };
   const auto here = [this] { return session_->current->index; };
-  add("next_worst", "Next worst frame", icons::kWarning, {Key::kN, {}},
-      [this, here] { return stillpoint::next_worst(worst(), here()); });
-  add("previous_worst", "Previous worst frame", icons::kChevronUp, {Key::kN, kShift},
-      [this, here] { return stillpoint::previous_worst(worst(), here()); });
+  // Where the list of worst frames led is kept: it is gone through from there.
+  const auto add_worst = [this](const char* name, const char* title, const char* icon, KeyChord key,
+                                std::function<Target()> target) {
+    actions_.add({.name = name,
+                  .title = title,
+                  .group = "Debug",
+                  .icon = icon,
+                  .keys = {key},
+                  .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .run =
+                      [this, target] {
+                        worst_gone_to_ = target();
+                        go_to(*worst_gone_to_);
+                      }});
+  };
+  add_worst("next_worst", "Next worst frame", icons::kWarning, {Key::kN, {}},
+            [this, here] { return stillpoint::next_worst(worst(), here(), worst_gone_to_); });
+  add_worst("previous_worst", "Previous worst frame", icons::kChevronUp, {Key::kN, kShift},
+            [this, here] { return stillpoint::previous_worst(worst(), here(), worst_gone_to_); });
   add("next_hit", "Next breakpoint hit", icons::kBug, {Key::kF8, {}},
       [this, here] { return next_in(hit_frames(session_->debug), here()); });
   add("previous_hit", "Previous breakpoint hit", icons::kBug, {Key::kF8, kShift},

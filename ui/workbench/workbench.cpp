@@ -322,6 +322,7 @@ void Workbench::draw_tile_menu(const std::string& name) {
 void Workbench::carry_out(const PanelActions& wanted) {
   if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
+  for (const std::string& action : wanted.perform) actions_.run(action);
   compare_frames_ |= wanted.compare_frames;
   if (host_.request)
     for (const SessionRequest& wish : wanted.requests) host_.request(wish);

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/lane_figures.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_choices.hpp"
 #include "ui/session/actions.hpp"
@@ -158,13 +157,14 @@ class Workbench {
     const RunView* run = nullptr;
     std::uint64_t revision = 0;
     std::size_t records = 0;
-    LaneFigure figure = LaneFigure::kRpeFrame;
+    int figure = 0;
     bool operator==(const WorstKey&) const = default;
   };
-  std::optional<LaneFigure> worst_by_;
+  std::optional<int> worst_by_;
   WorstKey worst_key_;
   std::vector<int> worst_;
-  std::string notice_;  // of the session, told last
+  std::optional<int> worst_gone_to_;  // the frame that list was last gone to
+  std::string notice_;                // of the session, told last
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;

@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-#include "core/inspect/lane_figures.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/run/worst_frames.hpp"
 
 namespace stillpoint {
 namespace {
@@ -21,6 +22,7 @@ RunView run_of(const std::vector<double>& errors_mm) {
     record.index = static_cast<int>(i);
     record.timestamp = static_cast<double>(i) / 30.0;
     record.status = errors_mm[i] < 0.0 ? FrameStatus::lost : FrameStatus::tracked;
+    record.estimated = errors_mm[i] >= 0.0;
     record.inliers = 100 - static_cast<int>(i);
     run.records.push_back(record);
     if (i > 0 && errors_mm[i] >= 0.0)
@@ -30,60 +32,62 @@ RunView run_of(const std::vector<double>& errors_mm) {
   return run;
 }
 
+std::vector<int> worst(const RunView& run, const char* figure, int apart, std::size_t most = 50) {
+  std::vector<int> frames;
+  for (const WorstFrame& frame : worst_frames(run.measured(), frame_figure(figure), apart, most))
+    frames.push_back(frame.index);
+  return frames;
+}
+
 TEST(LaneFigures, ErrorsStandAtTheEndOfTheirMotion) {
-  const std::vector<double> values = lane_values(run_of({0, 3, 5, -1, 2}), LaneFigure::kRpeFrame);
+  const RunView run = run_of({0, 3, 5, -1, 2});
+  const std::vector<double> values = frame_figure_values(run.measured(), frame_figure("rpe"));
   ASSERT_EQ(values.size(), 5U);
   EXPECT_TRUE(std::isnan(values[0]));
-  EXPECT_NEAR(values[1], 3.0, 1e-9);
-  EXPECT_NEAR(values[2], 5.0, 1e-9);
+  EXPECT_NEAR(values[1], 0.003, 1e-12);
+  EXPECT_NEAR(values[2], 0.005, 1e-12);
   EXPECT_TRUE(std::isnan(values[3]));
-  EXPECT_NEAR(values[4], 2.0, 1e-9);
+  EXPECT_NEAR(values[4], 0.002, 1e-12);
+  const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(frame_figure("rpe"))];
+  EXPECT_EQ(shown_value(info, values[1]), "3.00 mm");
+  EXPECT_EQ(shown_value(info, values[0]), "–");
 }
 
-TEST(LaneFigures, KeysAndNamesAreTheirOwn) {
-  ASSERT_GE(lane_infos().size(), 2U);
-  for (const LaneInfo& a : lane_infos()) {
-    EXPECT_EQ(&info_of(a.figure), &a);
-    for (const LaneInfo& b : lane_infos()) {
-      if (&a == &b) continue;
-      EXPECT_NE(a.key, b.key);
-      EXPECT_NE(a.name, b.name);
-    }
-  }
-}
-
-TEST(LaneFigures, WithoutTruthInliersTell) {
+TEST(WorstFrames, WithoutTruthInliersTell) {
   RunView run = run_of({0, 1, 2});
-  EXPECT_EQ(usual_figure(run), LaneFigure::kRpeFrame);
+  EXPECT_EQ(usual_figure(run.measured()), frame_figure("rpe"));
   run.evaluation = {};
-  EXPECT_EQ(usual_figure(run), LaneFigure::kInliers);
+  EXPECT_EQ(usual_figure(run.measured()), frame_figure("inliers"));
   // Fewer are worse: the last frame has the fewest.
   // … and the better half is none of the worst.
-  EXPECT_THAT(worst_frames(run, LaneFigure::kInliers, 1), ElementsAre(2, 1));
+  EXPECT_THAT(worst(run, "inliers", 1), ElementsAre(2, 1));
 }
 
 TEST(WorstFrames, EachFailureIsNamedOnce) {
   // Two spikes with slopes, one at 3 and a greater one at 9.
   const RunView run = run_of({0, 1, 4, 6, 5, 1, 1, 2, 8, 9, 7, 1, 1});
-  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 4), ElementsAre(9, 3));
-  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 4, 1), ElementsAre(9));
+  EXPECT_THAT(worst(run, "rpe", 4), ElementsAre(9, 3));
+  EXPECT_THAT(worst(run, "rpe", 4, 1), ElementsAre(9));
 }
 
 TEST(WorstFrames, LostStretchesComeFirst) {
   const RunView run = run_of({0, 1, -1, -1, 1, 1, 1, 50, 1, 1, -1, 1});
-  EXPECT_THAT(worst_frames(run, LaneFigure::kRpeFrame, 3, 3), ElementsAre(2, 10, 7));
+  EXPECT_THAT(worst(run, "rpe", 3, 3), ElementsAre(2, 10, 7));
 }
 
 TEST(WorstFrames, OneGoesDownAndUpTheList) {
-  const std::vector<int> worst{9, 3, 40};
-  EXPECT_EQ(next_worst(worst, 17), 9) << "from anywhere to the worst";
-  EXPECT_EQ(next_worst(worst, 9), 3);
-  EXPECT_EQ(next_worst(worst, 3), 40);
-  EXPECT_EQ(next_worst(worst, 40), std::nullopt);
-  EXPECT_EQ(previous_worst(worst, 40), 3);
-  EXPECT_EQ(previous_worst(worst, 9), std::nullopt);
-  EXPECT_EQ(previous_worst(worst, 17), std::nullopt);
-  EXPECT_EQ(next_worst({}, 0), std::nullopt);
+  const std::vector<int> list{9, 3, 40};
+  EXPECT_EQ(next_worst(list, 17, {}), 9) << "from anywhere to the worst";
+  EXPECT_EQ(next_worst(list, 3, {}), 9) << "also from a frame that happens to be in the list";
+  EXPECT_EQ(next_worst(list, 9, {}), 3) << "the worst is shown already";
+  EXPECT_EQ(next_worst(list, 9, 9), 3);
+  EXPECT_EQ(next_worst(list, 3, 3), 40);
+  EXPECT_EQ(next_worst(list, 17, 3), 9) << "one went elsewhere meanwhile";
+  EXPECT_EQ(next_worst(list, 40, 40), std::nullopt);
+  EXPECT_EQ(previous_worst(list, 40, 40), 3);
+  EXPECT_EQ(previous_worst(list, 9, 9), std::nullopt);
+  EXPECT_EQ(previous_worst(list, 17, {}), std::nullopt);
+  EXPECT_EQ(next_worst({}, 0, {}), std::nullopt);
 }
 
 TEST(Places, HitsOfEnabledBreakpointsAreOneList) {
