@@ -120,11 +120,12 @@ struct FrameRecord {
   int features_found = 0, features_removed = 0, features_kept = 0;
   double mask_share = 0.0;                   ///< of the frame's pixels, 0 to 1
   int motion_rounds = 0;                     ///< of an iterative motion method; 0 for others
-  std::vector<MotionFigure> motion_figures;  ///< what the method measured (MethodInfo::figures)
+  std::vector<MotionFigure> motion_figures;  ///< what method and engine measured (MethodInfo::figures, then
+                                             ///< EngineInfo::figures)
 
   int matches = 0;      ///< features matched to map points
   int inliers = 0;      ///< … that agree with the pose
-  double rms_px = 0.0;  ///< reprojection, inliers
+  double rms_px = 0.0;  ///< reprojection, inliers; NaN by an engine that measures brightness instead
   int refine_iterations = 0;
 
   bool keyframe = false;
@@ -141,5 +142,8 @@ struct FrameRecord {
   StageTimes ms;
   std::vector<FeatureRecord> features;
 };
+
+/// "0.412 px"; a dash by an engine that measures no reprojection.
+[[nodiscard]] std::string reprojection_text(const FrameRecord& record);
 
 }  // namespace stillpoint

@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/odometry/engines.hpp"
 #include "core/run/removal_errors.hpp"
 
 namespace stillpoint {
@@ -133,6 +134,8 @@ std::vector<Figure> all_figures() {
     for (const FigureInfo& info : method.figures)
       if (std::none_of(all.begin(), all.end(), [&](const Figure& one) { return one.info.name == info.name; }))
         all.push_back(of_method(info));
+  for (const EngineInfo& engine : engines())
+    for (const FigureInfo& info : engine.figures) all.push_back(of_method(info));
   return all;
 }
 

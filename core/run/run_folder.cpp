@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/tables.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 
 namespace stillpoint {
@@ -57,7 +58,7 @@ class Row {
 };
 
 Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors& errors,
-              const MethodInfo& method) {
+              const std::vector<FigureInfo>& infos) {
   Row row;
   row.count("frame", r.index);
   row.number("timestamp_s", r.timestamp, 6);
@@ -68,7 +69,7 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
   row.count("features_kept", r.features_kept);
   row.number("mask_share", r.mask_share);
   row.count("motion_rounds", r.motion_rounds);
-  for (const FigureInfo& info : method.figures) {
+  for (const FigureInfo& info : infos) {
     const auto figure = std::find_if(r.motion_figures.begin(), r.motion_figures.end(),
                                      [&](const MotionFigure& one) { return one.name == info.name; });
     row.number(info.name.c_str(), figure == r.motion_figures.end() ? FrameErrors::kUnknown : figure->value,
@@ -115,14 +116,16 @@ Row frame_row(const FrameRecord& r, const FrameScores& scores, const FrameErrors
 std::string frames_csv(const RunResult& run, const RunReport& report) {
   const auto errors = errors_by_stamp(report);
   Table table;
-  const MethodInfo& method = method_of(run.config);
-  table.header = frame_row({}, {}, {}, method).names;
+  std::vector<FigureInfo> infos = method_of(run.config).figures;
+  const std::vector<FigureInfo>& of_engine = engine_of(run.config).figures;
+  infos.insert(infos.end(), of_engine.begin(), of_engine.end());
+  table.header = frame_row({}, {}, {}, infos).names;
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const FrameRecord& record = run.records[i];
     const auto known = errors.find(record.timestamp);
     const bool has_errors = record.estimated && known != errors.end();
     table.rows.push_back(
-        frame_row(record, run.scores[i], has_errors ? known->second : FrameErrors{}, method).values);
+        frame_row(record, run.scores[i], has_errors ? known->second : FrameErrors{}, infos).values);
   }
   return to_csv(table);
 }

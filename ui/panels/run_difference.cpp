@@ -26,7 +26,7 @@ FrameDifference difference_of(const FrameRecord& run, const FrameRecord& ghost) 
   count("Features kept", &FrameRecord::features_kept);
   count("Matches", &FrameRecord::matches);
   count("Inliers", &FrameRecord::inliers);
-  add("Residual", fmt::format("{:.3f} px", run.rms_px), fmt::format("{:.3f} px", ghost.rms_px));
+  add("Residual", reprojection_text(run), reprojection_text(ghost));
   add("Keyframe", run.keyframe ? "yes" : "no", ghost.keyframe ? "yes" : "no");
   count("Map points", &FrameRecord::map_points);
   return difference;
