@@ -8,7 +8,8 @@
 // One line an engine: NAME is defined as `EngineInfo NAME_engine()` in the engine's own file.
 #define STILLPOINT_ENGINES(ENGINE) \
   ENGINE(features)                 \
-  ENGINE(bamvo)
+  ENGINE(bamvo)                    \
+  ENGINE(dso)
 
 namespace stillpoint {
 

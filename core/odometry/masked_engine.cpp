@@ -155,6 +155,10 @@ TrackerFrame MaskedEngine::looked_at(const Frame& frame, const Rectified& rectif
   looked.threads = config_.run.threads;
   looked.prepared = rectified.prepared;
   looked.velocity = path_.velocity();
+  if (path_.begun() && !path_.lost())
+    looked.velocity_to = [this, now = frame.timestamp](const Pose& camera_from_world) {
+      return path_.velocity_to(camera_from_world, tracker_->map(), now);
+    };
   if (config_.tracking.correct_depth_lag && frame.has_depth())
     looked.depth_lag = frame.depth_timestamp - frame.timestamp;
   const bool weighed =

@@ -28,6 +28,7 @@ struct TrackerFrame {
   std::unordered_map<int, float> point_weight{};
   double depth_lag = 0.0;                ///< s, of depth after colour
   Vector6d velocity = Vector6d::Zero();  ///< of the camera, a second, as far as known before the frame
+  std::function<Vector6d(const Pose&)> velocity_to{};  ///< … as it is when the frame was taken from a pose
   int threads = 1;                       ///< any number gives the same bytes
   std::shared_ptr<const TrackerPreparation> prepared{};  ///< what prepare() made of its images
 
