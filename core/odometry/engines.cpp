@@ -9,7 +9,8 @@
 #define STILLPOINT_ENGINES(ENGINE) \
   ENGINE(features)                 \
   ENGINE(bamvo)                    \
-  ENGINE(dso)
+  ENGINE(dso)                      \
+  ENGINE(ptam)
 
 namespace stillpoint {
 

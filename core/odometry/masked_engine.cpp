@@ -178,9 +178,12 @@ TrackerResult MaskedEngine::track_frame(MotionInput input, const Rectified& rect
   FrameRecord& record = result.record;
   const MotionNeeds& needs = motion_.info_for(frame).needs;
   Pose start = path_.predicted(tracker_->map(), frame.timestamp);
+  bool estimated = false;
   const auto track = [&](const cv::Mat& mask, const MotionResult& motion, const Pose& from) {
     const Stopwatch watch;
-    TrackerResult tracked = tracker_->track(looked_at(frame, rectified, mask, motion), from);
+    TrackerFrame looked = looked_at(frame, rectified, mask, motion);
+    looked.start_estimated = estimated;
+    TrackerResult tracked = tracker_->track(looked, from);
     record.ms.pose += watch.milliseconds();
     return tracked;
   };
@@ -190,6 +193,7 @@ TrackerResult MaskedEngine::track_frame(MotionInput input, const Rectified& rect
     const TrackerResult first = track(result.mask, {}, start);
     if (first.found()) {
       input.camera_from_world = start = first.camera_from_world;
+      estimated = true;
       const auto points =
           needs.matches ? points_to_judge(first, tracker_->map()) : std::vector<MotionFeature>();
       input.features = points;
@@ -214,13 +218,16 @@ RemovalCheck MaskedEngine::check(const Frame& frame, const Rectified& rectified,
   weights.log_odds = motion.log_odds;
   const auto solve = [&](const cv::Mat& mask) -> std::optional<Pose> {
     Pose start = path_.predicted(tracker_->map(), frame.timestamp);
+    bool estimated = false;
     if (judged_by_pose) {
       TrackerFrame looked = looked_at(frame, rectified, mask, {});
       looked.point_weight.clear();
       const TrackerResult first = tracker_->track(looked, start);
-      if (first.found()) start = first.camera_from_world;
+      estimated = first.found();
+      if (estimated) start = first.camera_from_world;
     }
     TrackerFrame looked = looked_at(frame, rectified, mask, weights);
+    looked.start_estimated = estimated;
     for (auto& [point, weight] : looked.point_weight)
       if (weight <= 0.0F) weight = 1.0F;
     const TrackerResult tracked = tracker_->track(looked, start);
