@@ -1,10 +1,11 @@
 #include "core/odometry/masked_engine.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "core/odometry/engines.hpp"
 #include "core/odometry/frame_judgement.hpp"
-#include "core/odometry/trust.hpp"
+#include "core/odometry/static_weight.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -19,8 +20,8 @@ cv::Mat weights_of(const cv::Mat& log_odds, const cv::Size& size, double half) {
   for (int y = 0; y < log_odds.rows; ++y)
     for (int x = 0; x < log_odds.cols; ++x)
       pixels.emplace_back((static_cast<float>(x) + 0.5F) * step_x, (static_cast<float>(y) + 0.5F) * step_y);
-  std::vector<float> weight = trust_at(pixels, log_odds, size, half);
-  raise_least_trust(std::vector<std::uint8_t>(weight.size(), 1), weight);
+  std::vector<float> weight = static_weights_at(pixels, log_odds, size, half);
+  raise_least_weight(std::vector<std::uint8_t>(weight.size(), 1), weight);
   const cv::Mat small(log_odds.size(), CV_32FC1, weight.data());
   cv::Mat whole;
   cv::resize(small, whole, size, 0, 0, cv::INTER_NEAREST);
@@ -52,6 +53,15 @@ std::vector<MotionFeature> points_to_judge(const TrackerResult& first, const Loc
 }
 
 }  // namespace
+
+bool TrackerFrame::is_dynamic(const Eigen::Vector2d& pixel, double z) const {
+  constexpr double kLikeDepth = 0.1;  // m, as for the points of the features' map
+  if (!cull_dynamic || weight.empty() || depth.empty()) return false;
+  const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
+  if (x < 0 || y < 0 || x >= weight.cols || y >= weight.rows || weight.at<float>(y, x) > 0.0F) return false;
+  const float sensed = depth.at<float>(y, x);
+  return sensed > 0.0F && z < static_cast<double>(sensed) + kLikeDepth;
+}
 
 MaskedEngine::MaskedEngine(const Camera& camera, const Config& config, std::unique_ptr<FrameTracker> tracker)
     : camera_(camera),
@@ -154,6 +164,7 @@ TrackerFrame MaskedEngine::looked_at(const Frame& frame, const Rectified& rectif
   TrackerFrame looked{frame, rectified.gray, rectified.depth, {}, point_weight_};
   looked.threads = config_.run.threads;
   looked.prepared = rectified.prepared;
+  looked.cull_dynamic = config_.map.cull_dynamic && !mask.empty();
   looked.velocity = path_.velocity();
   if (path_.begun() && !path_.lost())
     looked.velocity_to = [this, now = frame.timestamp](const Pose& camera_from_world) {
@@ -165,7 +176,7 @@ TrackerFrame MaskedEngine::looked_at(const Frame& frame, const Rectified& rectif
       engine_of(config_).takes_weights && config_.tracking.soft_weights && !motion.log_odds.empty();
   if (mask.empty() && !weighed && rectifier_.seen().empty()) return looked;
   cv::Mat weight = weighed
-                       ? weights_of(motion.log_odds, frame.gray.size(), config_.tracking.half_trust_log_odds)
+                       ? weights_of(motion.log_odds, frame.gray.size(), config_.tracking.half_weight_log_odds)
                        : cv::Mat(frame.gray.size(), CV_32FC1, cv::Scalar(1.0F));
   if (!mask.empty()) weight.setTo(0.0F, mask);
   looked.weight = rectifier_.nearest(weight);

@@ -26,6 +26,7 @@ struct TrackerFrame {
   cv::Mat weight;  ///< CV_32FC1: 0 = removed or not seen by the camera, to 1; empty: all count whole
   /// Of map points that the method judged one by one; those not in it count whole.
   std::unordered_map<int, float> point_weight{};
+  bool cull_dynamic = false;             ///< map points on what the method removes are to leave the map
   double depth_lag = 0.0;                ///< s, of depth after colour
   Vector6d velocity = Vector6d::Zero();  ///< of the camera, a second, as far as known before the frame
   std::function<Vector6d(const Pose&)> velocity_to{};  ///< … as it is when the frame was taken from a pose
@@ -34,6 +35,9 @@ struct TrackerFrame {
   std::shared_ptr<const TrackerPreparation> prepared{};  ///< what prepare() made of its images
 
   [[nodiscard]] float weight_at(int x, int y) const { return weight.empty() ? 1.0F : weight.at<float>(y, x); }
+  /// Whether a point that lies at a depth in this frame is of what the method removes there: on it, or before
+  /// it, where nothing is now. @param pixel rectified
+  [[nodiscard]] bool is_dynamic(const Eigen::Vector2d& pixel, double z) const;
 };
 
 /// Where a tracker found a frame to be.
@@ -106,7 +110,7 @@ class MaskedEngine final : public OdometryEngine {
   void restore_images(int next, const std::function<Frame(int)>& read) override;
 
   [[nodiscard]] const LocalMap& map() const override { return tracker_->map(); }
-  [[nodiscard]] const std::map<int, HangingPose>& revised_poses() const override { return revised_; }
+  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const override { return revised_; }
   [[nodiscard]] const Config& config() const override { return config_; }
   [[nodiscard]] const MotionStage& motion() const override { return motion_; }
 
@@ -137,7 +141,7 @@ class MaskedEngine final : public OdometryEngine {
   std::unique_ptr<FrameTracker> tracker_;
   CameraPath path_;
   std::unordered_map<int, float> point_weight_;  // of the frame at hand, by the method
-  std::map<int, HangingPose> revised_;           // none: no pose is solved once more
+  std::map<int, KeyframeRelativePose> revised_;  // none: no pose is solved once more
 };
 
 }  // namespace stillpoint

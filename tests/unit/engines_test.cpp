@@ -69,9 +69,9 @@ TEST_P(EveryEngine, ACopyGoesOnAsTheOriginalWould) {
 TEST_P(EveryEngine, AnEarlierFrameIsShownAgainWithItsStages) {
   const auto source = people();
   FrameCache cache(*source);
-  ShownRun shown(*source, cache, RunTrack(*source, config_, {.checkpoint_every = 4}));
+  ShownRun shown(*source, cache, ReplayableRun(*source, config_, {.checkpoint_every = 4}));
   for (int i = 0; i < kFrames; ++i) shown.process(source->read(i));
-  ShownRun later(*source, cache, RunTrack(*source, config_, {.checkpoint_every = 4}));
+  ShownRun later(*source, cache, ReplayableRun(*source, config_, {.checkpoint_every = 4}));
   for (int i = 0; i < kFrames; ++i) later.process(source->read(i));
   const FrameResult again = later.track().replay(6, later.reader());
   EXPECT_TRUE(computed_alike(again.record, later.track().records()[6]));

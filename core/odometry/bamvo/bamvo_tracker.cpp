@@ -126,9 +126,9 @@ std::vector<FeatureRecord> BamvoTracker::sampled(const Levels& target,
           feature.pixel.y > static_cast<float>(camera.height - 1))
         continue;
       feature.depth = to.depth.at<float>(v, u);
-      feature.trust = to.weight.empty() ? 1.0F : to.weight.at<float>(v, u);
+      feature.static_weight = to.weight.empty() ? 1.0F : to.weight.at<float>(v, u);
       const float residual = alignment.residual.at<float>(y, x);
-      if (feature.trust <= 0.0F)
+      if (feature.static_weight <= 0.0F)
         feature.fate = FeatureFate::removed;
       else if (!std::isnan(residual))
         feature.fate =

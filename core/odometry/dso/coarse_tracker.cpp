@@ -115,7 +115,8 @@ class Way {
   }
 
   double run_level(int level, State& state, int& iterations, double& cutoff) {
-    constexpr double kWorse = 4.0, kBetter = 0.5, kFirst = 0.01, kLeastGain = 1e-5, kStill = 2e-5, kMostCutoffs = 3;
+    constexpr double kWorse = 4.0, kBetter = 0.5, kFirst = 0.01, kLeastGain = 1e-5, kStill = 2e-5,
+                     kMostCutoffs = 3;
     cutoff = config_.cutoff;
     Compared now;
     for (int doubled = 0;; ++doubled) {

@@ -113,7 +113,7 @@ std::vector<DsoCandidate> DsoTracker::add_points(const TrackerFrame& frame, DsoT
         rectifier_.to_image(cv::Point2f(static_cast<float>(point.u), static_cast<float>(point.v))), 7.0F);
     features.undistorted.emplace_back(static_cast<float>(point.u), static_cast<float>(point.v));
     features.depth.push_back(static_cast<float>(1.0 / point.inverse_depth));
-    features.trust.push_back(point.static_weight);
+    features.static_weight.push_back(point.static_weight);
   }
   features.descriptors.resize(points.size());
   Keyframe& keyframe = map_.keyframe(newest.keyframe);
@@ -139,6 +139,22 @@ void DsoTracker::write_map() {
     if (const auto place = here(point.u, point.v, point.inverse_depth))
       map_.point(point.id).position = from.camera_from_world.inverse() * place->in_host;
   }
+}
+
+int DsoTracker::cull_dynamic(const TrackerFrame& frame, const Pose& camera_from_world) {
+  if (!frame.cull_dynamic) return 0;
+  const Camera& camera = rectifier_.pinhole();
+  return static_cast<int>(std::erase_if(window_.points, [&](const DsoPoint& point) {
+    const int host = window_.index_of(point.host);
+    if (host < 0) return false;
+    const DsoFrame& from = window_.frames[static_cast<std::size_t>(host)];
+    const DsoTransfer transfer(camera, camera_from_world * from.camera_from_world.inverse(), from.velocity,
+                               frame.velocity);
+    const auto place = transfer(point.u, point.v, point.inverse_depth);
+    if (!place || !frame.is_dynamic({place->x, place->y}, place->in_target.z())) return false;
+    map_.remove_moving_point(point.id);
+    return true;
+  }));
 }
 
 TrackerResult DsoTracker::begin(const TrackerFrame& frame, FrameRecord& record) {
@@ -183,8 +199,7 @@ TrackerResult DsoTracker::track(const TrackerFrame& frame, const Pose& predicted
   if (rectifier_.pinhole().readout_s != 0.0 && frame.velocity_to && trace->tracking.failure.empty()) {
     // How the rows bend is known only by how fast the camera went in this very frame.
     TrackerFrame rolled = frame;
-    rolled.velocity =
-        frame.velocity_to(trace->tracking.frame_from_reference * reference_.camera_from_world);
+    rolled.velocity = frame.velocity_to(trace->tracking.frame_from_reference * reference_.camera_from_world);
     CoarseAlignment again = track_coarse(reference_, image, rolled, {trace->tracking.frame_from_reference},
                                          trace->tracking.affine, usual, config_);
     again.tries = trace->tracking.tries;
@@ -225,7 +240,7 @@ std::vector<FeatureRecord> DsoTracker::seen_points(const TrackerFrame& frame,
     if (!frame.depth.empty())
       feature.depth = frame.depth.at<float>(static_cast<int>(std::lround(point.v)),
                                             static_cast<int>(std::lround(point.u)));
-    feature.trust = point.weight;
+    feature.static_weight = point.weight;
     const float residual = tracking.residuals[i];
     feature.fate = std::isnan(residual)                                         ? FeatureFate::removed
                    : std::abs(static_cast<double>(residual)) <= tracking.cutoff ? FeatureFate::inlier
@@ -254,6 +269,8 @@ void DsoTracker::keep(const TrackerFrame& frame, TrackerResult& result, FrameRec
   last_affine_ = tracking.affine;
   lost_ = 0;
   if (!first_rmse_) first_rmse_ = tracking.rmse;
+  record.culled_points = cull_dynamic(frame, result.camera_from_world);
+  if (record.culled_points > 0) reference_ = make_coarse_reference(window_, rectifier_.pinhole());
   // Without depth it can give no points to go on with.
   if (frame.depth.empty()) trace.decision->keyframe = false;
   if (trace.decision->keyframe) {
@@ -277,7 +294,7 @@ void DsoTracker::keep(const TrackerFrame& frame, TrackerResult& result, FrameRec
     }
     record.keyframe = true;
     record.new_points = static_cast<int>(told->made.size());
-    record.culled_points = told->lost_points;
+    record.culled_points += told->lost_points;
     record.culled_keyframes = static_cast<int>(leaving.size());
     trace.keyframe = std::move(told);
   }

@@ -66,6 +66,8 @@ class DsoTracker final : public FrameTracker {
   /// Points of the newest keyframe where the window has few. @returns those made
   std::vector<DsoCandidate> add_points(const TrackerFrame& frame, DsoTrace::Keyframe& told);
   void write_map();
+  /// Points on what the method removes leave window and map. @returns how many
+  int cull_dynamic(const TrackerFrame& frame, const Pose& camera_from_world);
   [[nodiscard]] DsoTrace::Decision decide(const CoarseAlignment& tracking) const;
   [[nodiscard]] std::vector<FeatureRecord> seen_points(const TrackerFrame& frame,
                                                        const CoarseAlignment& tracking) const;

@@ -24,7 +24,7 @@ void PtamConfig::list(ParameterTable& table) {
   table.number("patch_limit", patch_limit, 500.0, 1, 65025, "grey levels²",
                "most squared difference a pixel of a patch that is found, means taken off");
   table.number("subpixel_steps", subpixel_steps, 8, 0, 50, "steps", "between pixels, in the coarse search");
-  table.number("fine_subpixel_steps", fine_subpixel_steps, 8, 0, 50, "steps",
+  table.number("fine_subpixel_steps", fine_subpixel_steps, 0, 0, 50, "steps",
                "… and in the fine one; 0: whole pixels");
   table.number("iterations", iterations, 10, 1, 100, "steps", "of the pose, coarse and fine");
   table.number("prior", prior, 100.0, 0, 1e6, "",

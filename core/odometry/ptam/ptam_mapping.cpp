@@ -63,7 +63,7 @@ void PtamTracker::add_keyframe(const TrackerFrame& frame, const Pose& camera_fro
                                     level);
     features.undistorted.push_back(at);
     features.depth.push_back(static_cast<float>(depth));
-    features.trust.push_back(static_cast<float>(weight));
+    features.static_weight.push_back(static_cast<float>(weight));
     of_feature.push_back(point);
   };
   const auto depth_of = [&](const Eigen::Vector2d& pixel) {
@@ -153,11 +153,15 @@ void PtamTracker::add_keyframe(const TrackerFrame& frame, const Pose& camera_fro
   trace.keyframe = true;
 }
 
-void PtamTracker::drop_point(int point) {
+void PtamTracker::drop_point(int point, bool dynamic) {
   for (auto& [id, view] : views_)
     std::erase_if(view.measurements, [point](const Measurement& one) { return one.point == point; });
   points_.erase(point);
-  if (map_.has_point(point)) map_.remove_point(point);
+  if (!map_.has_point(point)) return;
+  if (dynamic)
+    map_.remove_moving_point(point);
+  else
+    map_.remove_point(point);
 }
 
 void PtamTracker::adjust(int keyframe, PtamTrace& trace) {

@@ -231,13 +231,12 @@ TrackerResult PtamTracker::track(const TrackerFrame& frame, const Pose& predicte
   }
   judge_quality(*trace);
 
-  double squares = 0.0, depth = 0.0;
+  double squares = 0.0;
   for (const PtamSeen* seen : found) {
     if (seen->weight <= 0.0) continue;
     ++result.inliers;
     squares += seen->error_px * seen->error_px;
   }
-  (void)depth;
   trace->rms_px = result.inliers > 0 ? std::sqrt(squares / result.inliers) : 0.0;
   result.matches = static_cast<int>(found.size());
   result.camera_from_world = trace->pose.camera_from_world;
@@ -290,7 +289,7 @@ std::vector<FeatureRecord> PtamTracker::records_of(const TrackerFrame& frame, co
       continue;
     if (!frame.depth.empty()) feature.depth = frame.depth.at<float>(y, x);
     feature.octave = static_cast<std::uint8_t>(seen.level);
-    feature.trust = static_cast<float>(seen.static_weight);
+    feature.static_weight = static_cast<float>(seen.static_weight);
     feature.residual_px = static_cast<float>(seen.error_px);
     feature.fate = seen.removed        ? FeatureFate::removed
                    : !seen.found       ? FeatureFate::unmatched
@@ -313,7 +312,8 @@ void PtamTracker::keep(const TrackerFrame& frame, TrackerResult& result, FrameRe
   for (const PtamSeen& seen : trace.seen)
     if (seen.found && seen.weight > 0.0) depth += (result.camera_from_world * seen.world).z(), ++count;
   if (count > 0) scene_depth_ = depth / count;
-  vote(trace, trace);
+  vote(trace);
+  cull_dynamic(frame, result.camera_from_world, trace);
   if (wants_keyframe(frame, result.camera_from_world, trace)) {
     add_keyframe(frame, result.camera_from_world, trace);
     const int keyframe = map_.keyframes().rbegin()->first;
@@ -339,7 +339,7 @@ void PtamTracker::lose(const TrackerFrame& frame, const TrackerResult&) {
 }
 
 /// Points that are found and do not agree, time after time, leave the map.
-void PtamTracker::vote(const PtamTrace& trace, PtamTrace& told) {
+void PtamTracker::vote(PtamTrace& trace) {
   for (const PtamSeen& seen : trace.seen) {
     if (!seen.found) continue;
     const auto at = points_.find(seen.point);
@@ -349,7 +349,16 @@ void PtamTracker::vote(const PtamTrace& trace, PtamTrace& told) {
         at->second.outlier_votes <= at->second.inlier_votes)
       continue;
     drop_point(seen.point);
-    ++told.dropped;
+    ++trace.dropped;
+  }
+}
+
+void PtamTracker::cull_dynamic(const TrackerFrame& frame, const Pose& camera_from_world, PtamTrace& trace) {
+  for (const PtamSeen& seen : trace.seen) {
+    if (!seen.removed || !points_.contains(seen.point)) continue;
+    if (!frame.is_dynamic(seen.expected, (camera_from_world * seen.world).z())) continue;
+    drop_point(seen.point, true);
+    ++trace.dropped;
   }
 }
 

@@ -54,7 +54,7 @@ struct PtamTrace final : EngineTrace {
   std::array<int, PtamConfig::kLevels> made{};  ///< new points by level
   std::vector<cv::Point2f> made_at;             ///< px, in the camera's own image
   std::optional<PtamBundle> bundle;
-  int dropped = 0;  ///< points by votes and by bundle adjustment
+  int dropped = 0;  ///< points by votes, by bundle adjustment, and on what the method removes
 };
 
 /// PTAM with depth from the sensor: patches of keyframes are found at corners, coarse then fine, and the pose
@@ -104,12 +104,13 @@ class PtamTracker final : public FrameTracker {
   [[nodiscard]] std::vector<FeatureRecord> records_of(const TrackerFrame& frame,
                                                       const PtamTrace& trace) const;
   void judge_quality(PtamTrace& trace) const;
-  void vote(const PtamTrace& trace, PtamTrace& told);
+  void vote(PtamTrace& trace);
+  void cull_dynamic(const TrackerFrame& frame, const Pose& camera_from_world, PtamTrace& trace);
   [[nodiscard]] bool wants_keyframe(const TrackerFrame& frame, const Pose& camera_from_world,
                                     PtamTrace& trace) const;
   void add_keyframe(const TrackerFrame& frame, const Pose& camera_from_world, PtamTrace& trace);
   void adjust(int keyframe, PtamTrace& trace);
-  void drop_point(int point);
+  void drop_point(int point, bool dynamic = false);
 
   Rectifier rectifier_;
   PtamConfig config_;
