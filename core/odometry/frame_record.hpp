@@ -34,7 +34,7 @@ enum class FeatureFate : std::uint8_t {
 struct FeatureRecord {
   cv::Point2f pixel;         ///< px, in the image as it is
   float depth = 0.0F;        ///< m, 0 = none
-  float residual_px = 0.0F;  ///< reprojection residual under the final pose; 0 when unmatched
+  float residual_px = 0.0F;  ///< reprojection, final pose; 0 unmatched, NaN by engines that align brightness
   int map_point = kNone;     ///< id; kNone when unmatched or removed
   std::uint8_t octave = 0;
   FeatureFate fate = FeatureFate::unmatched;

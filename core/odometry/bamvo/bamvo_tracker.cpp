@@ -125,6 +125,7 @@ std::vector<FeatureRecord> BamvoTracker::sampled(const Levels& target,
           feature.pixel.x > static_cast<float>(camera.width - 1) ||
           feature.pixel.y > static_cast<float>(camera.height - 1))
         continue;
+      feature.residual_px = std::numeric_limits<float>::quiet_NaN();
       feature.depth = to.depth.at<float>(v, u);
       feature.static_weight = to.weight.empty() ? 1.0F : to.weight.at<float>(v, u);
       const float residual = alignment.residual.at<float>(y, x);

@@ -240,6 +240,7 @@ std::vector<FeatureRecord> DsoTracker::seen_points(const TrackerFrame& frame,
     if (!frame.depth.empty())
       feature.depth = frame.depth.at<float>(static_cast<int>(std::lround(point.v)),
                                             static_cast<int>(std::lround(point.u)));
+    feature.residual_px = std::numeric_limits<float>::quiet_NaN();
     feature.static_weight = point.weight;
     const float residual = tracking.residuals[i];
     feature.fate = std::isnan(residual)                                         ? FeatureFate::removed
