@@ -7,6 +7,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/motion/rgbd_view.hpp"
 #include "core/odometry/row_blocks.hpp"
 
 namespace stillpoint {
@@ -172,6 +173,22 @@ cv::Mat picked(const cv::Mat& image, int factor) {
   return small;
 }
 
+cv::Mat averaged_depth(const cv::Mat& depth, int factor) {
+  if (depth.empty() || factor == 1) return depth;
+  cv::Mat small(depth.rows / factor, depth.cols / factor, CV_32FC1);
+  for (int y = 0; y < small.rows; ++y)
+    for (int x = 0; x < small.cols; ++x) {
+      const float middle = depth.at<float>(y * factor + factor / 2, x * factor + factor / 2);
+      float sum = 0.0F;
+      int count = 0;
+      for (int v = y * factor; v < (y + 1) * factor; ++v)
+        for (int u = x * factor; u < (x + 1) * factor; ++u)
+          if (const float z = depth.at<float>(v, u); z > 0.0F && same_surface(z, middle)) sum += z, ++count;
+      small.at<float>(y, x) = middle > 0.0F ? sum / static_cast<float>(count) : 0.0F;
+    }
+  return small;
+}
+
 DenseView make_dense_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera, int factor) {
   DenseView view;
   const cv::Size size(gray.cols / factor, gray.rows / factor);
@@ -181,7 +198,7 @@ DenseView make_dense_view(const cv::Mat& gray, const cv::Mat& depth, const Camer
     view.gray = whole;
   else
     cv::resize(whole, view.gray, size, 0, 0, cv::INTER_AREA);
-  view.depth = picked(depth, factor);
+  view.depth = averaged_depth(depth, factor);
   view.camera = camera.scaled_to(size.width, size.height);
   return view;
 }
@@ -190,7 +207,7 @@ DenseView halved(const DenseView& view) {
   DenseView half;
   const cv::Size size(view.gray.cols / 2, view.gray.rows / 2);
   cv::resize(view.gray, half.gray, size, 0, 0, cv::INTER_AREA);
-  half.depth = picked(view.depth, 2);
+  half.depth = averaged_depth(view.depth, 2);
   half.weight = picked(view.weight, 2);
   half.camera = view.camera.scaled_to(size.width, size.height);
   return half;

@@ -17,11 +17,14 @@ struct DenseView {
   Camera camera;   ///< of this size, without distortion
 };
 
-/// @param gray CV_8UC1; @param factor full-size pixels a side: brightness is averaged, one depth is kept
+/// @param gray CV_8UC1; @param factor full-size pixels a side: brightness is averaged, and depth of one
+/// surface
 [[nodiscard]] DenseView make_dense_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera,
                                         int factor);
 /// Of each block of `factor` pixels a side one value of a CV_32FC1 image: never a mean across an edge.
 [[nodiscard]] cv::Mat picked(const cv::Mat& image, int factor);
+/// Of each block the mean depth of what lies on the surface of its middle; 0 where that has none.
+[[nodiscard]] cv::Mat averaged_depth(const cv::Mat& depth, int factor);
 /// The same at half its size.
 [[nodiscard]] DenseView halved(const DenseView& view);
 

@@ -106,6 +106,21 @@ std::vector<DsoCandidate> DsoTracker::add_points(const TrackerFrame& frame, DsoT
     points.push_back(*point);
     made.push_back(one);
   }
+  // No more than the window is to hold, but a keyframe's share at least: thinned evenly.
+  const auto room = static_cast<std::size_t>(
+      std::max(config_.active_points / config_.window,
+               config_.active_points - static_cast<int>(window_.points.size())));
+  if (points.size() > room) {
+    const std::size_t count = points.size();
+    std::vector<DsoPoint> fewer;
+    std::vector<DsoCandidate> fewer_made;
+    for (std::size_t i = 0; i < room; ++i) {
+      fewer.push_back(points[i * count / room]);
+      fewer_made.push_back(made[i * count / room]);
+    }
+    points = std::move(fewer);
+    made = std::move(fewer_made);
+  }
   newest.points_made = static_cast<int>(points.size());
   FeatureSet features;
   for (const DsoPoint& point : points) {
