@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/methods.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 
 namespace stillpoint {
@@ -17,18 +18,25 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
   command.add_option("--set", assignments, "One parameter, as section.name=value; may be given again");
   command.add_option("--threads", threads, "Worker threads; any number gives the same result")
       ->check(CLI::Range(1, 64));
-  if (with_method)
-    command.add_option(
-        "--method", method,
-        fmt::format("Which method judges what is dynamic: {}", fmt::join(method_names(), ", ")));
+  if (!with_method) return;
+  command.add_option("--method", method,
+                     fmt::format("Which method judges what is dynamic: {}", fmt::join(method_names(), ", ")));
+  command.add_option(
+      "--odometry", odometry,
+      fmt::format("Which engine tells where the camera is: {}", fmt::join(engine_names(), ", ")));
 }
 
 Config ConfigArguments::config() const {
   Config config = preset.empty() ? Config{} : load_config(preset);
   for (const std::string& assignment : assignments) set_parameter(config, assignment);
   if (!method.empty()) set_parameter(config, "run.method=" + method);
+  if (!odometry.empty()) set_parameter(config, "run.odometry=" + odometry);
   if (threads > 0) config.run.threads = threads;
   return config;
+}
+
+void throw_if_no_pair(const Config& config) {
+  if (const std::string why = why_no_pair(config); !why.empty()) throw InputError(why);
 }
 
 void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {

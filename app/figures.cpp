@@ -10,6 +10,7 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "ui/panels/figure_sheet.hpp"
 #include "ui/session/session.hpp"
@@ -133,6 +134,10 @@ void figures(const FiguresArguments& arguments) {
   } else {
     output.leave_out("3 and 4", "the sequence has no depth, and features are those of the odometry");
   }
+  if (has_depth && engine_of(place.config).has_stages)
+    output.write_panel("_odometry", *view, "motion",
+                       fmt::format("stages of odometry {} at a glance, after those of method {}",
+                                   place.config.run.odometry, method));
   if (has_depth && has_truth)
     output.write_panel("6", *view, "errors",
                        fmt::format("relative pose error over time of method {}{}", method, beside));

@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
@@ -57,6 +58,7 @@ void run(const RunArguments& arguments) {
   }
   const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
+  throw_if_no_pair(config);
   const auto source = arguments.frames.open(arguments.sequence, config,
                                             {.depth = true, .oracle = method_of(config).needs.true_mask});
   RunOptions options;
@@ -73,7 +75,7 @@ void run(const RunArguments& arguments) {
   const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
   RunResult result;
   {
-    Progress progress(fmt::format("{} ({})", source->name(), config.run.method), total);
+    Progress progress(fmt::format("{} ({})", source->name(), run_label(config)), total);
     options.on_frame = [&](const FrameResult& frame) {
       if (records) records->add(frame);
       progress.advance(std::string(to_string(frame.record.status)));

@@ -13,6 +13,7 @@
 #include "core/assets.hpp"
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
+#include "core/odometry/engines.hpp"
 
 namespace stillpoint {
 namespace {
@@ -206,6 +207,8 @@ void BundleConfig::list(ParameterTable& table) {
 
 void RunConfig::list(ParameterTable& table) {
   table.choice("method", method, kDefaultMethod, method_names(), "which method judges what moves");
+  table.choice("odometry", odometry, kDefaultEngine, engine_names(),
+               "which engine tells where the camera is, behind that method");
   table.number("threads", threads, 2, 1, 64, "threads", "worker threads; any number gives the same bytes");
   table.number("seed", seed, 1, 0, 1e9, "", "of generated sequences");
   table.flag(
@@ -213,18 +216,21 @@ void RunConfig::list(ParameterTable& table) {
       "each pose is also solved without removal, and with the true mask where known; changes no result");
 }
 
-MethodSections::MethodSections() {
+OwnedSections method_sections() {
+  std::vector<AnySection> sections;
   for (const MethodInfo& method : methods())
-    if (!method.parameters.empty()) sections_.push_back(method.parameters);
+    if (!method.parameters.empty()) sections.push_back(method.parameters);
+  return OwnedSections(std::move(sections));
 }
 
-AnySection& MethodSections::find(const std::string& name) {
-  for (AnySection& section : sections_)
-    if (section.name() == name) return section;
-  throw std::logic_error("no registered method owns the section [" + name + "]");
+OwnedSections engine_sections() {
+  std::vector<AnySection> sections;
+  for (const EngineInfo& engine : engines())
+    if (!engine.parameters.empty()) sections.push_back(engine.parameters);
+  return OwnedSections(std::move(sections));
 }
 
-void MethodSections::list(std::vector<Parameter>& into) {
+void OwnedSections::list(std::vector<Parameter>& into) {
   for (AnySection& section : sections_) section.list(into);
 }
 
@@ -236,6 +242,7 @@ std::vector<Parameter> parameters(Config& config) {
   };
   add(config.run);
   config.methods.list(all);
+  config.engines.list(all);
   add(config.features);
   add(config.tracking);
   add(config.direct);

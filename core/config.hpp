@@ -1,8 +1,10 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/parameter.hpp"
@@ -114,41 +116,43 @@ struct RunConfig {
   bool operator==(const RunConfig&) const = default;
 
   std::string method;
+  std::string odometry;
   int threads;
   int seed;
   bool check_removal;
 };
 
-/// The sections of constants that motion methods own, one a method that has any (core/motion/methods.hpp).
-/// A value.
-class MethodSections {
+/// Sections of constants whose types only their owners know: one a motion method or odometry engine that has
+/// any. A value.
+class OwnedSections {
  public:
-  /// Every registered method's section, at its defaults.
-  MethodSections();
+  explicit OwnedSections(std::vector<AnySection> sections) : sections_(std::move(sections)) {}
 
-  /// @throws std::logic_error when no registered method owns such a section
+  /// Null where none of its owners is registered.
   template <typename Section>
-  [[nodiscard]] Section& of() {
-    return *find(Section::kSection).template as<Section>();
-  }
-  template <typename Section>
-  [[nodiscard]] const Section& of() const {
-    return *const_cast<MethodSections*>(this)->find(Section::kSection).template as<Section>();
+  [[nodiscard]] Section* find() {
+    for (AnySection& section : sections_)
+      if (Section* found = section.template as<Section>()) return found;
+    return nullptr;
   }
   /// Adds every section's parameters.
   void list(std::vector<Parameter>& into);
-  bool operator==(const MethodSections&) const = default;
+  bool operator==(const OwnedSections&) const = default;
 
  private:
-  [[nodiscard]] AnySection& find(const std::string& name);
-
   std::vector<AnySection> sections_;  // in the order of the registry
 };
+
+/// Every registered motion method's section (core/motion/methods.hpp), at its defaults.
+[[nodiscard]] OwnedSections method_sections();
+/// Every registered odometry engine's (core/odometry/engines.hpp).
+[[nodiscard]] OwnedSections engine_sections();
 
 /// Every constant of a run.
 struct Config {
   RunConfig run;
-  MethodSections methods;
+  OwnedSections methods = method_sections();
+  OwnedSections engines = engine_sections();
   FeatureConfig features;
   TrackingConfig tracking;
   DirectConfig direct;
@@ -156,14 +160,17 @@ struct Config {
   BundleConfig bundle;
   bool operator==(const Config&) const = default;
 
-  /// A method's own constants: `config.of<PaperConfig>().max_rounds`.
+  /// A method's or an engine's own constants: `config.of<PaperConfig>().max_rounds`.
+  /// @throws std::logic_error when nothing that is registered owns such a section
   template <typename Section>
   [[nodiscard]] Section& of() {
-    return methods.of<Section>();
+    if (Section* found = methods.find<Section>()) return *found;
+    if (Section* found = engines.find<Section>()) return *found;
+    throw std::logic_error(std::string("nothing registered owns the section [") + Section::kSection + "]");
   }
   template <typename Section>
   [[nodiscard]] const Section& of() const {
-    return methods.of<Section>();
+    return const_cast<Config*>(this)->of<Section>();
   }
 };
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/odometry/engines.hpp"
 
 namespace stillpoint {
 namespace {
@@ -22,9 +23,9 @@ std::string folder_name(const std::string& folder) {
 /// By method where that is enough, else by folder as well.
 void label_runs(ReportGroup& group) {
   std::map<std::string, int> methods, labels;
-  for (const ReportRun& run : group.runs) ++methods[run.report.method];
+  for (const ReportRun& run : group.runs) ++methods[run_label(run.result().config)];
   for (ReportRun& run : group.runs) {
-    run.label = run.report.method;
+    run.label = run_label(run.result().config);
     const std::string name = folder_name(run.folder);
     if (methods[run.label] > 1 && name != run.label) run.label += fmt::format(" ({})", name);
     const int times = ++labels[run.label];

@@ -57,8 +57,10 @@ std::string verdict_of(const FeatureExplanation& explanation, const std::string&
                                               *explanation.region, method)
                                 : fmt::format("Removed: method {}'s mask holds it.", method);
     case FeatureFate::unmatched:
+      if (std::isnan(feature.residual_px)) return "Kept, but nothing of the last frame compares with it.";
       return "Kept, but no map point was found for it.";
     case FeatureFate::inlier:
+      if (std::isnan(feature.residual_px)) return "Kept and used: its brightness agrees with the pose.";
       return fmt::format(
           "Kept and used: it agrees with the pose, {:.2f} px off{}.",
           static_cast<double>(feature.residual_px),
@@ -66,6 +68,8 @@ std::string verdict_of(const FeatureExplanation& explanation, const std::string&
               ? fmt::format(", and weighs {:.0f} %, for it may move", 100.0 * feature.static_weight)
               : "");
     case FeatureFate::outlier:
+      if (std::isnan(feature.residual_px))
+        return "Kept and not used: its brightness does not agree with the pose.";
       return fmt::format("Kept and not used: matched to map point {}, but {:.1f} px off.", feature.map_point,
                          static_cast<double>(feature.residual_px));
   }

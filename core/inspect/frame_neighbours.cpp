@@ -23,7 +23,7 @@ std::shared_ptr<const FrameView> alone(const FrameView& view) {
 }
 
 void clear_times(FrameView& view) {
-  for (auto* log : {&view.motion, &view.motion_beside}) {
+  for (auto* log : {&view.motion, &view.motion_beside, &view.odometry}) {
     if (!*log) continue;
     StageLog timeless = **log;
     for (Stage& stage : timeless.stages) stage.ms = 0.0;

@@ -10,7 +10,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr const char* kOdometry = "Odometry";
+constexpr const char* kOdometry = kOdometryGroup;
 
 Stage& add_stage(std::vector<Stage>& stages, const char* id, std::string name, std::string what) {
   Stage stage;
@@ -202,6 +202,10 @@ std::vector<Stage> list_stages(const FrameView& view) {
   std::vector<Stage> stages;
   if (view.motion) stages = view.motion->stages;
   if (view.record == nullptr || !view.frame.readable()) return stages;
+  if (view.odometry) {
+    stages.insert(stages.end(), view.odometry->stages.begin(), view.odometry->stages.end());
+    return stages;
+  }
   const std::size_t first = stages.size();
   add_odometry_stages(*view.record, stages);
   for (std::size_t i = first; i < stages.size(); ++i) add_layers(view, stages[i]);
@@ -250,6 +254,8 @@ std::size_t telling_stage(const std::vector<Stage>& stages) {
       return i;
   for (std::size_t i = 0; i < stages.size(); ++i)
     if (stages[i].id == "refinement") return i;
+  for (std::size_t i = stages.size(); i-- > 0;)
+    if (of_odometry(stages[i]) && stages[i].overview) return i;
   return 0;
 }
 

@@ -25,9 +25,10 @@ struct FrameView {
       std::make_shared<const StageLog>();  ///< the run's method's stages, or those of the one that stands in
                                            ///< for it; never null
   std::shared_ptr<const StageLog> motion_beside;  ///< another method's, where these were asked for; else null
-  cv::Mat mask;                                   ///< CV_8UC1: what the method removed; empty = nothing
-  FrameTruth truth;                               ///< for display and evaluation only
-  const FrameRecord* record = nullptr;            ///< null while the frame has not been processed
+  std::shared_ptr<const StageLog> odometry;  ///< the engine's own stages; null where the record tells all
+  cv::Mat mask;                              ///< CV_8UC1: what the method removed; empty = nothing
+  FrameTruth truth;                          ///< for display and evaluation only
+  const FrameRecord* record = nullptr;       ///< null while the frame has not been processed
   /// Records of the frames right before, newest first, with their features where these are kept.
   std::vector<std::shared_ptr<const FrameRecord>> history;
   /// The frame before, to be compared with; null where none was asked for or is known. Has none of its own.
@@ -36,7 +37,7 @@ struct FrameView {
 
 /// The stages that hold a layer: the run's own, else those laid beside; null where neither do.
 [[nodiscard]] inline const StageLog* stages_with(const FrameView& view, const std::string& layer) {
-  for (const auto* log : {&view.motion, &view.motion_beside})
+  for (const auto* log : {&view.motion, &view.motion_beside, &view.odometry})
     if (*log && (*log)->layer(layer) != nullptr) return log->get();
   return nullptr;
 }

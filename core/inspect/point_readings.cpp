@@ -195,7 +195,7 @@ std::vector<ReadingGroup> read_point(const FrameView& view, const PairGeometry& 
                                      const Eigen::Vector2d& target) {
   std::vector<ReadingGroup> groups{read_place(view, pair, target), read_images(view, pair, target),
                                    read_result(view, target)};
-  for (const auto& log : {view.motion, view.motion_beside})
+  for (const auto& log : {view.motion, view.motion_beside, view.odometry})
     if (log) read_stages(*log, pair, target, groups);
   return groups;
 }

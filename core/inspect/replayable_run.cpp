@@ -4,6 +4,7 @@
 #include <future>
 #include <utility>
 
+#include "core/odometry/engines.hpp"
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
@@ -171,7 +172,7 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
 
 RunView ReplayableRun::view() const {
   RunView view;
-  view.name = config().run.method;
+  view.name = run_label(config());
   view.records = records_;
   view.scores = scores_;
   view.trajectory = is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);

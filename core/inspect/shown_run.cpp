@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/inspect/frame_neighbours.hpp"
+#include "core/odometry/engines.hpp"
 
 namespace stillpoint {
 namespace {
@@ -27,6 +28,19 @@ FrameRecord with_mask(FrameRecord record, const cv::Mat& mask) {
   return record;
 }
 
+/// The engine's own stages; null where the record tells all of them.
+std::shared_ptr<const StageLog> engine_stages(const Config& config, const Frame& frame,
+                                              const EngineTrace* trace) {
+  if (!engine_of(config).has_stages) return nullptr;
+  StageLog log;
+  log.method = config.run.odometry;
+  if (trace != nullptr && frame.readable())
+    log.stages = trace->describe(frame);
+  else
+    log.note = "the engine's stages are at hand once this frame has been processed here";
+  return std::make_shared<const StageLog>(std::move(log));
+}
+
 }  // namespace
 
 std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord> record) {
@@ -47,7 +61,7 @@ std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord>
 void ShownRun::process(const Frame& frame) {
   FrameResult result = track_.process_next([&frame](int) { return frame; });
   view_.reset();
-  keep({frame.index, std::move(result.motion), std::move(result.mask)});
+  keep({frame.index, std::move(result.motion), std::move(result.mask), std::move(result.engine)});
 }
 
 void ShownRun::keep(Extras extras) {
@@ -60,7 +74,9 @@ ShownRun::Extras ShownRun::extras_of(int index) {
       std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
   if (kept != extras_.end()) return *kept;
   Extras extras{.index = index};
-  if (track_.can_repeat_motion(index)) {
+  // An engine's own stages are in no record: the frame is processed again.
+  const bool again_whole = engine_of(track_.config()).has_stages && is_own(index) && index < track_.seen();
+  if (!again_whole && track_.can_repeat_motion(index)) {
     MotionReplay motion = motion_before(index);
     const bool processed = index < track_.processed();
     MotionAgain again = motion.repeat(
@@ -81,6 +97,7 @@ ShownRun::Extras ShownRun::extras_of(int index) {
     FrameResult again = process_again(index, track_.config());
     extras.motion = std::move(again.motion);
     extras.mask = std::move(again.mask);
+    extras.engine = std::move(again.engine);
   }
   keep(extras);
   return extras;
@@ -158,7 +175,8 @@ FrameResult ShownRun::process_again(int index, const Config& config) {
   std::optional<Odometry> odometry =
       here.continued_with(config, track_.frames_before(index, here.frames_wanted(config), reader()));
   if (!odometry)
-    throw InputError("features.levels and features.scale_factor take effect only when all is run anew");
+    throw InputError(
+        "another odometry, features.levels and features.scale_factor take effect only when all is run anew");
   return track_.process(*odometry, index, reader());
 }
 
@@ -176,6 +194,7 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   view.reference.index = log.reference >= 0 ? log.reference : index - 1;
   if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);
   view.motion = std::make_shared<const StageLog>(std::move(log));
+  view.odometry = engine_stages(config, view.frame, extras.engine.get());
   view.mask = std::move(extras.mask);
   // Without its images, a finished run still tells what it removed.
   if (!view.frame.readable() && view.mask.empty()) view.mask = track_.recorded_mask(index);
@@ -228,7 +247,7 @@ std::shared_ptr<const FrameView> ShownRun::preview(int index, const Config& conf
   if (is_own(index)) {
     FrameResult result = process_again(index, config);
     record = std::move(result.record);
-    extras = {index, std::move(result.motion), std::move(result.mask)};
+    extras = {index, std::move(result.motion), std::move(result.mask), std::move(result.engine)};
   }
   return with_history(images_of(index, config, std::move(extras)), std::move(record));
 }

@@ -62,6 +62,7 @@ class ShownRun {
     int index = 0;
     MotionResult motion{};
     cv::Mat mask{};
+    std::shared_ptr<const EngineTrace> engine{};
     std::string note{};  ///< why there are no stages; empty when there are
   };
 

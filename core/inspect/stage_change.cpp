@@ -99,13 +99,14 @@ std::optional<StageChange> compare_marks(const Layer& before, const Layer& now) 
 StageChange compare_features(const FrameRecord& before, const FrameRecord& now, const Layer& ground) {
   std::map<int, cv::Point2f> old;
   for (const FeatureRecord& feature : before.features)
-    if (feature.fate == FeatureFate::inlier) old.emplace(feature.map_point, feature.pixel);
+    if (feature.fate == FeatureFate::inlier && feature.map_point != kNone)
+      old.emplace(feature.map_point, feature.pixel);
   StageChange change;
   change.layer = ground;
   change.layer.marks.clear();
   int gained = 0, stays = 0;
   for (const FeatureRecord& feature : now.features) {
-    if (feature.fate != FeatureFate::inlier) continue;
+    if (feature.fate != FeatureFate::inlier || feature.map_point == kNone) continue;
     if (old.erase(feature.map_point) > 0) {
       ++stays;
       continue;
@@ -157,7 +158,14 @@ std::optional<StageChange> against_frame_before(const FrameView& view, const Cam
   if (view.before == nullptr) return std::nullopt;
   const Layer& now = stage.sides[side].output;
   std::optional<StageChange> change;
-  if (of_odometry(stage)) {
+  const bool of_engine = of_odometry(stage) && view.odometry && now.marks.empty();
+  if (of_engine) {
+    if (!view.before->odometry) return std::nullopt;
+    const Stage* old = same_stage(view.before->odometry->stages, stage, stage.round);
+    if (old == nullptr || side >= old->sides.size() || old->sides[side].output.image.empty())
+      return std::nullopt;
+    change = compare_images(old->sides[side].output, now);
+  } else if (of_odometry(stage)) {
     if (view.before->record == nullptr || view.record == nullptr) return std::nullopt;
     change = compare_features(*view.before->record, *view.record, now);
   } else {

@@ -52,4 +52,10 @@ void CameraPath::lose(const LocalMap& map, double now) {
   ++lost_frames_;
 }
 
+void CameraPath::lose_at(const Pose& camera_from_world, const LocalMap& map, double now) {
+  follow_pose(camera_from_world, map, now);
+  velocity_.setZero();
+  ++lost_frames_;
+}
+
 }  // namespace stillpoint

@@ -43,6 +43,8 @@ class CameraPath {
   void follow_pose(const Pose& camera_from_world, const LocalMap& map, double now);
   /// The camera was not found and is taken to be where it was predicted.
   void lose(const LocalMap& map, double now);
+  /// … or is taken to stand there, and to have stopped.
+  void lose_at(const Pose& camera_from_world, const LocalMap& map, double now);
 
  private:
   std::optional<LastFrame> last_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/odometry/engines.hpp"
 #include "core/odometry/frame_judgement.hpp"
 #include "core/stopwatch.hpp"
 
@@ -204,6 +205,20 @@ void FeatureOdometry::finish() {
   FrameRecord unused;
   mapper_.end_bundle(unused);
   smoother_.advance(std::numeric_limits<int>::max(), mapper_.map(), camera_, config_.tracking);
+}
+
+EngineInfo features_engine() {
+  EngineInfo info;
+  info.name = kDefaultEngine;
+  info.title = "Features";
+  info.summary = "ORB features against a local map: EPnP in RANSAC, eq. (5), local bundle adjustment.";
+  info.citation = "Niu & Li 2019, after Mur-Artal & Tardós 2017";
+  info.offers_matches = true;
+  info.wants_orb = true;
+  info.make = [](const Camera& camera, const Config& config) -> std::unique_ptr<OdometryEngine> {
+    return std::make_unique<FeatureOdometry>(camera, config);
+  };
+  return info;
 }
 
 }  // namespace stillpoint

@@ -21,7 +21,7 @@ int FeatureOdometry::frames_wanted(const Config& config) const { return motion_.
 
 std::unique_ptr<OdometryEngine> FeatureOdometry::continued_with(const Config& config,
                                                                 const std::vector<PastFrame>& before) const {
-  if (config.features.levels != config_.features.levels ||
+  if (config.run.odometry != config_.run.odometry || config.features.levels != config_.features.levels ||
       config.features.scale_factor != config_.features.scale_factor)
     return nullptr;
   auto continued = std::make_unique<FeatureOdometry>(*this);

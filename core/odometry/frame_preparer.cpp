@@ -2,6 +2,7 @@
 
 #include <future>
 
+#include "core/odometry/engines.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -11,7 +12,8 @@ FramePreparer::FramePreparer(const Camera& camera, const Config& config)
       extractor_(config.features),
       motion_(camera, config),
       threads_(config.run.threads),
-      judged_by_pose_(method_of(config).needs.first_pose) {}
+      judged_by_pose_(method_of(config).needs.first_pose),
+      wants_orb_(engine_of(config).wants_orb) {}
 
 PreparedFrame FramePreparer::prepare(const Frame& frame, bool beside_tracking) {
   PreparedFrame prepared;
@@ -19,6 +21,7 @@ PreparedFrame FramePreparer::prepare(const Frame& frame, bool beside_tracking) {
   // here it would take from there, unless there is a third.
   const int threads = beside_tracking && judged_by_pose_ ? threads_ - 1 : threads_;
   const auto find_features = [&] {
+    if (!wants_orb_) return;
     const Stopwatch watch;
     prepared.found = extractor_.extract(frame.gray, threads);
     cv::KeyPoint::convert(prepared.found.keypoints, prepared.pixels);

@@ -42,6 +42,7 @@ class FramePreparer {
   MotionPreparer motion_;
   int threads_;
   bool judged_by_pose_;  // the method works while a frame is tracked, not before
+  bool wants_orb_;       // the engine has no use for features otherwise
 };
 
 }  // namespace stillpoint

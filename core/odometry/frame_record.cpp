@@ -1,6 +1,9 @@
 #include "core/odometry/frame_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace stillpoint {
 
@@ -40,6 +43,10 @@ std::string_view to_string(PoseStart start) {
       return "direct alignment";
   }
   return "";
+}
+
+std::string reprojection_text(const FrameRecord& record) {
+  return std::isnan(record.rms_px) ? "–" : fmt::format("{:.3f} px", record.rms_px);
 }
 
 }  // namespace stillpoint

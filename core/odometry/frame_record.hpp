@@ -34,7 +34,7 @@ enum class FeatureFate : std::uint8_t {
 struct FeatureRecord {
   cv::Point2f pixel;         ///< px, in the image as it is
   float depth = 0.0F;        ///< m, 0 = none
-  float residual_px = 0.0F;  ///< reprojection residual under the final pose; 0 when unmatched
+  float residual_px = 0.0F;  ///< reprojection, final pose; 0 unmatched, NaN by engines that align brightness
   int map_point = kNone;     ///< id; kNone when unmatched or removed
   std::uint8_t octave = 0;
   FeatureFate fate = FeatureFate::unmatched;
@@ -120,11 +120,12 @@ struct FrameRecord {
   int features_found = 0, features_removed = 0, features_kept = 0;
   double mask_share = 0.0;                   ///< of the frame's pixels, 0 to 1
   int motion_rounds = 0;                     ///< of an iterative motion method; 0 for others
-  std::vector<MotionFigure> motion_figures;  ///< what the method measured (MethodInfo::figures)
+  std::vector<MotionFigure> motion_figures;  ///< what method and engine measured (MethodInfo::figures, then
+                                             ///< EngineInfo::figures)
 
   int matches = 0;      ///< features matched to map points
   int inliers = 0;      ///< … that agree with the pose
-  double rms_px = 0.0;  ///< reprojection, inliers
+  double rms_px = 0.0;  ///< reprojection, inliers; NaN by an engine that measures brightness instead
   int refine_iterations = 0;
 
   bool keyframe = false;
@@ -141,5 +142,8 @@ struct FrameRecord {
   StageTimes ms;
   std::vector<FeatureRecord> features;
 };
+
+/// "0.412 px"; a dash by an engine that measures no reprojection.
+[[nodiscard]] std::string reprojection_text(const FrameRecord& record);
 
 }  // namespace stillpoint

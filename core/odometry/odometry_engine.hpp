@@ -18,7 +18,7 @@ namespace stillpoint {
 
 /// A way to tell where the camera is, behind any motion method: what Odometry is a handle on. FeatureOdometry
 /// is METHOD.md §2; an engine of another kind (dense, direct) is a class beside it and a line in
-/// make_odometry_engine(). What each function owes its callers stands with Odometry.
+/// engines.cpp. What each function owes its callers stands with Odometry.
 ///
 /// An engine's poses hang on keyframes of its map, so that they follow when the map is adjusted. One that
 /// adjusts none keeps a single keyframe, where the world's coordinates begin.
@@ -51,7 +51,8 @@ class OdometryEngine {
   OdometryEngine& operator=(const OdometryEngine&) = default;
 };
 
-/// The engine a config runs: the one place where it is chosen.
+/// The engine a config runs.
+/// @throws InputError where the config's method cannot stand in front of it (why_no_pair)
 [[nodiscard]] std::unique_ptr<OdometryEngine> make_odometry_engine(const Camera& camera,
                                                                    const Config& config);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/odometry/engines.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -278,11 +280,14 @@ std::vector<FrameFigure> all_figures() {
       stage_time("ms.bundle", "Bundle time", "bundle_ms", "time waited for bundle adjustment",
                  [](const MeasuredFrame& r) { return time(r.record.ms.bundle); }),
   };
-  for (const MethodInfo& method : methods())
-    for (const FigureInfo& info : method.figures)
+  const auto add_own = [&all](const std::vector<FigureInfo>& infos) {
+    for (const FigureInfo& info : infos)
       if (std::none_of(all.begin(), all.end(),
                        [&](const FrameFigure& one) { return one.info.name == info.name; }))
         all.push_back({info});
+  };
+  for (const MethodInfo& method : methods()) add_own(method.figures);
+  for (const EngineInfo& engine : engines()) add_own(engine.figures);
   return all;
 }
 

@@ -7,23 +7,26 @@
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/tables.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
 namespace {
 
-/// What describes a frame in words, then every figure there is of any run or of this one's method, then the
-/// note.
+/// What describes a frame in words, then every figure there is of any run or of this one's method and engine,
+/// then the note.
 std::string frames_csv(const RunResult& run, const RunReport& report) {
   const auto& infos = frame_figure_infos();
-  const std::vector<FigureInfo>& of_method = method_of(run.config).figures;
+  std::vector<FigureInfo> own = method_of(run.config).figures;
+  const std::vector<FigureInfo>& of_engine = engine_of(run.config).figures;
+  own.insert(own.end(), of_engine.begin(), of_engine.end());
   std::vector<int> columns;
   for (int i = 0; i < static_cast<int>(infos.size()); ++i) {
     const FigureInfo& info = infos[static_cast<std::size_t>(i)];
     const bool of_any_run = i < first_method_figure();
-    if (of_any_run || std::any_of(of_method.begin(), of_method.end(),
-                                  [&](const FigureInfo& one) { return one.name == info.name; }))
+    if (of_any_run ||
+        std::any_of(own.begin(), own.end(), [&](const FigureInfo& one) { return one.name == info.name; }))
       columns.push_back(i);
   }
   Table table;

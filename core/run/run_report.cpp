@@ -110,6 +110,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   RunReport report;
   report.sequence = source.name();
   report.method = run.config.run.method;
+  report.odometry = run.config.run.odometry;
   report.frames = static_cast<int>(run.records.size());
   report.tracked = run.tracked();
   report.lost = report.frames - report.tracked;
@@ -145,6 +146,7 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["camera"] = source.camera().name;
   json["depth_scale"] = source.camera().depth_scale;
   json["method"] = report.method;
+  json["odometry"] = report.odometry;
   json["frames_in_sequence"] = run.frames_in_sequence;
   json["frames"] = report.frames;
   json["interrupted"] = run.interrupted;
@@ -178,10 +180,10 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
 }
 
 std::string to_text(const RunReport& report) {
-  std::string text =
-      fmt::format("{}, method {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
-                  report.sequence, report.method, report.tracked, report.frames, 100.0 * report.coverage,
-                  report.keyframes, report.map_points);
+  std::string text = fmt::format(
+      "{}, method {}, odometry {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
+      report.sequence, report.method, report.odometry, report.tracked, report.frames, 100.0 * report.coverage,
+      report.keyframes, report.map_points);
   if (report.evaluation && !report.evaluation->matched.empty()) {
     const TrajectoryEvaluation& e = *report.evaluation;
     text += e.ate.translation_m.count > 0 ? fmt::format("  ATE           {:.4f} m RMSE over {} poses\n",

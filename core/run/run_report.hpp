@@ -19,7 +19,7 @@ struct SpeedFigures {
 
 /// What is said about a whole run.
 struct RunReport {
-  std::string sequence, method;
+  std::string sequence, method, odometry;
   int frames = 0, tracked = 0, lost = 0, keyframes = 0, map_points = 0;
   double coverage = 0.0;                           ///< share of the frames with an estimated pose
   std::optional<TrajectoryEvaluation> evaluation;  ///< of the final trajectory; nothing without ground truth

@@ -26,7 +26,8 @@ TEST(Run, LeavesWhatItSays) {
   const CliResult result =
       run_cli({"run", sequence.path(), "--method", "paper", "--out", sequence.path("out")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("sequence, method paper: 10 of 10 frames tracked (100.0 %)"));
+  EXPECT_THAT(result.out,
+              HasSubstr("sequence, method paper, odometry features: 10 of 10 frames tracked (100.0 %)"));
 
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory.txt")), 10U);
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory_live.txt")), 10U);

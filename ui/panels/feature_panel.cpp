@@ -41,7 +41,8 @@ Facts facts_of(const FeatureExplanation& explanation) {
                        explanation.observations
                            ? fmt::format("{}, seen by {} keyframes", f.map_point, *explanation.observations)
                            : fmt::format("{}, since taken out of the map", f.map_point));
-    facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
+    if (!std::isnan(f.residual_px))
+      facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
     facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.static_weight));
   } else {
     facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
@@ -184,7 +185,8 @@ class FeaturePanel final : public FramePanel {
       ImGui::TableNextRow();
       const FeatureRecord& f = point.feature;
       const LegendEntry look = fate_look(f.fate, frame.theme.name);
-      const std::string fate = f.fate == FeatureFate::inlier || f.fate == FeatureFate::outlier
+      const bool measured = f.fate == FeatureFate::inlier || f.fate == FeatureFate::outlier;
+      const std::string fate = measured && !std::isnan(f.residual_px)
                                    ? fmt::format("{} {:.1f} px", look.name, f.residual_px)
                                    : look.name;
       const std::string cells[] = {

@@ -148,9 +148,10 @@ class FeaturesPanel final : public FramePanel {
     }
     for (const FeatureFate fate : {FeatureFate::inlier, FeatureFate::outlier, FeatureFate::unmatched})
       add(fate, counts[static_cast<std::size_t>(fate)]);
-    footer.caption =
-        fmt::format("{}: {} features kept, {} matched to map points; inliers' residual {:.2f} px RMS.", where,
-                    record.features_kept, record.matches, record.rms_px);
+    footer.caption = fmt::format("{}: {} features kept, {} matched to map points", where,
+                                 record.features_kept, record.matches);
+    footer.caption +=
+        std::isnan(record.rms_px) ? "." : fmt::format("; inliers' residual {:.2f} px RMS.", record.rms_px);
     if (const int faint = weighing_little(record.features); faint > 0)
       footer.caption += fmt::format(" {} drawn faintly weigh less than half in the pose.", faint);
     return footer;

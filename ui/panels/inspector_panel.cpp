@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/inspect/point_readings.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -49,7 +50,7 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
       {"Motion rounds", r.motion_rounds > 0 ? fmt::format("{}", r.motion_rounds) : "–"},
       {"Matches", fmt::format("{}", r.matches)},
       {"Inliers", fmt::format("{}", r.inliers)},
-      {"Reprojection RMS", fmt::format("{:.3f} px", r.rms_px)},
+      {"Reprojection RMS", reprojection_text(r)},
       {"Refining steps", fmt::format("{}", r.refine_iterations)},
       {"Keyframe", yes(r.keyframe)},
       {"New points", fmt::format("{}", r.new_points)},
@@ -65,6 +66,11 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
     rows.emplace_back("Bundle RMS", "none applied");
   }
   for (const FigureInfo& info : method_of(session.config).figures)
+    for (const MotionFigure& figure : r.motion_figures)
+      if (figure.name == info.name)
+        rows.emplace_back(label_of(info.name),
+                          fmt::format("{:.{}f} {}", figure.value, info.digits, to_string(info.unit)));
+  for (const FigureInfo& info : engine_of(session.config).figures)
     for (const MotionFigure& figure : r.motion_figures)
       if (figure.name == info.name)
         rows.emplace_back(label_of(info.name),

@@ -16,7 +16,10 @@ class MotionPanel final : public FramePanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog& log = *session.current->motion;
-    const std::vector<const Stage*> stages = overview_of(log);
+    std::vector<const Stage*> stages = overview_of(log);
+    // An engine of its own way stands behind the method: its stages follow.
+    if (session.current->odometry)
+      for (const Stage* stage : overview_of(*session.current->odometry)) stages.push_back(stage);
     if (stages.empty()) {
       draw_absent(frame, missing_motion(session));
       return;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/odometry/engines.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/parameter_rows.hpp"
 #include "ui/theme/icons.hpp"
@@ -155,6 +156,15 @@ class ParametersPanel final : public NamedPanel {
         config.run.method = method;
         add_ghost(config, "method " + method, 0, actions);
       }
+    }
+    ImGui::Separator();
+    ImGui::TextDisabled("Another odometry, all else alike");
+    for (const EngineInfo& engine : engines()) {
+      config = session.config;
+      if (engine.name == config.run.odometry) continue;
+      config.run.odometry = engine.name;
+      if (!why_no_pair(config).empty() || !ImGui::Selectable(("Odometry " + engine.name).c_str())) continue;
+      add_ghost(config, "odometry " + engine.name, 0, actions);
     }
     ImGui::Separator();
     ImGui::TextDisabled("A preset, or a TOML file");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/odometry/engines.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 
@@ -210,7 +211,7 @@ void Workbench::draw_status_bar(float height) {
     list.AddCircleFilled({x + 3.0F * scale, top + 0.5F * height}, 4.0F * scale, to_u32(status.colour));
     x += 13.0F * scale;
     put(fmt::format("frame {}  {}", session_->current->index, status.text), theme.text);
-    put(fmt::format("method {}", session_->config.run.method), theme.text_dim);
+    put(run_words(session_->config), theme.text_dim);
     if (const FrameRecord* record = session_->current->record)
       put(fmt::format("{} of {} features kept, {} inliers", record->features_kept, record->features_found,
                       record->inliers),

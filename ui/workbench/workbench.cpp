@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/odometry/engines.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/theme/icons.hpp"
 
@@ -198,7 +199,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
   ImGui::PushFont(frame.fonts.small);
   const auto wide = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
   const std::string frame_text = fmt::format("frame {} of {}", session.current->index, session.frame_count),
-                    method = fmt::format("method {}", session.config.run.method);
+                    method = run_words(session.config);
   // Where there is no room for all of it, the time goes first.
   std::string where = fmt::format("{}   {}   {:.3f} s   {}", session.title, frame_text, seconds, method);
   if (wide(where) > room) where = fmt::format("{}   {}   {}", session.title, frame_text, method);
