@@ -14,7 +14,8 @@
   METHOD(none)                     \
   METHOD(oracle)                   \
   METHOD(epipolar)                 \
-  METHOD(yi2013)
+  METHOD(yi2013)                   \
+  METHOD(alcantarilla2012)
 
 namespace stillpoint {
 
