@@ -1,4 +1,4 @@
-#include "core/motion/yi2013.hpp"
+#include "core/motion/yi2013/block_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -385,7 +385,7 @@ TEST(Yi2013, SaysWhenThereIsNothingToFollow) {
   const auto yi = method();
   (void)next(*yi, flat, 0);
   const MotionResult result = next(*yi, flat, 1);
-  EXPECT_EQ(result.note, "only 0 points could be followed: the camera is taken to are static");
+  EXPECT_EQ(result.note, "only 0 points could be followed: the camera is taken to be static");
   const StageLog log = described(*yi, flat, 1, result);
   EXPECT_EQ(cv::norm(*log.backward - cv::Matx33d::eye()), 0.0);
   EXPECT_EQ(next(*method(), cv::Mat(3, 3, CV_8UC1, cv::Scalar(0)), 0).note,
