@@ -16,6 +16,7 @@ constexpr double kGate = 5.991;         // χ² of two degrees of freedom, 95 %
 constexpr double kNearest = 0.05;       // m: nearer points are not projected
 
 struct Seen {
+  std::size_t feature;
   Eigen::Vector3d world;
   Eigen::Vector2d pixel;  // undistorted
 };
@@ -27,7 +28,7 @@ std::vector<Seen> seen_points(std::span<const MotionFeature> features, std::span
   for (std::size_t i = 0; i < features.size(); ++i)
     if (features[i].map_point >= 0 && (left_out.empty() || left_out[i] == 0)) {
       pixels.push_back(features[i].pixel);
-      seen.push_back({features[i].world, Eigen::Vector2d::Zero()});
+      seen.push_back({i, features[i].world, Eigen::Vector2d::Zero()});
     }
   if (pixels.empty()) return seen;
   const std::vector<cv::Point2f> straight = camera.undistort(pixels);
@@ -95,13 +96,16 @@ FeaturePose pose_of_features(std::span<const MotionFeature> features, std::span<
   const std::vector<double> squared = squared_errors(seen, result.camera_from_world, camera);
   result.sigma_px = sigma_of(squared, least_sigma_px);
   const double gate = kGate * result.sigma_px * result.sigma_px;
-  result.inliers =
-      static_cast<int>(std::count_if(squared.begin(), squared.end(), [gate](double e) { return e <= gate; }));
+  std::vector<std::uint8_t> is_inlier(features.size(), 0);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (squared[i] <= gate) is_inlier[seen[i].feature] = 1, ++result.inliers;
   result.found = result.inliers >= kLeast;
-  if (result.found)
+  if (result.found) {
+    result.is_inlier = std::move(is_inlier);
     result.covariance = hessian.inverse() * (result.sigma_px * result.sigma_px);
-  else
+  } else {
     result.camera_from_world = start;
+  }
   return result;
 }
 

@@ -19,8 +19,10 @@ struct FeaturePose {
   /// Inverse Hessian of the reprojection errors: of a perturbation exp(δ) camera_from_world, translation (m)
   /// first, then rotation (rad). Zero where the pose was not found.
   Matrix6d covariance = Matrix6d::Zero();
-  int used = 0;           ///< features that have a map point and are not left out
-  int inliers = 0;        ///< of those, within the gate at the end
+  int used = 0;     ///< features that have a map point and are not left out
+  int inliers = 0;  ///< of those, within the gate at the end
+  std::vector<std::uint8_t>
+      is_inlier;          ///< one a feature: 1 where it is among these; empty where the pose was not found
   double sigma_px = 0.0;  ///< standard deviation of a reprojection error, by the median
 };
 

@@ -15,7 +15,8 @@
   METHOD(oracle)                   \
   METHOD(epipolar)                 \
   METHOD(yi2013)                   \
-  METHOD(alcantarilla2012)
+  METHOD(alcantarilla2012)         \
+  METHOD(gao2019)
 
 namespace stillpoint {
 

@@ -163,6 +163,8 @@ TEST(FeaturePose, FindsTheCameraPastWhatMoves) {
   ASSERT_TRUE(pose.found);
   EXPECT_EQ(pose.used, 48);
   EXPECT_EQ(pose.inliers, 38);
+  EXPECT_EQ(pose.is_inlier[5], 0);
+  EXPECT_EQ(pose.is_inlier[6], 1);
   EXPECT_LT(se3_log(pose.camera_from_world * truth.inverse()).norm(), 1e-5);
   EXPECT_EQ(pose.sigma_px, 0.5);  // at least
 }
@@ -198,6 +200,7 @@ TEST(FeaturePose, LeavesOutWhatItIsToldAndSaysWhenTooLittleIsLeft) {
   EXPECT_EQ(few.used, 11);
   EXPECT_TRUE(few.camera_from_world.isApprox(start));
   EXPECT_EQ(few.covariance.norm(), 0.0);
+  EXPECT_TRUE(few.is_inlier.empty());
   left_out[47] = 0;
   EXPECT_TRUE(pose_of_features(features, left_out, start, camera).found);
   features[47].map_point = -1;  // no point to go by
