@@ -16,7 +16,8 @@
   METHOD(epipolar)                 \
   METHOD(yi2013)                   \
   METHOD(alcantarilla2012)         \
-  METHOD(gao2019)
+  METHOD(gao2019)                  \
+  METHOD(lin2017)
 
 namespace stillpoint {
 

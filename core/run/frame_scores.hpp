@@ -17,6 +17,7 @@ struct FrameScores {
 
 /// Scores a frame just processed.
 /// @param moving CV_8UC1, 255 = moving; empty = not known
-[[nodiscard]] FrameScores score_frame(const FrameResult& result, const cv::Mat& moving);
+/// @param judges_features MethodInfo::judges_features: that there is no mask is then no miss
+[[nodiscard]] FrameScores score_frame(const FrameResult& result, const cv::Mat& moving, bool judges_features);
 
 }  // namespace stillpoint
