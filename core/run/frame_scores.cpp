@@ -16,7 +16,7 @@ FrameScores score_frame(const FrameResult& result, const cv::Mat& moving, bool j
   if (moving.empty() || record.status == FrameStatus::unreadable) return scores;
   if (!result.mask.empty() && result.mask.size() != moving.size()) return scores;
   scores.known = true;
-  if (!judges_features || !result.mask.empty()) scores.mask = score_mask(result.mask, moving);
+  if (!judges_features) scores.mask = score_mask(result.mask, moving);
   scores.partial_mask = score_mask(result.motion.partial_mask, moving);
   std::vector<FeatureVerdict> verdicts;
   verdicts.reserve(record.features.size());

@@ -231,6 +231,27 @@ TEST(Alcantarilla2012, SaysWhyItDoesNotJudge) {
   EXPECT_GT(cv::countNonZero(judge->detect(input).mask), 0);
 }
 
+TEST(Alcantarilla2012, DoubtsThePoseWhereNearlyAllMoves) {
+  // The last pose is 8 cm off: wall and board move. Features that would mend it are not there.
+  const WallAndBoard scene;
+  const auto judge = method(scene);
+  const Frame last = scene.frame(0), here = scene.frame(1);
+  const auto before = judge->prepare(last, {}, 1);
+  Pose wrong = scene.camera_from_world(0);
+  wrong.translation().z() += 0.08;
+  judge->commit({last, before}, {}, {true, wrong});
+  const auto prepared = judge->prepare(here, std::vector{before->for_later()}, 1);
+  MotionInput input{here, prepared};
+  input.camera_from_world = scene.camera_from_world(1);
+  const MotionResult result = judge->detect(input);
+  EXPECT_GT(result.figures[1], kConfig.most_moving);
+  EXPECT_EQ(cv::countNonZero(result.mask), 0);
+  EXPECT_EQ(result.mask_share, 0.0);
+  EXPECT_NE(result.note.find("% of the valid pixels move: the pose is doubted"), std::string::npos)
+      << result.note;
+  EXPECT_GT(cv::countNonZero(judge->describe(here, result).layer("vote")->image), 0);  // what it saw is shown
+}
+
 TEST(Alcantarilla2012, FramesTooSmallForFlowAndOfAnotherSizeAreNotJudged) {
   const WallAndBoard scene;
   const auto judge = method(scene);

@@ -19,6 +19,9 @@ void Alcantarilla2012Config::list(ParameterTable& table) {
   table.number("vote_px", vote_px, 5, 1, 31, "small px", "side of the neighbourhood that votes; odd");
   table.number("vote_share", vote_share, 0.5, 0.0, 1.0, "",
                "a place is dynamic when more than this share of the valid pixels about it are");
+  table.number(
+      "most_moving", most_moving, 0.7, 0.0, 1.0, "",
+      "where more than this share of the valid pixels moves, the pose is doubted and nothing is dropped");
   table.number("rounds", rounds, 2, 1, 2, "",
                "rounds of testing; before the second the pose is solved again without what moves");
 }

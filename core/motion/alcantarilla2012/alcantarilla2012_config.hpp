@@ -21,6 +21,7 @@ struct Alcantarilla2012Config {
   double chi_squared;
   int vote_px;
   double vote_share;
+  double most_moving;
   int rounds;
 };
 

@@ -1,5 +1,7 @@
 // Method `alcantarilla2012`: dense flow and depth make a scene flow; what remains of it under the camera's
 // motion is tested against its own covariance.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -108,6 +110,15 @@ class Alcantarilla2012Method final : public MotionMethod {
     result.rounds = static_cast<int>(trace->rounds.size());
     const double judged = percent_set(trace->judged);
     result.figures = {judged / 100.0, judged > 0.0 ? percent_set(last_test.moving) / judged : 0.0};
+    if (result.figures[1] > config_.most_moving) {
+      // It is the camera's motion that does not fit, or depth that lags behind it: such a mask would empty
+      // the map.
+      trace->mask.setTo(0);
+      result.mask_share = 0.0;
+      result.note =
+          fmt::format("{:.0f} % of the valid pixels move: the pose is doubted, and nothing is dropped",
+                      100.0 * result.figures[1]);
+    }
     if (pixels.empty()) result.note = "no pixel has depth and flow that can be trusted: nothing is judged";
     result.trace = std::move(trace);
     return result;
