@@ -21,7 +21,9 @@ void Alcantarilla2012Config::list(ParameterTable& table) {
                "a place is dynamic when more than this share of the valid pixels about it are");
   table.number(
       "most_moving", most_moving, 0.7, 0.0, 1.0, "",
-      "where more than this share of the valid pixels moves, the pose is doubted and nothing is dropped");
+      "the pose is doubted, and nothing dropped, where more than this share of the valid pixels moves …");
+  table.number("most_contradicted", most_contradicted, 0.35, 0.0, 1.0, "",
+               "… and with them more than this share of the features that agree with the pose");
   table.number("rounds", rounds, 2, 1, 2, "",
                "rounds of testing; before the second the pose is solved again without what moves");
 }

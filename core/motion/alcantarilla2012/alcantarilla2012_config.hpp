@@ -22,6 +22,7 @@ struct Alcantarilla2012Config {
   int vote_px;
   double vote_share;
   double most_moving;
+  double most_contradicted;
   int rounds;
 };
 

@@ -110,14 +110,15 @@ class Alcantarilla2012Method final : public MotionMethod {
     result.rounds = static_cast<int>(trace->rounds.size());
     const double judged = percent_set(trace->judged);
     result.figures = {judged / 100.0, judged > 0.0 ? percent_set(last_test.moving) / judged : 0.0};
-    if (result.figures[1] > config_.most_moving) {
+    trace->contradicted = contradicted(input.features, trace->rounds.front().pose.is_inlier, last_test.voted);
+    if (result.figures[1] > config_.most_moving && trace->contradicted > config_.most_contradicted) {
       // It is the camera's motion that does not fit, or depth that lags behind it: such a mask would empty
       // the map.
       trace->mask.setTo(0);
       result.mask_share = 0.0;
-      result.note =
-          fmt::format("{:.0f} % of the valid pixels move: the pose is doubted, and nothing is dropped",
-                      100.0 * result.figures[1]);
+      result.note = fmt::format(
+          "{:.0f} % of the features that agree with the pose move: it is doubted, and nothing is dropped",
+          100.0 * trace->contradicted);
     }
     if (pixels.empty()) result.note = "no pixel has depth and flow that can be trusted: nothing is judged";
     result.trace = std::move(trace);
@@ -163,6 +164,16 @@ class Alcantarilla2012Method final : public MotionMethod {
     const int x = std::clamp(cvRound(feature.pixel.x) / kFlowFactor, 0, voted.cols - 1);
     const int y = std::clamp(cvRound(feature.pixel.y) / kFlowFactor, 0, voted.rows - 1);
     return voted.at<std::uint8_t>(y, x) != 0;
+  }
+
+  /// Share of the features that agree with the map and the pose, and yet lie on what moves; 0 where none
+  /// agree.
+  static double contradicted(std::span<const MotionFeature> features, const std::vector<std::uint8_t>& agrees,
+                             const cv::Mat& voted) {
+    int all = 0, moving = 0;
+    for (std::size_t i = 0; i < agrees.size(); ++i)
+      if (agrees[i] != 0) ++all, moving += moves(voted, features[i]) ? 1 : 0;
+    return all == 0 ? 0.0 : static_cast<double>(moving) / all;
   }
 
   Camera camera_;

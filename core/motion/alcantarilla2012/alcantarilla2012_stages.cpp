@@ -144,7 +144,8 @@ class Stages {
                             "The last round's vote at full size; features in it are dropped.");
     stage.timed = false;
     stage.overview = true;
-    stage.figure("Mask", percent_set(trace_.mask), "%", 2);
+    stage.figure("Mask", percent_set(trace_.mask), "%", 2)
+        .figure("Moving, of the features that agree with the pose", 100.0 * trace_.contradicted, "%", 1);
     const FlowTest& test = trace_.rounds.back().test;
     stage.add_side({mask_layer("Vote", test.voted, small_)}, mask_layer("Mask", trace_.mask, frame_, "mask"));
   }

@@ -24,6 +24,7 @@ struct Alcantarilla2012Trace final : MotionTrace {
   FlowPair flow;
   cv::Mat judged;  ///< CV_8UC1, small: 255 where a pixel is judged
   std::vector<Alcantarilla2012Round> rounds;
+  double contradicted = 0.0;  ///< share of the features that agree with the first pose and lie on what moves
   double ms_flow = 0.0, ms_pairs = 0.0;
   cv::Mat mask;  ///< CV_8UC1, full size
 };
