@@ -1,11 +1,10 @@
-#include "core/motion/yi2013/block_model.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/config.hpp"
+#include "core/motion/yi2013/block_model.hpp"
 #include "core/run/frame_figures.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
