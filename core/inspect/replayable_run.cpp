@@ -77,7 +77,7 @@ FrameResult ReplayableRun::process_next(const ReadFrame& read) {
   });
   const cv::Mat known = told ? truth.get() : cv::Mat();
   FrameResult result = process(odometry_, frame, known);
-  scores_.push_back(score_frame(result, told ? known : truth.get()));
+  scores_.push_back(score_frame(result, told ? known : truth.get(), method_of(config()).judges_features));
   ++seen_;
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();

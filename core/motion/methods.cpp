@@ -14,7 +14,10 @@
   METHOD(none)                     \
   METHOD(oracle)                   \
   METHOD(epipolar)                 \
-  METHOD(yi2013)
+  METHOD(yi2013)                   \
+  METHOD(alcantarilla2012)         \
+  METHOD(gao2019)                  \
+  METHOD(lin2017)
 
 namespace stillpoint {
 

@@ -45,6 +45,9 @@ struct MethodInfo {
   bool baseline = false;   ///< removes nothing: what others are held against
   bool usual = false;      ///< among those compared when no methods are named
   bool reference = false;  ///< is given the ground truth: what removal could gain, not a method
+  /// Judges features and makes no mask (MotionResult::weight_of_feature): its features are scored, and no
+  /// mask.
+  bool judges_features = false;
   /// Runs with what the odometry has beyond METHOD.md §2: direct alignment and fixed-lag re-estimation.
   bool extends_odometry = false;
   std::string without_depth{};  ///< the method that judges frames without depth; empty: nothing does

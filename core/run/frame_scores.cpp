@@ -11,13 +11,13 @@ FrameScores& FrameScores::operator+=(const FrameScores& other) {
   return *this;
 }
 
-FrameScores score_frame(const FrameResult& result, const cv::Mat& moving) {
+FrameScores score_frame(const FrameResult& result, const cv::Mat& moving, bool judges_features) {
   FrameScores scores;
   const FrameRecord& record = result.record;
   if (moving.empty() || record.status == FrameStatus::unreadable) return scores;
   if (!result.mask.empty() && result.mask.size() != moving.size()) return scores;
   scores.known = true;
-  scores.mask = score_mask(result.mask, moving);
+  if (!judges_features) scores.mask = score_mask(result.mask, moving);
   scores.partial_mask = score_mask(result.motion.partial_mask, moving);
   std::vector<FeatureVerdict> verdicts;
   verdicts.reserve(record.features.size());

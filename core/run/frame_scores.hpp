@@ -18,6 +18,7 @@ struct FrameScores {
 
 /// Scores a frame just processed.
 /// @param moving CV_8UC1, 255 = moving; empty = not known
-[[nodiscard]] FrameScores score_frame(const FrameResult& result, const cv::Mat& moving);
+/// @param judges_features MethodInfo::judges_features: masks are not scored then, nor is a stand-in's
+[[nodiscard]] FrameScores score_frame(const FrameResult& result, const cv::Mat& moving, bool judges_features);
 
 }  // namespace stillpoint

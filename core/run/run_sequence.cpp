@@ -156,7 +156,8 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     if (index + 1 < end) next.emplace(begin(index + 1));
     FrameResult processed = odometry.process_prepared(frame, std::move(prepared), known);
     processed.record.ms.total += waited_ms;
-    result.scores.push_back(score_frame(processed, told ? known : truth.get()));
+    result.scores.push_back(
+        score_frame(processed, told ? known : truth.get(), method_of(config).judges_features));
     if (options.measure_orb_unit && frame.readable() && index % kUnitEvery == 0) {
       if (next) next->wait();  // nothing may run beside, and what the wait takes is the next frame's
       units.push_back(orb_unit_ms(frame.gray));

@@ -104,7 +104,8 @@ TEST_P(Start, Parameters) {
   sequence.folder.write("wrong.toml", "[motion]\n\nerode_kernel_px = 0\n");
   expect_one_sentence(start({"--config", sequence.path("wrong.toml")}),
                       "wrong.toml:3: motion.erode_kernel_px = 0 is out of range");
-  expect_one_sentence(start({"--config", "best"}), "there is no preset 'best'; the presets are: default");
+  expect_one_sentence(start({"--config", "best"}), "there is no preset 'best'; the presets are: ");
+  expect_one_sentence(start({"--config", "best"}), " default, ");
   expect_one_sentence(start({"--set", "motion.colour=3"}), "there is no parameter 'motion.colour'");
   expect_one_sentence(start({"--set", "features.count=3"}), "features.count = 3 is out of range");
   expect_one_sentence(start({"--set", "features.count=few"}), "'few' is no value for features.count");

@@ -1,11 +1,10 @@
-#include "core/motion/yi2013.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "core/config.hpp"
+#include "core/motion/yi2013/block_model.hpp"
 #include "core/run/frame_figures.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
@@ -385,7 +384,7 @@ TEST(Yi2013, SaysWhenThereIsNothingToFollow) {
   const auto yi = method();
   (void)next(*yi, flat, 0);
   const MotionResult result = next(*yi, flat, 1);
-  EXPECT_EQ(result.note, "only 0 points could be followed: the camera is taken to are static");
+  EXPECT_EQ(result.note, "only 0 points could be followed: the camera is taken to be static");
   const StageLog log = described(*yi, flat, 1, result);
   EXPECT_EQ(cv::norm(*log.backward - cv::Matx33d::eye()), 0.0);
   EXPECT_EQ(next(*method(), cv::Mat(3, 3, CV_8UC1, cv::Scalar(0)), 0).note,

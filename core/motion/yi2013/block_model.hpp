@@ -2,45 +2,15 @@
 
 #include <array>
 #include <opencv2/core.hpp>
-#include <string>
 #include <vector>
 
-#include "core/motion/methods.hpp"
-#include "core/motion/motion_method.hpp"
+#include "core/motion/yi2013/yi2013_config.hpp"
 
 namespace stillpoint {
 
-// Method `yi2013`: a background model of two Gaussians a block, warped along with the camera by a homography.
-// Yi, Yun, Kim, Chang, Choi: "Detection of moving objects with non-stationary cameras in 5.8 ms", CVPRW 2013.
-// yi2013.md beside this file has the equations. Brightness is 0 to 255; a block is block_px pixels a side,
-// and an image's right and bottom strips that are narrower than a block belong to none.
-
-/// Meanings, units and ranges: Yi2013Config::list.
-struct Yi2013Config {
-  static constexpr const char* kSection = "yi2013";
-  Yi2013Config() { set_defaults(*this); }
-  void list(ParameterTable& table);
-  bool operator==(const Yi2013Config&) const = default;
-
-  int median_radius_px;
-  int cell_width_px;
-  int cell_height_px;
-  int window_px;
-  int levels;
-  int iterations;
-  double epsilon_px;
-  int min_tracks;
-  double ransac_px;
-  int block_px;
-  double initial_sigma;
-  double least_sigma;
-  double max_age;
-  double decay;
-  double decay_above_sigma;
-  double match_limit;
-  double moving_limit;
-  double settled_age;
-};
+// The background model of method `yi2013`, which `gao2019` warps its own way. Brightness is 0 to 255; a block
+// is block_px pixels a side, and an image's right and bottom strips that are narrower than a block belong to
+// none.
 
 /// One Gaussian a block: CV_32FC1 each, a value a block.
 struct Yi2013Gaussians {
@@ -61,31 +31,23 @@ struct Yi2013Blocks {
 /// Which Gaussian a block belongs to.
 enum Yi2013Match : std::uint8_t { kMatchApparent = 0, kMatchCandidate = 1, kMatchNeither = 2 };
 
-/// A grid point followed from this frame to the last.
-struct Yi2013Track {
-  cv::Point2f here, there;  ///< px, in this frame and in the last
-  bool inlier = false;      ///< it agrees with the homography
-};
-
-/// The camera's motion as an image motion.
-struct Yi2013Motion {
-  int points = 0;                   ///< of the grid
-  std::vector<Yi2013Track> tracks;  ///< those that could be followed
-  int inliers = 0;
-  cv::Matx33d last_from_here = cv::Matx33d::eye();
-  std::string note;  ///< why the homography is the identity; empty when it was measured
-};
-
-/// Pyramids as cv::buildOpticalFlowPyramid makes them of the filtered frames, with config's window and
-/// levels.
-[[nodiscard]] Yi2013Motion yi2013_motion(const std::vector<cv::Mat>& here, const std::vector<cv::Mat>& last,
-                                         const Yi2013Config& config);
-
 /// @param gray CV_8UC1
 [[nodiscard]] Yi2013Blocks yi2013_blocks(const cv::Mat& gray, int block_px);
 
+/// Where the middle of each block was in the last frame, in blocks: row by row, (0, 0) the left upper corner
+/// of the first block. NaN where it was nowhere.
+using Yi2013Places = std::vector<cv::Point2d>;
+
+/// The places that a homography gives. @param size in blocks
+[[nodiscard]] Yi2013Places yi2013_places(const cv::Size& size, const cv::Matx33d& last_from_here,
+                                         int block_px);
+
 /// The last frame's model as it lies in this frame. A block that nothing is known of takes its own mean.
-/// @param last empty matrices where there is no last frame
+/// @param last empty matrices where there is no last frame @param places one a block; may be empty without a
+/// last frame
+[[nodiscard]] Yi2013Model yi2013_warped(const Yi2013Model& last, const Yi2013Places& places,
+                                        const Yi2013Blocks& blocks, const Yi2013Config& config);
+/// The same by a homography.
 [[nodiscard]] Yi2013Model yi2013_warped(const Yi2013Model& last, const cv::Matx33d& last_from_here,
                                         const Yi2013Blocks& blocks, const Yi2013Config& config);
 
