@@ -20,6 +20,14 @@ struct TextLine {
 [[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path,
                                                     std::vector<TextLine>* comments = nullptr);
 
+/// The same of a text that is at hand already.
+[[nodiscard]] std::vector<TextLine> text_lines(std::string_view text,
+                                               std::vector<TextLine>* comments = nullptr);
+
+/// A whole text file.
+/// @throws InputError when it cannot be read.
+[[nodiscard]] std::string read_text(const std::string& path);
+
 /// The columns of a line, parted by blanks, tabs, commas or semicolons.
 [[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
 
