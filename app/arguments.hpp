@@ -40,6 +40,7 @@ struct SequenceArguments {
   double depth_offset_s = 0.0;
   std::string truth;  ///< a PoseConvention's name; empty = as written
   bool inverted_masks = false;
+  std::string topics;  ///< of a bag, as OpenOptions has them; empty = as they are found
 
   /// @param frames_option what sets `frames`, where --frames means something else
   void add_to(CLI::App& command, const char* frames_option = "--frames");

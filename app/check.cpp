@@ -66,6 +66,7 @@ void check(const CheckArguments& arguments) {
     json["frames"] = source->size();
     json["camera"] = camera.name;
     json["depth_scale"] = camera.depth_scale;
+    if (!source->contents().empty()) json["topics"] = source->contents();
     json["findings"] = nlohmann::json(findings);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
@@ -76,6 +77,7 @@ void check(const CheckArguments& arguments) {
         source->has_depth() ? fmt::format("at {:g} a metre", camera.depth_scale) : "none",
         source->has_masks() ? "yes" : "none",
         source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
+    for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);
     for (const Finding& finding : findings) fmt::print("  {:<9} {}\n", finding.about, finding.sentence);
     fmt::print("{}\n", findings.empty() ? "no findings" : fmt::format("{} finding(s)", findings.size()));
   }

@@ -74,7 +74,10 @@ DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour, const ImageRe
     }
     ++survey.fit;
     survey.in_metres = read.in_metres;
-    if (read.in_metres) read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
+    if (read.in_metres) {
+      read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
+      cv::min(read.image, kNoMeasurement - 1, read.image);
+    }
     constexpr int kStride = 3;
     for (int y = 0; y < read.image.rows; y += kStride)
       for (int x = 0; x < read.image.cols; x += kStride) {

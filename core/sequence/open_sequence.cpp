@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/sequence/bag/bag_input.hpp"
+#include "core/sequence/bag/random_file.hpp"
 #include "core/sequence/first_frames.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/listed_sequence.hpp"
@@ -11,7 +15,49 @@
 namespace stillpoint {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// What a file is by its first bytes.
+std::unique_ptr<MessageLog> open_log(const std::string& path) {
+  const Bytes start = RandomFile(path).read(0, 16);
+  const std::string_view magic(reinterpret_cast<const char*>(start.data()), start.size());
+  if (magic.starts_with("#ROS")) return open_ros1_bag(path);
+  if (magic.starts_with("\x89MCAP")) return open_mcap(path);
+  if (magic.starts_with("SQLite format 3")) return open_rosbag2_db3(path);
+  return nullptr;
+}
+
+/// The recordings of rosbag2's folder: the files beside its metadata.
+std::vector<std::string> recordings_in(const std::string& folder) {
+  std::error_code none;
+  std::vector<std::string> files;
+  if (!fs::exists(fs::path(folder) / "metadata.yaml", none)) return files;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const fs::path kind = entry.path().extension();
+    if (kind == ".mcap" || kind == ".db3") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 std::unique_ptr<SequenceInput> open_input(const std::string& where, const OpenOptions& options) {
+  std::error_code none;
+  if (fs::is_regular_file(where, none)) {
+    if (auto log = open_log(where)) return make_bag_input(std::move(log), options);
+    throw InputError(
+        fmt::format("{}: is no kind of file that is read; expected a folder in the TUM RGB-D layout, or "
+                    "a .bag, .mcap or .db3",
+                    where));
+  }
+  if (const auto recordings = recordings_in(where); !recordings.empty()) {
+    if (recordings.size() > 1)
+      throw InputError(
+          fmt::format("{}: is a recording in {} parts; each is opened by its own name, such as {}", where,
+                      recordings.size(), recordings.front()));
+    if (auto log = open_log(recordings.front())) return make_bag_input(std::move(log), options);
+  }
+  if (!options.topics.empty())
+    throw InputError(fmt::format("{}: --topics goes with a bag, and this is a folder", where));
   return make_folder_input(open_folder(where), options);
 }
 

@@ -1,0 +1,375 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/run/run_hash.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/fingerprint.hpp"
+#include "core/sequence/write_sequence.hpp"
+#include "tests/unit/bag_example.hpp"
+#include "tests/unit/temporary_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr int kExampleFrames = 8;
+
+std::string run_hash(const FrameSource& source) {
+  Config config;
+  config.run.threads = 2;
+  RunHash hash;
+  for (const FrameRecord& record : run_sequence(source, config).records) hash.add(record);
+  return hash.hex();
+}
+
+/// A generated sequence as a folder, and what a run of it gives: made once.
+class Example {
+ public:
+  Example() {
+    OpenOptions options;
+    options.frames = kExampleFrames;
+    write_sequence(*open_sequence("generated:walking_static", options), folder.path());
+    source = open_sequence(folder.path());
+    hash = run_hash(*source);
+  }
+  TemporaryFolder folder;
+  std::unique_ptr<FrameSource> source;
+  std::string hash;
+};
+
+const Example& example() {
+  static const Example made;
+  return made;
+}
+
+/// The recording gives what the folder gives: frames to the last bit, truth, and the run.
+void expect_the_folders(const FrameSource& bag, bool with_run) {
+  const FrameSource& folder = *example().source;
+  ASSERT_EQ(bag.size(), folder.size());
+  for (int i = 0; i < bag.size(); ++i) {
+    const Frame a = bag.read(i), b = folder.read(i);
+    EXPECT_EQ(a.problem, "") << i;
+    EXPECT_EQ(a.timestamp, b.timestamp) << i;
+    EXPECT_EQ(a.depth_timestamp, b.depth_timestamp) << i;
+    ASSERT_TRUE(a.readable() && a.has_depth()) << i;
+    EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0) << i;
+    EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF), 0) << i;
+    ASSERT_TRUE(bag.truth(i).world_from_camera) << i;
+    EXPECT_TRUE(bag.truth(i).world_from_camera->isApprox(*folder.truth(i).world_from_camera, 1e-9)) << i;
+  }
+  EXPECT_EQ(bag.ground_truth().size(), folder.ground_truth().size());
+  EXPECT_EQ(bag.camera().fx, folder.camera().fx);
+  EXPECT_EQ(bag.camera().cy, folder.camera().cy);
+  EXPECT_THAT(bag.warnings(), IsEmpty());
+  if (with_run) {
+    EXPECT_EQ(run_hash(bag), example().hash);
+  }
+}
+
+/// A file in a folder whose name tells no camera.
+class Recording {
+ public:
+  explicit Recording(const std::string& ending) : path(folder.path("recording" + ending)) {}
+  TemporaryFolder folder;
+  std::string path;
+};
+
+TEST(Ros1Bag, GivesTheFoldersRunWhateverItsCompression) {
+  const auto messages = messages_of(*example().source);
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    SCOPED_TRACE(compression);
+    const Recording bag(".bag");
+    write_ros1_bag(bag.path, messages, compression);
+    expect_the_folders(*open_sequence(bag.path), true);
+  }
+}
+
+TEST(Ros1Bag, ChunksMayHoldManyMessagesOrOne) {
+  BagExample kind;
+  kind.truth = "pose", kind.colour = "bgr8";
+  const auto messages = messages_of(*example().source, kind);
+  for (const std::size_t bytes : {std::size_t{1}, std::size_t{8} << 20}) {
+    const Recording bag(".bag");
+    write_ros1_bag(bag.path, messages, "lz4", bytes);
+    expect_the_folders(*open_sequence(bag.path), false);
+  }
+}
+
+TEST(Mcap, GivesTheFoldersRunWhateverItsCompression) {
+  BagExample kind;
+  kind.cdr = true;
+  const auto messages = messages_of(*example().source, kind);
+  for (const char* compression : {"", "lz4", "zstd", "unchunked"}) {
+    SCOPED_TRACE(compression);
+    const Recording file(".mcap");
+    write_mcap(file.path, messages, compression);
+    expect_the_folders(*open_sequence(file.path), true);
+  }
+}
+
+TEST(Mcap, HoldsRos1MessagesToo) {
+  const Recording file(".mcap");
+  write_mcap(file.path, messages_of(*example().source), "zstd", 1 << 20, "ros1");
+  expect_the_folders(*open_sequence(file.path), false);
+}
+
+TEST(Rosbag2Database, GivesTheFoldersRunAsAFileAndAsAFolder) {
+  BagExample kind;
+  kind.cdr = true;
+  const Recording file(".db3");
+  write_db3(file.path, messages_of(*example().source, kind));
+  expect_the_folders(*open_sequence(file.path), true);
+  file.folder.write("metadata.yaml", "rosbag2_bagfile_information:\n  version: 5\n");
+  expect_the_folders(*open_sequence(file.folder.path()), false);
+}
+
+TEST(Bags, HoldCompressedImagesAndDepthOfSixteenBits) {
+  OpenOptions options;
+  options.depth_scale = example().source->camera().depth_scale;
+  for (const char* depth : {"16UC1", "png"}) {
+    BagExample kind;
+    kind.depth = depth, kind.colour = "png", kind.truth = "pose";
+    const Recording bag(".bag");
+    write_ros1_bag(bag.path, messages_of(*example().source, kind), "none");
+    expect_the_folders(*open_sequence(bag.path, options), false);
+    // ROS counts millimetres; these images do not, which their range cannot tell.
+    EXPECT_EQ(open_sequence(bag.path)->camera().depth_scale, 1000.0);
+  }
+}
+
+TEST(Bags, TopicsAreListedAndChosen) {
+  auto messages = messages_of(*example().source);
+  const cv::Mat infrared(480, 640, CV_8UC1, cv::Scalar(9));
+  const auto all = messages;
+  for (const LogMessage& message : all)
+    if (message.topic == "/camera/rgb/image_color")
+      messages.push_back({"/camera/ir/image", "sensor_msgs/Image", message.time,
+                          image_bytes(false, message.time, "ir", "mono8", infrared)});
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  EXPECT_THAT(source->contents(),
+              AllOf(Contains(AllOf(HasSubstr("/camera/rgb/image_color"), HasSubstr("8 messages"),
+                                   HasSubstr("read as colour"))),
+                    Contains(AllOf(HasSubstr("/camera/depth/image"), HasSubstr("read as depth"))),
+                    Contains(AllOf(HasSubstr("/tf"), HasSubstr("read as truth"))),
+                    Contains(AllOf(HasSubstr("camera_info"), HasSubstr("read as info"))),
+                    Contains(AllOf(HasSubstr("/camera/ir/image"), Not(HasSubstr("read as"))))));
+  OpenOptions options;
+  options.topics = "colour=/camera/ir/image,depth=none,truth=none";
+  const auto chosen = open_sequence(bag.path, options);
+  EXPECT_FALSE(chosen->has_depth());
+  EXPECT_TRUE(chosen->ground_truth().empty());
+  EXPECT_EQ(chosen->read(3).gray.at<unsigned char>(7, 7), 9);
+  EXPECT_TRUE(chosen->read(3).colour.empty());
+}
+
+TEST(Bags, TopicsThatDoNotFitAreToldInOneSentence) {
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages_of(*example().source));
+  const auto sentence = [&](const std::string& topics) {
+    OpenOptions options;
+    options.topics = topics;
+    return input_error_of([&] { (void)open_sequence(bag.path, options); });
+  };
+  EXPECT_THAT(sentence("colour=/nothing"),
+              AllOf(HasSubstr("has no topic /nothing"), HasSubstr("/camera/depth/image")));
+  EXPECT_THAT(sentence("colour=/tf"), HasSubstr("/tf holds tf/tfMessage, which cannot be read as colour"));
+  EXPECT_THAT(sentence("colours=/tf"), HasSubstr("expected colour=TOPIC"));
+  EXPECT_THAT(sentence("depth"), HasSubstr("expected colour=TOPIC"));
+  EXPECT_THAT(sentence("info=none,info=none"), HasSubstr("named twice"));
+  OpenOptions options;
+  options.topics = "colour=/a";
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(example().folder.path(), options); }),
+              HasSubstr("--topics goes with a bag"));
+}
+
+TEST(Bags, WithoutImagesSayWhatTheyHold) {
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, {{"/tf", "tf/tfMessage", 5, tf_bytes(false, {})}});
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(bag.path); }),
+              HasSubstr("it holds /tf (tf/tfMessage)"));
+  const Recording mcap(".mcap");
+  write_mcap(mcap.path, {{"/image", "foxglove/RawImage", 5, "{}"}}, "", 100, "json");
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(mcap.path); }),
+              HasSubstr("/image (foxglove/RawImage, as 'json')"));
+  const Recording none(".bag");
+  none.folder.write("recording.bag", std::string("nothing of the kind"));
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(none.path); }),
+              HasSubstr("is no kind of file that is read"));
+}
+
+/// A small recording: images of 64x48 px whose pixels tell their frame, and whatever else.
+std::vector<LogMessage> small_messages(int frames, const InfoExample& info) {
+  std::vector<LogMessage> messages;
+  for (int i = 0; i < frames; ++i) {
+    const std::int64_t stamp = 1'300'000'000'000'000'000 + i * 33'000'000LL;
+    messages.push_back(
+        {"/cam/rgb/camera_info", "sensor_msgs/CameraInfo", stamp, info_bytes(false, stamp, info)});
+    messages.push_back(
+        {"/cam/rgb/image_raw", "sensor_msgs/Image", stamp,
+         image_bytes(false, stamp, "cam", "bgr8", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(i)))});
+    messages.push_back(
+        {"/cam/depth/image", "sensor_msgs/Image", stamp,
+         image_bytes(false, stamp, "cam", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(1.0 + i)))});
+  }
+  return messages;
+}
+
+Camera camera_read(const InfoExample& info, std::vector<std::string>* warnings = nullptr,
+                   const std::string& colour = "/cam/rgb/image_raw") {
+  const Recording bag(".bag");
+  auto messages = small_messages(3, info);
+  for (LogMessage& message : messages)
+    if (message.topic == "/cam/rgb/image_raw") message.topic = colour;
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  if (warnings != nullptr) *warnings = source->warnings();
+  return source->camera();
+}
+
+TEST(Bags, CameraComesFromCameraInfo) {
+  InfoExample info{64, 48, "plumb_bob", {0.1, -0.2, 0.001, 0.002, 0.3}, 60, 61, 31, 23};
+  std::vector<std::string> warnings;
+  Camera camera = camera_read(info, &warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+  EXPECT_EQ(camera.fx, 60);
+  EXPECT_EQ(camera.fy, 61);
+  EXPECT_EQ(camera.k3, 0.3);
+  EXPECT_EQ(camera.p2, 0.002);
+  // Rectified images are of P, without distortion.
+  camera = camera_read(info, &warnings, "/cam/rgb/image_rect_color");
+  EXPECT_EQ(camera.fx, 30);
+  EXPECT_FALSE(camera.has_distortion());
+  info.model = "equidistant";
+  camera = camera_read(info, &warnings);
+  EXPECT_THAT(warnings, Contains(AllOf(HasSubstr("'equidistant' with 5 coefficients, is not supported"),
+                                       HasSubstr("ros_default is assumed"))));
+  info.fx = 0, info.model = "plumb_bob";
+  camera_read(info, &warnings);
+  EXPECT_THAT(warnings, Contains(HasSubstr("not calibrated")));
+}
+
+TEST(Bags, RationalDistortionIsFittedAndTold) {
+  // An Azure Kinect's.
+  const InfoExample info{
+      64, 48, "rational_polynomial", {0.52, -2.67, 0.0006, -0.0002, 1.53, 0.40, -2.49, 1.46}, 60, 60, 32, 24};
+  const Camera camera = camera_read(info);
+  const auto rational = [&](double r2) {
+    const auto& d = info.d;
+    return (1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]))) / (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
+  };
+  for (const double r : {0.1, 0.3, 0.5, 0.6}) {
+    const double fitted = 1 + r * r * (camera.k1 + r * r * (camera.k2 + r * r * camera.k3));
+    EXPECT_NEAR(r * fitted * 60, r * rational(r * r) * 60, 0.2) << r;  // px
+  }
+  // With a denominator of 1 it is plumb_bob's.
+  const Camera plain =
+      camera_read({64, 48, "rational_polynomial", {0.1, 0.2, 0, 0, 0.3, 0, 0, 0}, 60, 60, 32, 24});
+  EXPECT_EQ(plain.k1, 0.1);
+  EXPECT_EQ(plain.k2, 0.2);
+  EXPECT_EQ(plain.k3, 0.3);
+}
+
+TEST(Bags, AKnownCamerasNameIsBelievedBeforeADriversDefault) {
+  const TemporaryFolder folder("rgbd");
+  const std::string path = folder.path("rgbd_dataset_freiburg1_xyz.bag");
+  write_ros1_bag(path, small_messages(3, {64, 48, "plumb_bob", {0, 0, 0, 0, 0}}));
+  const auto source = open_sequence(path);
+  EXPECT_EQ(source->name(), "rgbd_dataset_freiburg1_xyz");
+  EXPECT_EQ(source->camera().name, "freiburg1");
+  EXPECT_THAT(source->warnings(), Contains(HasSubstr("that of freiburg1 was taken")));
+}
+
+TEST(Bags, DepthIsChecked) {
+  const Recording bag(".bag");
+  auto messages = small_messages(6, {64, 48, "", {}, 60, 60, 32, 24});
+  for (LogMessage& message : messages)
+    if (message.topic == "/cam/depth/image")
+      message.bytes =
+          image_bytes(false, message.time, "depth", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(2000.0)));
+  write_ros1_bag(bag.path, messages);
+  EXPECT_THAT(open_sequence(bag.path)->warnings(),
+              AllOf(Contains(HasSubstr("`--depth-scale 1000` takes it for millimetres")),
+                    Contains(HasSubstr("as if it were registered"))));
+  OpenOptions options;
+  options.depth_scale = 1000;
+  EXPECT_FLOAT_EQ(open_sequence(bag.path, options)->read(0).depth.at<float>(3, 3), 2.0F);
+  for (LogMessage& message : messages)
+    if (message.topic == "/cam/depth/image")
+      message.bytes =
+          image_bytes(false, message.time, "cam", "32FC1", cv::Mat(24, 32, CV_32FC1, cv::Scalar(2.0)));
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  EXPECT_FALSE(source->has_depth());
+  EXPECT_THAT(source->why_not(FramePart::depth), HasSubstr("is 32x24 px, but its colour image is 64x48 px"));
+}
+
+TEST(Bags, EncodingsGiveTheSameColours) {
+  const cv::Mat bgr(48, 64, CV_8UC3, cv::Scalar(200, 100, 40));
+  const auto read = [&](const char* encoding, const cv::Mat& stored) {
+    const Recording bag(".bag");
+    write_ros1_bag(bag.path,
+                   {{"/image", "sensor_msgs/Image", 7, image_bytes(false, 7, "f", encoding, stored)}});
+    return open_sequence(bag.path)->read(0);
+  };
+  cv::Mat stored;
+  cv::cvtColor(bgr, stored, cv::COLOR_BGR2RGBA);
+  EXPECT_EQ(cv::norm(read("rgba8", stored).colour, bgr, cv::NORM_INF), 0);
+  cv::cvtColor(bgr, stored, cv::COLOR_BGR2BGRA);
+  EXPECT_EQ(cv::norm(read("bgra8", stored).colour, bgr, cv::NORM_INF), 0);
+  // Red stands first in the first row, blue last in the second.
+  cv::Mat bayer(48, 64, CV_8UC1);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x)
+      bayer.at<unsigned char>(y, x) = y % 2 == 0 ? (x % 2 == 0 ? 40 : 100) : (x % 2 == 0 ? 100 : 200);
+  EXPECT_EQ(cv::norm(read("bayer_rggb8", bayer).colour, bgr, cv::NORM_INF), 0);
+  // YUY2 of a grey: Y U Y V.
+  cv::Mat yuy2(48, 64, CV_8UC2, cv::Scalar(126, 128));
+  EXPECT_LE(cv::norm(read("yuv422_yuy2", yuy2).colour, cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(128)),
+                     cv::NORM_INF),
+            2);
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, {{"/image", "sensor_msgs/Image", 7, image_bytes(false, 7, "f", "64FC9", bgr)}});
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(bag.path); }),
+              HasSubstr("has the encoding '64FC9', which is not read"));
+}
+
+TEST(Bags, EstimatesAreNotTakenForTruthUnasked) {
+  auto messages = small_messages(12, {64, 48, "", {}, 60, 60, 32, 24});
+  for (int i = 0; i < 12; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = i;
+    const std::int64_t stamp = 1'300'000'000'000'000'000 + i * 33'000'000LL;
+    messages.push_back({"/tf", "tf2_msgs/TFMessage", stamp, tf_bytes(false, {{stamp, "odom", "cam", pose}})});
+  }
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  EXPECT_TRUE(source->ground_truth().empty());
+  EXPECT_THAT(source->why_not(FramePart::truth), HasSubstr("`--topics truth=/tf` takes it"));
+  OpenOptions options;
+  options.topics = "truth=/tf";
+  EXPECT_EQ(open_sequence(bag.path, options)->ground_truth().size(), 12U);
+}
+
+TEST(Bags, StampsThatStandStillAreReplacedByTheRecordings) {
+  auto messages = small_messages(5, {64, 48, "", {}, 60, 60, 32, 24});
+  for (LogMessage& message : messages)
+    if (message.topic == "/cam/rgb/image_raw")
+      message.bytes = image_bytes(false, 0, "cam", "bgr8", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(1)));
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  ASSERT_EQ(source->size(), 5);
+  EXPECT_TRUE(source->read(4).has_depth());
+  EXPECT_THAT(source->warnings(), Contains(HasSubstr("the times of recording were taken instead")));
+}
+
+}  // namespace
+}  // namespace stillpoint
