@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/fingerprint.hpp"
 #include "core/sequence/write_sequence.hpp"
+#include "tests/support/places.hpp"
 #include "tests/unit/bag_example.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -97,6 +100,31 @@ TEST(Ros1Bag, ChunksMayHoldManyMessagesOrOne) {
     const Recording bag(".bag");
     write_ros1_bag(bag.path, messages, "lz4", bytes);
     expect_the_folders(*open_sequence(bag.path), false);
+  }
+}
+
+TEST(Ros1Bag, OfRosItselfGivesTheFoldersRun) {
+  const std::string python = "/usr/bin/python3 ";
+  if (std::system((python + "-c 'import rosbag, sensor_msgs.msg, tf2_msgs.msg' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "needs Debian's python3-rosbag, python3-sensor-msgs and python3-tf2-msgs";
+  const TemporaryFolder parts("parts");
+  std::string manifest;
+  int count = 0;
+  for (const LogMessage& message : messages_of(*example().source)) {
+    const std::string name = fmt::format("{}.bin", count++);
+    parts.write(name, message.bytes);
+    manifest += fmt::format("{} {} {} {}\n", message.topic, message.type, message.time, name);
+  }
+  parts.write("manifest", manifest);
+  for (const char* compression : {"none", "bz2", "lz4"}) {
+    SCOPED_TRACE(compression);
+    const Recording bag(".bag");
+    const std::string script = places::source() + "/tests/support/write_rosbag.py";
+    ASSERT_EQ(std::system(
+                  fmt::format("{}{} {} {} {}", python, script, parts.path("manifest"), bag.path, compression)
+                      .c_str()),
+              0);
+    expect_the_folders(*open_sequence(bag.path), true);
   }
 }
 
