@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/methods.hpp"
@@ -74,6 +75,7 @@ OpenOptions SequenceArguments::options(const Config& config) const {
   options.truth = convention_argument("--truth", truth);
   options.inverted_masks = inverted_masks;
   options.topics = topics;
+  options.progress = opening_progress();
   return options;
 }
 

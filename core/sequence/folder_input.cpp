@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/sequence_input.hpp"
 
@@ -9,11 +12,21 @@ namespace {
 class FolderInput final : public SequenceInput {
  public:
   FolderInput(std::unique_ptr<FileStore> files, const OpenOptions& options)
-      : files_(std::move(files)), options_(options) {}
+      : files_(std::move(files)), options_(options) {
+    options_.progress = nullptr;  // of the opening alone
+  }
 
   [[nodiscard]] std::string name() const override { return files_->own_names().front(); }
   [[nodiscard]] const std::string& place() const override { return files_->place(); }
-  [[nodiscard]] FolderLists lists() override { return read_folder_lists(*files_, options_.frame_rate); }
+  [[nodiscard]] FolderLists lists() override {
+    try {
+      return read_folder_lists(*files_, options_.frame_rate);
+    } catch (const InputError& error) {
+      // An archive that is cut off may lack what is missed.
+      if (files_->warnings().empty()) throw;
+      throw InputError(fmt::format("{} ({})", error.what(), files_->warnings().front()));
+    }
+  }
   [[nodiscard]] FolderTruth truth(const std::vector<double>& stamps, StampUnit unit) override {
     return read_folder_truth(*files_, stamps, unit, options_.frame_rate, options_.truth);
   }

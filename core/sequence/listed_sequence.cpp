@@ -24,6 +24,7 @@ constexpr double kMostMoving = 0.7;                       // of the masks' pixel
 
 ListedSequence::ListedSequence(std::unique_ptr<SequenceInput> input, const OpenOptions& options)
     : input_(std::move(input)), folder_(input_->place()), name_(input_->name()), options_(options) {
+  options_.progress = nullptr;  // of the opening alone
   read_lists();
   FolderTruth truth = input_->truth(stamps(), unit_);
   ground_truth_ = std::move(truth.poses);

@@ -5,8 +5,10 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/sequence/archive/archive_store.hpp"
 #include "core/sequence/bag/bag_input.hpp"
 #include "core/sequence/bag/random_file.hpp"
+#include "core/sequence/bag/unpack_bag.hpp"
 #include "core/sequence/first_frames.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/listed_sequence.hpp"
@@ -17,13 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a file is by its first bytes.
-std::unique_ptr<MessageLog> open_log(const std::string& path) {
-  const Bytes start = RandomFile(path).read(0, 16);
+/// The recording of messages that a file is by its first bytes. @param path names it in messages
+std::unique_ptr<MessageLog> open_log(const std::string& file, const std::string& path,
+                                     const OpenOptions& options) {
+  const Bytes start = RandomFile(file, path).read(0, 16);
   const std::string_view magic(reinterpret_cast<const char*>(start.data()), start.size());
-  if (magic.starts_with("#ROS")) return open_ros1_bag(path);
-  if (magic.starts_with("\x89MCAP")) return open_mcap(path);
-  if (magic.starts_with("SQLite format 3")) return open_rosbag2_db3(path);
+  if (magic.starts_with("#ROSBAG V2.0") && is_slow_bag(file))
+    return open_ros1_bag(unpacked_bag(file, options), path);
+  if (magic.starts_with("#ROS")) return open_ros1_bag(file, path);
+  if (magic.starts_with("\x89MCAP")) return open_mcap(file, path);
+  if (magic.starts_with("SQLite format 3")) return open_rosbag2_db3(file, path);
   return nullptr;
 }
 
@@ -40,21 +45,32 @@ std::vector<std::string> recordings_in(const std::string& folder) {
   return files;
 }
 
+std::unique_ptr<SequenceInput> open_file(const std::string& where, const OpenOptions& options) {
+  if (auto log = open_log(where, where, options)) return make_bag_input(std::move(log), options);
+  if (!is_packed(where))
+    throw InputError(
+        fmt::format("{}: is no kind of file that is read; expected a folder in the TUM RGB-D layout, an "
+                    "archive of one (.tgz, "
+                    ".tar, .tar.bz2, .zip), or a bag (.bag, .mcap, .db3)",
+                    where));
+  const Unpacked unpacked = unpack(where, options);
+  if (unpacked.is_copy)
+    if (auto log = open_log(unpacked.path, where, options)) return make_bag_input(std::move(log), options);
+  if (!options.topics.empty())
+    throw InputError(fmt::format("{}: --topics goes with a bag, and this is an archive", where));
+  return make_folder_input(open_archive(unpacked.path, where), options);
+}
+
 std::unique_ptr<SequenceInput> open_input(const std::string& where, const OpenOptions& options) {
   std::error_code none;
-  if (fs::is_regular_file(where, none)) {
-    if (auto log = open_log(where)) return make_bag_input(std::move(log), options);
-    throw InputError(
-        fmt::format("{}: is no kind of file that is read; expected a folder in the TUM RGB-D layout, or "
-                    "a .bag, .mcap or .db3",
-                    where));
-  }
+  if (fs::is_regular_file(where, none)) return open_file(where, options);
   if (const auto recordings = recordings_in(where); !recordings.empty()) {
     if (recordings.size() > 1)
       throw InputError(
           fmt::format("{}: is a recording in {} parts; each is opened by its own name, such as {}", where,
                       recordings.size(), recordings.front()));
-    if (auto log = open_log(recordings.front())) return make_bag_input(std::move(log), options);
+    if (auto log = open_log(recordings.front(), recordings.front(), options))
+      return make_bag_input(std::move(log), options);
   }
   if (!options.topics.empty())
     throw InputError(fmt::format("{}: --topics goes with a bag, and this is a folder", where));

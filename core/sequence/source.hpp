@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -58,9 +57,8 @@ struct OpenOptions {
   bool inverted_masks = false;                        ///< white is what is static
   double depth_offset_s = 0.0;                        ///< added to the depth images' stamps
   std::string topics{};  ///< of a bag: `colour=/TOPIC,depth=…,info=…,truth=…`; empty = as they are found
-  /// Turns true where what takes long on opening (unpacking into the cache) is to end: an InputError says so.
-  const std::atomic<bool>* stop = nullptr;
-  /// Told how far that is, from 0 to 1.
+  /// Told how far what takes long on opening is (unpacking into the cache), from 0 to 1. What it throws ends
+  /// that.
   std::function<void(const std::string& what, double share)> progress{};
 };
 

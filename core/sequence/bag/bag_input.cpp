@@ -26,6 +26,7 @@ class BagInput final : public SequenceInput {
  public:
   BagInput(std::unique_ptr<MessageLog> log, const OpenOptions& options)
       : log_(std::move(log)), options_(options), choice_(choose_topics(*log_, options.topics)) {
+    options_.progress = nullptr;  // of the opening alone
     truth_ = read_bag_truth(*log_, choice_, choice_.colour.frame);
     whole_ = fs::absolute(log_->path()).lexically_normal();
   }

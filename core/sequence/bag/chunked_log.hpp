@@ -25,7 +25,7 @@ class ChunkedLog : public MessageLog {
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
 
  protected:
-  explicit ChunkedLog(const std::string& path) : file_(path) {}
+  ChunkedLog(const std::string& file, const std::string& path) : file_(file, path) {}
 
   struct Chunk {
     std::uint64_t offset = 0;         ///< of its bytes in the file

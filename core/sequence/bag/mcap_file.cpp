@@ -37,7 +37,7 @@ std::string plain_type(std::string type) {
 
 class McapFile final : public ChunkedLog {
  public:
-  explicit McapFile(const std::string& path) : ChunkedLog(path) {
+  McapFile(const std::string& file, const std::string& path) : ChunkedLog(file, path) {
     if (ByteReader::to_text(file_.read(0, kMagic.size())) != kMagic)
       throw InputError(fmt::format("{}: is no MCAP file", path));
     walk();
@@ -220,6 +220,8 @@ class McapFile final : public ChunkedLog {
 
 }  // namespace
 
-std::unique_ptr<MessageLog> open_mcap(const std::string& path) { return std::make_unique<McapFile>(path); }
+std::unique_ptr<MessageLog> open_mcap(const std::string& file, const std::string& path) {
+  return std::make_unique<McapFile>(file, path);
+}
 
 }  // namespace stillpoint

@@ -45,10 +45,11 @@ class MessageLog {
 };
 
 /// "#ROSBAG V2.0".
+/// @param file that is read; @param path names it in messages
 /// @throws InputError in one sentence for what is none, as all below do
-[[nodiscard]] std::unique_ptr<MessageLog> open_ros1_bag(const std::string& path);
-[[nodiscard]] std::unique_ptr<MessageLog> open_mcap(const std::string& path);
+[[nodiscard]] std::unique_ptr<MessageLog> open_ros1_bag(const std::string& file, const std::string& path);
+[[nodiscard]] std::unique_ptr<MessageLog> open_mcap(const std::string& file, const std::string& path);
 /// rosbag2's SQLite database.
-[[nodiscard]] std::unique_ptr<MessageLog> open_rosbag2_db3(const std::string& path);
+[[nodiscard]] std::unique_ptr<MessageLog> open_rosbag2_db3(const std::string& file, const std::string& path);
 
 }  // namespace stillpoint

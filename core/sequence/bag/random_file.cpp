@@ -14,8 +14,8 @@
 
 namespace stillpoint {
 
-RandomFile::RandomFile(std::string path) : path_(std::move(path)) {
-  file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+RandomFile::RandomFile(const std::string& file, std::string path) : path_(std::move(path)) {
+  file_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
   if (file_ < 0 || ::fstat(file_, &status) != 0) {
     const int cause = errno;

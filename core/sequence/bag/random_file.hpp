@@ -11,7 +11,9 @@ namespace stillpoint {
 class RandomFile {
  public:
   /// @throws InputError in one sentence for one that cannot be opened
-  explicit RandomFile(std::string path);
+  explicit RandomFile(const std::string& path) : RandomFile(path, path) {}
+  /// @param path names it in messages, where it stands for another
+  RandomFile(const std::string& file, std::string path);
   ~RandomFile();
   RandomFile(const RandomFile&) = delete;
   RandomFile& operator=(const RandomFile&) = delete;

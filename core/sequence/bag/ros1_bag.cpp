@@ -5,53 +5,12 @@
 
 #include "core/error.hpp"
 #include "core/sequence/bag/chunked_log.hpp"
+#include "core/sequence/bag/ros1_records.hpp"
 
 namespace stillpoint {
 namespace {
 
-// The format: wiki.ros.org/Bags/Format/2.0. A file is records, each a header of named fields and data.
-
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint64_t kLargestHeader = 1 << 20;  // bytes
-enum Op : std::uint8_t {
-  kMessage = 2,
-  kBagHeader = 3,
-  kIndex = 4,
-  kChunk = 5,
-  kChunkInfo = 6,
-  kConnection = 7
-};
-
-using Fields = std::map<std::string, ByteView, std::less<>>;
-
-Fields fields_of(ByteView header) {
-  Fields fields;
-  ByteReader reader(header);
-  while (reader.left() > 0) {
-    const ByteView field = reader.counted();
-    const auto equals = std::find(field.begin(), field.end(), '=');
-    if (equals == field.end()) throw MalformedBytes("has a record whose header is none");
-    const auto name = static_cast<std::size_t>(equals - field.begin());
-    fields[ByteReader::to_text(field.first(name))] = field.subspan(name + 1);
-  }
-  return fields;
-}
-
-ByteView field_bytes(const Fields& fields, std::string_view name) {
-  const auto found = fields.find(name);
-  if (found == fields.end()) throw MalformedBytes(fmt::format("has a record without its field '{}'", name));
-  return found->second;
-}
-
-template <typename T>
-T field(const Fields& fields, std::string_view name) {
-  return ByteReader(field_bytes(fields, name)).number<T>();
-}
-
-std::string text_field(const Fields& fields, std::string_view name) {
-  const auto found = fields.find(name);
-  return found == fields.end() ? std::string() : ByteReader::to_text(found->second);
-}
+using namespace ros1;
 
 std::int64_t nanoseconds(std::uint32_t seconds, std::uint32_t rest) {
   return std::int64_t{seconds} * 1'000'000'000 + rest;
@@ -59,7 +18,7 @@ std::int64_t nanoseconds(std::uint32_t seconds, std::uint32_t rest) {
 
 class Ros1Bag final : public ChunkedLog {
  public:
-  explicit Ros1Bag(const std::string& path) : ChunkedLog(path) {
+  Ros1Bag(const std::string& file, const std::string& path) : ChunkedLog(file, path) {
     const Bytes magic = file_.read(0, kMagic.size());
     const std::string version = ByteReader::to_text(magic);
     if (version != kMagic)
@@ -118,25 +77,19 @@ class Ros1Bag final : public ChunkedLog {
   /// end of a bag repeats what stands behind each chunk, so that one way serves whole and cut bags.
   void walk() {
     bool is_whole = false;
-    for (std::uint64_t at = kMagic.size(); at < file_.size();) {
-      const Bytes start = file_.read(at, 4);
-      if (start.size() < 4) return cut_off(at);
-      const auto header_size = ByteReader(start).number<std::uint32_t>();
-      if (header_size > kLargestHeader) return damaged(at);
-      const Bytes header = file_.read(at + 4, std::uint64_t{header_size} + 4);
-      if (header.size() < std::size_t{header_size} + 4) return cut_off(at);
-      const auto data_size = ByteReader(ByteView(header).subspan(header_size)).number<std::uint32_t>();
-      const std::uint64_t data = at + 8 + header_size;
-      const bool is_cut = data_size > file_.size() - data;
+    Record record;
+    for (std::uint64_t at = kMagic.size(); at < file_.size(); at = record.end()) {
+      const RecordState state = read_record(file_, at, record);
+      if (state == RecordState::damaged) return damaged(at);
+      if (state == RecordState::cut_off) return cut_off(at);
       try {
-        const Fields fields = fields_of(ByteView(header).first(header_size));
+        const Fields fields = fields_of(record.header);
         is_whole = is_whole || field<std::uint8_t>(fields, "op") == kChunkInfo;
-        take(fields, data, is_cut ? file_.size() - data : data_size, is_cut);
+        take(fields, record.data, record.size, record.is_cut);
       } catch (const MalformedBytes&) {
         return damaged(at);
       }
-      if (is_cut) return cut_off(file_.size());
-      at = data + data_size;
+      if (record.is_cut) return cut_off(file_.size());
     }
     if (!is_whole && !chunks_.empty()) cut_off(file_.size());
   }
@@ -218,6 +171,8 @@ class Ros1Bag final : public ChunkedLog {
 
 }  // namespace
 
-std::unique_ptr<MessageLog> open_ros1_bag(const std::string& path) { return std::make_unique<Ros1Bag>(path); }
+std::unique_ptr<MessageLog> open_ros1_bag(const std::string& file, const std::string& path) {
+  return std::make_unique<Ros1Bag>(file, path);
+}
 
 }  // namespace stillpoint

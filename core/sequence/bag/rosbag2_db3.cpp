@@ -43,7 +43,7 @@ std::string uri_of(const std::string& path, bool immutable) {
 
 class Database final : public MessageLog {
  public:
-  explicit Database(const std::string& path) : path_(path) {
+  Database(std::string file, const std::string& path) : path_(path), file_(std::move(file)) {
     open();
     read_topics();
     read_places();
@@ -71,7 +71,7 @@ class Database final : public MessageLog {
   [[nodiscard]] bool try_open(bool immutable) {
     sqlite3* opened = nullptr;
     const int state =
-        sqlite3_open_v2(uri_of(path_, immutable).c_str(), &opened,
+        sqlite3_open_v2(uri_of(file_, immutable).c_str(), &opened,
                         SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_FULLMUTEX, nullptr);
     database_.reset(opened);
     if (state != SQLITE_OK) return false;
@@ -145,7 +145,7 @@ class Database final : public MessageLog {
     }
   }
 
-  std::string path_;
+  std::string path_, file_;
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   bool is_cut_ = false;
   std::map<sqlite3_int64, std::size_t> by_id_;
@@ -157,8 +157,8 @@ class Database final : public MessageLog {
 
 }  // namespace
 
-std::unique_ptr<MessageLog> open_rosbag2_db3(const std::string& path) {
-  return std::make_unique<Database>(path);
+std::unique_ptr<MessageLog> open_rosbag2_db3(const std::string& file, const std::string& path) {
+  return std::make_unique<Database>(file, path);
 }
 
 }  // namespace stillpoint
