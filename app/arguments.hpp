@@ -30,6 +30,18 @@ struct SequenceNeeds {
   bool oracle = false;  ///< ground-truth masks
 };
 
+/// What SEQUENCE may be, for the help of commands that take one, several, or also a finished run.
+inline constexpr const char* kSequenceHelp =
+    "A TUM RGB-D folder, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, .mcap, .db3), or "
+    "generated:KIND";
+inline constexpr const char* kSequencesHelp =
+    "TUM RGB-D folders, archives of them (.tgz, .tar, .zip, …), bags (.bag, .mcap, .db3), generated:KIND, or "
+    "generated:all";
+inline constexpr const char* kSequenceOrRunHelp =
+    "A TUM RGB-D folder, a folder of colour frames, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, "
+    ".mcap, "
+    ".db3), generated:KIND, or a finished run's folder";
+
 /// The options that say which frames, and how they are to be read.
 struct SequenceArguments {
   std::string camera;        ///< NAME|FILE; empty = the folder tells

@@ -91,7 +91,7 @@ void add_check_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("check",
                                          "Question an input: stamps, depth, masks, camera, ground truth, an "
                                          "estimate; status 3 when there are findings");
-  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp)->required();
   command->add_option("ESTIMATE", arguments->estimate,
                       "A trajectory to lay beside the ground truth in place of the odometry's own");
   command->add_flag("--json", arguments->json, "Print JSON");

@@ -79,6 +79,15 @@ std::unique_ptr<SequenceInput> open_input(const std::string& where, const OpenOp
 
 }  // namespace
 
+bool is_sequence_file(const std::string& path) {
+  std::error_code none;
+  if (!fs::is_regular_file(path, none)) return false;
+  const Bytes start = RandomFile(path).read(0, 16);
+  const std::string_view magic(reinterpret_cast<const char*>(start.data()), start.size());
+  return magic.starts_with("#ROS") || magic.starts_with("\x89MCAP") || magic.starts_with("SQLite format 3") ||
+         is_packed(path);
+}
+
 std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenOptions& options) {
   constexpr std::string_view kGenerated = "generated:";
   if (where.starts_with(kGenerated))

@@ -69,4 +69,7 @@ struct OpenOptions {
 [[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where,
                                                          const OpenOptions& options = {});
 
+/// Whether a file is an archive or a bag by its first bytes, whatever its name.
+[[nodiscard]] bool is_sequence_file(const std::string& path);
+
 }  // namespace stillpoint

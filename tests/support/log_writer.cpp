@@ -1,6 +1,7 @@
 #include "tests/support/log_writer.hpp"
 
 #include <bzlib.h>
+#include <fmt/format.h>
 #include <lz4frame.h>
 #include <sqlite3.h>
 #include <zstd.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -47,7 +49,7 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 
 std::string fields(const Fields& all) {
   std::string bytes;
-  for (const auto& [name, value] : all) bytes += counted(name + "=" + value);
+  for (const auto& [name, value] : all) bytes += counted(fmt::format("{}={}", name, value));
   return bytes;
 }
 
@@ -60,7 +62,7 @@ std::string ros_time(std::int64_t ns) {
          raw(static_cast<std::uint32_t>(ns % 1'000'000'000));
 }
 
-std::string op(char code) { return std::string(1, code); }
+std::string op(char code) { return {code}; }
 
 /// Messages that lie in one chunk.
 using Span = std::pair<std::size_t, std::size_t>;
@@ -86,7 +88,7 @@ std::map<std::string, std::uint16_t> numbers_of(const std::vector<LogMessage>& m
 std::string ros2_type(std::string type) { return type.insert(type.find('/'), "/msg"); }
 
 std::string mcap_record(char code, const std::string& bytes) {
-  return op(code) + raw(static_cast<std::uint64_t>(bytes.size())) + bytes;
+  return fmt::format("{}{}{}", op(code), raw(static_cast<std::uint64_t>(bytes.size())), bytes);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
@@ -92,9 +95,9 @@ inline std::vector<LogMessage> messages_of(const FrameSource& source, const BagE
     for (const StampedPose& pose : source.ground_truth()) {
       const std::int64_t stamp = ns_of(pose.timestamp);
       const std::vector<TransformExample> transforms = {
-          {stamp, slash + std::string("world"), slash + std::string("kinect"),
+          {stamp, fmt::format("{}world", slash), fmt::format("{}kinect", slash),
            pose.world_from_camera * mounting().inverse()},
-          {stamp, slash + std::string("kinect"), slash + std::string(kOptical), mounting()}};
+          {stamp, fmt::format("{}kinect", slash), fmt::format("{}{}", slash, kOptical), mounting()}};
       add("/tf", type, stamp, tf_bytes(example.cdr, transforms));
     }
   }
