@@ -63,7 +63,7 @@ TEST_F(RecordingCli, RunsAreTheFolders) {
     EXPECT_EQ(packed["source"]["name"], "small") << name;
     // A finished run finds its sequence again.
     const CliResult picture = run_cli({"snapshot", places.path("out"), "--panels", "input", "--frames", "2",
-                                       "--out", places.path("pictures")});
+                                       "--force", "--out", places.path("pictures")});
     EXPECT_EQ(picture.exit_code, 0) << picture.err;
     EXPECT_EQ(picture.err, "") << name;
   }
