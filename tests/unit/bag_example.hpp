@@ -73,6 +73,7 @@ inline std::vector<LogMessage> messages_of(const FrameSource& source, const BagE
     else
       add("/camera/rgb/image_color", "sensor_msgs/Image", stamp,
           image_bytes(example.cdr, stamp, kOptical, example.colour, colour));
+    if (!frame.has_depth()) continue;
     cv::Mat units;
     frame.depth.convertTo(units, CV_16U, c.depth_scale);
     if (example.depth == "png")
