@@ -108,6 +108,12 @@ std::optional<double> parse_comma_number(std::string_view text) {
   return parse_number(point);
 }
 
+std::string printable(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return name;
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMost = 60;
   std::string result = "'";

@@ -75,13 +75,14 @@ class Archives : public ::testing::Test {
 
 TEST_F(Archives, EveryKindGivesTheFoldersFrames) {
   for (const char* kind : {"tar", "gnutar", "tgz", "tar.bz2", "tar.xz", "zip", "zip_stored", "7z"})
-    for (const char* top : {"", "rgbd_dataset_freiburg2_test", "a/b/c"}) {
-      SCOPED_TRACE(std::string(kind) + " " + top);
+    for (const std::string& top : {std::string(), std::string("rgbd_dataset_freiburg2_test"),
+                                   std::string("a/b/c"), std::string(130, 'n')}) {
+      SCOPED_TRACE(kind + (" " + top));
       const auto source = open_sequence(packed(kind, top));
       expect_whole(*source);
       EXPECT_THAT(source->warnings(), IsEmpty());
       EXPECT_EQ(source->camera().name, "own");
-      EXPECT_EQ(source->name(), *top == '\0' ? "walk" : fs::path(top).filename().string());
+      EXPECT_EQ(source->name(), top.empty() ? "walk" : fs::path(top).filename().string());
     }
 }
 
@@ -260,8 +261,34 @@ TEST_F(Archives, NamesThatLeadOutAreLeftOut) {
   EXPECT_EQ(archived_name("./a/./b.png"), "a/b.png");
   EXPECT_EQ(archived_name("/a/b.png"), "a/b.png");
   EXPECT_EQ(archived_name("a\\b.png"), "a/b.png");
+  EXPECT_EQ(archived_name("a\nb.png"), "a?b.png");
   for (const char* name : {"../a", "a/../../b", "..", ".", "", "__MACOSX/a", "a/._b.png", "a/.DS_Store"})
     EXPECT_EQ(archived_name(name), "") << name;
+}
+
+TEST_F(Archives, LinksInATarArchiveAreFollowed) {
+  const std::string folder = input_.folder.path();
+  const std::string commands = fmt::format(
+      "cd {} && mv camera.toml own.toml && ln -s own.toml camera.toml && mv rgb.txt depth/list && "
+      "ln -s depth/list rgb.txt && ln depth.txt z.txt && tar cf {} .",
+      folder, places_.path("links.tar"));
+  ASSERT_EQ(std::system(commands.c_str()), 0);
+  const auto source = open_sequence(places_.path("links.tar"));
+  expect_whole(*source);
+  EXPECT_EQ(source->camera().name, "own");
+}
+
+TEST_F(Archives, APackedBagIsABag) {
+  const std::string bag = places_.path("walk.bag"), packed_bag = places_.path("walk.bag.gz");
+  write_ros1_bag(bag, messages_of(*input_.open()));
+  const std::string bytes = places_.read("walk.bag");
+  const gzFile file = gzopen(packed_bag.c_str(), "wb1");
+  ASSERT_EQ(gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size())), static_cast<int>(bytes.size()));
+  gzclose(file);
+  const auto source = open_sequence(packed_bag);
+  expect_whole(*source);
+  EXPECT_THAT(source->contents(), Contains(HasSubstr("read as colour")));
+  EXPECT_EQ(source->name(), "walk.bag");
 }
 
 TEST_F(Archives, SlowBagsAreUnpackedIntoTheCache) {

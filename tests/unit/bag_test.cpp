@@ -338,6 +338,41 @@ TEST(Bags, DepthIsChecked) {
   EXPECT_THAT(source->why_not(FramePart::depth), HasSubstr("is 32x24 px, but its colour image is 64x48 px"));
 }
 
+TEST(Bags, RealSenseRecordingsAreBagsToo) {
+  const auto messages = [](double depth_focal) {
+    std::vector<LogMessage> all = {{"/device_0/sensor_0/option/Depth_Units/value", "std_msgs/Float32", 1,
+                                    MessageWriter(false).number(0.0001F).take()}};
+    for (int i = 0; i < 4; ++i) {
+      const std::int64_t stamp = 1'600'000'000'000'000'000 + i * 33'000'000LL;
+      const cv::Mat infrared(48, 64, CV_8UC1, cv::Scalar(7));
+      const auto info = [&](double focal) {
+        return info_bytes(false, stamp, {64, 48, "Brown Conrady", {0, 0, 0, 0, 0}, focal, focal, 32, 24});
+      };
+      all.push_back({"/device_0/sensor_0/Depth_0/image/data", "sensor_msgs/Image", stamp,
+                     image_bytes(false, stamp, "0", "mono16", cv::Mat(48, 64, CV_16UC1, cv::Scalar(12000)))});
+      all.push_back({"/device_0/sensor_0/Depth_0/info/camera_info", "sensor_msgs/CameraInfo", stamp,
+                     info(depth_focal)});
+      all.push_back({"/device_0/sensor_0/Infrared_1/image/data", "sensor_msgs/Image", stamp,
+                     image_bytes(false, stamp, "0", "mono8", infrared)});
+      all.push_back({"/device_0/sensor_1/Color_0/image/data", "sensor_msgs/Image", stamp,
+                     image_bytes(false, stamp, "0", "rgb8", cv::Mat(48, 64, CV_8UC3, cv::Scalar(1, 2, 3)))});
+      all.push_back(
+          {"/device_0/sensor_1/Color_0/info/camera_info", "sensor_msgs/CameraInfo", stamp, info(61)});
+    }
+    return all;
+  };
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages(61));
+  const auto source = open_sequence(bag.path);
+  EXPECT_THAT(source->warnings(), IsEmpty());
+  EXPECT_EQ(source->read(2).colour.at<cv::Vec3b>(9, 9), cv::Vec3b(3, 2, 1));
+  EXPECT_NEAR(source->read(2).depth.at<float>(9, 9), 1.2, 1e-6);  // in units of 0.1 mm
+  EXPECT_EQ(source->camera().fx, 61);
+  write_ros1_bag(bag.path, messages(40));
+  EXPECT_THAT(open_sequence(bag.path)->warnings(),
+              Contains(HasSubstr("depth is of a camera of 40.0 px and colour of one of 61.0 px")));
+}
+
 TEST(Bags, EncodingsGiveTheSameColours) {
   const cv::Mat bgr(48, 64, CV_8UC3, cv::Scalar(200, 100, 40));
   const auto read = [&](const char* encoding, const cv::Mat& stored) {

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/sequence/archive/archive_index.hpp"
 #include "core/sequence/bag/byte_reader.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -153,6 +154,7 @@ class Archive final : public FileStore {
 }  // namespace
 
 std::string archived_name(std::string name) {
+  name = printable(std::move(name));
   std::replace(name.begin(), name.end(), '\\', '/');
   name = fs::path(name).lexically_normal().relative_path().string();
   while (name.ends_with('/')) name.pop_back();

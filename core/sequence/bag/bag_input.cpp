@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -152,14 +153,36 @@ class BagInput final : public SequenceInput {
                                      before - list.entries.size()));
   }
 
+  /// The camera that a topic of images is said to be of.
+  [[nodiscard]] std::optional<Camera> camera_beside(std::size_t images) const {
+    const auto info = info_beside(*log_, images);
+    if (!info) return std::nullopt;
+    std::string why_not;
+    std::vector<std::string> ignored;
+    try {
+      const WireFormat format = log_->topics()[*info].format;
+      return camera_of_info(camera_info_message(log_->read(*info, 0), format), false, "", why_not, ignored);
+    } catch (const MalformedBytes&) {
+      return std::nullopt;
+    }
+  }
+
   void tell_registration(std::vector<std::string>& warnings) const {
+    constexpr double kSameCamera = 0.01;  // relative difference of focal lengths
+    std::string differs;
     const std::string &colour = choice_.colour.frame, &depth = choice_.depth->frame;
-    if (colour.empty() || depth.empty() || colour == depth) return;
+    if (!colour.empty() && !depth.empty() && colour != depth)
+      differs = fmt::format("depth is of frame {} and colour of frame {}", depth, colour);
+    const auto colours = camera_beside(choice_.colour.topic), depths = camera_beside(choice_.depth->topic);
+    if (differs.empty() && colours && depths && colours->width == depths->width &&
+        std::abs(depths->fx / colours->fx - 1.0) > kSameCamera)
+      differs = fmt::format("depth is of a camera of {:.1f} px and colour of one of {:.1f} px", depths->fx,
+                            colours->fx);
+    if (differs.empty()) return;
     warnings.push_back(
-        fmt::format("{}:{}: depth is of frame {} and colour of frame {}; it is read as if it were registered "
-                    "to colour, which "
-                    "a topic such as aligned_depth_to_color is",
-                    log_->path(), name_of(*choice_.depth), depth, colour));
+        fmt::format("{}:{}: {}; it is read as if it were registered to colour, which a topic such as "
+                    "aligned_depth_to_color is",
+                    log_->path(), name_of(*choice_.depth), differs));
   }
 
   /// What the recording says of the camera, and its name.

@@ -1,6 +1,9 @@
 #include "core/sequence/bag/chunked_log.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -13,6 +16,8 @@ void ChunkedLog::set_topics(std::vector<std::pair<LoggedTopic, std::vector<Place
   std::sort(topics.begin(), topics.end(),
             [](const auto& a, const auto& b) { return a.first.name < b.first.name; });
   for (auto& [topic, places] : topics) {
+    topic.name = printable(std::move(topic.name)), topic.type = printable(std::move(topic.type));
+    topic.encoding = printable(std::move(topic.encoding));
     std::stable_sort(places.begin(), places.end(),
                      [](const Place& a, const Place& b) { return a.time < b.time; });
     topic.times.reserve(places.size());

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/text_file.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -98,7 +100,7 @@ Compression compression_by_name(std::string_view name) {
   if (name == "bz2") return Compression::bz2;
   if (name == "lz4") return Compression::lz4;
   if (name == "zstd") return Compression::zstd;
-  throw MalformedBytes(fmt::format("has chunks of compression '{}', which is not read", name.substr(0, 20)));
+  throw MalformedBytes(fmt::format("has chunks of compression {}, which is not read", in_quotes(name)));
 }
 
 Bytes decompress(Compression compression, ByteView packed, std::uint64_t most) {

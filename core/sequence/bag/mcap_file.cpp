@@ -73,8 +73,8 @@ class McapFile final : public ChunkedLog {
       const std::uint64_t there = std::min(size, file_.size() - data);
       try {
         take(op, at, there, there < size);
-      } catch (const MalformedBytes&) {
-        return damaged(at);
+      } catch (const MalformedBytes& error) {
+        return damaged(at, error.what());
       }
       if (there < size) return cut_off(file_.size());
       if (op == kFooter) return;
@@ -93,11 +93,10 @@ class McapFile final : public ChunkedLog {
       std::erase_if(places, [last](const Place& place) { return place.chunk == last; });
     unindexed_.insert(last);
   }
-  void damaged(std::uint64_t at) {
-    if (chunks_.empty())
-      throw InputError(fmt::format("{}: is damaged: at byte {} stands no record of MCAP", file_.path(), at));
-    warnings_.push_back(
-        fmt::format("{}: is damaged at byte {}; what it holds up to there was read", file_.path(), at));
+  void damaged(std::uint64_t at, const std::string& cause) {
+    const std::string sentence = fmt::format("{}: is damaged at byte {}: it {}", file_.path(), at, cause);
+    if (chunks_.empty()) throw InputError(sentence);
+    warnings_.push_back(sentence + "; what it holds up to there was read");
   }
 
   void take(std::uint8_t op, std::uint64_t at, std::uint64_t size, bool is_cut) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -30,7 +33,7 @@ class MessageReader {
   std::string text() {
     std::string value = ByteReader::to_text(reader_.take(number<std::uint32_t>()));
     if (is_cdr_ && !value.empty() && value.back() == '\0') value.pop_back();
-    return value;
+    return printable(std::move(value));
   }
   std::int64_t stamp() {
     // ROS 1 counts seconds without a sign.

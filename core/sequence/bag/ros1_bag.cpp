@@ -80,25 +80,24 @@ class Ros1Bag final : public ChunkedLog {
     Record record;
     for (std::uint64_t at = kMagic.size(); at < file_.size(); at = record.end()) {
       const RecordState state = read_record(file_, at, record);
-      if (state == RecordState::damaged) return damaged(at);
+      if (state == RecordState::damaged) return damaged(at, "has a record whose header is none");
       if (state == RecordState::cut_off) return cut_off(at);
       try {
         const Fields fields = fields_of(record.header);
         is_whole = is_whole || field<std::uint8_t>(fields, "op") == kChunkInfo;
         take(fields, record.data, record.size, record.is_cut);
-      } catch (const MalformedBytes&) {
-        return damaged(at);
+      } catch (const MalformedBytes& error) {
+        return damaged(at, error.what());
       }
       if (record.is_cut) return cut_off(file_.size());
     }
     if (!is_whole && !chunks_.empty()) cut_off(file_.size());
   }
 
-  void damaged(std::uint64_t at) {
-    if (chunks_.empty())
-      throw InputError(fmt::format("{}: is damaged: at byte {} stands no record of a bag", file_.path(), at));
-    warnings_.push_back(
-        fmt::format("{}: is damaged at byte {}; what it holds up to there was read", file_.path(), at));
+  void damaged(std::uint64_t at, const std::string& cause) {
+    const std::string sentence = fmt::format("{}: is damaged at byte {}: it {}", file_.path(), at, cause);
+    if (chunks_.empty()) throw InputError(sentence);
+    warnings_.push_back(sentence + "; what it holds up to there was read");
   }
 
   void take(const Fields& fields, std::uint64_t data, std::uint64_t size, bool is_cut) {

@@ -9,6 +9,7 @@
 #include "core/sequence/bag/byte_reader.hpp"
 #include "core/sequence/bag/decompress.hpp"
 #include "core/sequence/bag/message_log.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -107,7 +108,7 @@ class Database final : public MessageLog {
 
   [[nodiscard]] static std::string text(sqlite3_stmt* row, int column) {
     const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
-    return value == nullptr ? std::string() : value;
+    return value == nullptr ? std::string() : printable(value);
   }
 
   void read_topics() {

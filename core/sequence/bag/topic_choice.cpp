@@ -125,7 +125,7 @@ class Chooser {
     if (const auto named = asked("info", [](const LoggedTopic& topic) { return topic.type == kInfo; }))
       choice.info = named;
     else if (!is_none("info"))
-      choice.info = info_of(log_.topics()[choice.colour.topic].name);
+      choice.info = info_beside(log_, choice.colour.topic);
     choice.truth = asked(
         "truth", [](const LoggedTopic& topic) { return is_tf_type(topic.type) || is_pose_type(topic.type); });
     choice.no_truth = is_none("truth");
@@ -174,18 +174,6 @@ class Chooser {
     return found;
   }
 
-  [[nodiscard]] std::optional<std::size_t> info_of(const std::string& colour) const {
-    std::optional<std::size_t> found;
-    std::size_t most = 1;  // the first slash, which all share
-    for (std::size_t i = 0; i < log_.topics().size(); ++i) {
-      const LoggedTopic& topic = log_.topics()[i];
-      if (topic.type != kInfo || topic.times.empty() || topic.format == WireFormat::other) continue;
-      if (const std::size_t shared = shared_parts(topic.name, colour); shared > most)
-        found = i, most = shared;
-    }
-    return found;
-  }
-
   [[nodiscard]] std::string no_images() const {
     std::vector<std::string> holds;
     for (const LoggedTopic& topic : log_.topics())
@@ -206,6 +194,18 @@ class Chooser {
 
 TopicChoice choose_topics(const MessageLog& log, const std::string& asked) {
   return Chooser(log, asked).choose();
+}
+
+std::optional<std::size_t> info_beside(const MessageLog& log, std::size_t images) {
+  std::optional<std::size_t> found;
+  std::size_t most = 1;  // the first slash, which all share
+  for (std::size_t i = 0; i < log.topics().size(); ++i) {
+    const LoggedTopic& topic = log.topics()[i];
+    if (topic.type != kInfo || topic.times.empty() || topic.format == WireFormat::other) continue;
+    const std::size_t shared = shared_parts(topic.name, log.topics()[images].name);
+    if (shared > most) found = i, most = shared;
+  }
+  return found;
 }
 
 std::vector<std::string> describe_topics(const MessageLog& log, const TopicChoice& choice,

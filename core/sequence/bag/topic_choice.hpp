@@ -39,6 +39,10 @@ struct TopicChoice {
 /// that is not there or of another type
 [[nodiscard]] TopicChoice choose_topics(const MessageLog& log, const std::string& asked);
 
+/// The sensor_msgs/CameraInfo that belongs to a topic of images: the one that shares most of its name with
+/// it.
+[[nodiscard]] std::optional<std::size_t> info_beside(const MessageLog& log, std::size_t images);
+
 /// A line a topic: name, type, messages, what it is read as.
 [[nodiscard]] std::vector<std::string> describe_topics(const MessageLog& log, const TopicChoice& choice,
                                                        std::optional<std::size_t> truth);
