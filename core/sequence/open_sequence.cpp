@@ -49,7 +49,7 @@ std::unique_ptr<SequenceInput> open_file(const std::string& where, const OpenOpt
   if (auto log = open_log(where, where, options)) return make_bag_input(std::move(log), options);
   if (!is_packed(where))
     throw InputError(
-        fmt::format("{}: is no kind of file that is read; expected a folder in the TUM RGB-D layout, an "
+        fmt::format("{}: is a file, expected a folder in the TUM RGB-D layout, an "
                     "archive of one (.tgz, "
                     ".tar, .tar.bz2, .zip), or a bag (.bag, .mcap, .db3)",
                     where));

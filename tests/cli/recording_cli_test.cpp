@@ -104,7 +104,7 @@ TEST_F(RecordingCli, BadOnesEndInASentence) {
   places.write("small.zip", std::string("PK\3\4") + std::string(100, 'x'));
   expect_one_sentence(run_cli({"check", places.path("small.zip")}), "small.zip: cannot be unpacked");
   places.write("small.txt", std::string("hello"));
-  expect_one_sentence(run_cli({"view", places.path("small.txt")}), "is no kind of file that is read");
+  expect_one_sentence(run_cli({"view", places.path("small.txt")}), "is a file, expected a folder");
 }
 
 TEST_F(RecordingCli, EvaluationTakesTruthFromAnArchive) {

@@ -229,7 +229,7 @@ TEST(Bags, WithoutImagesSayWhatTheyHold) {
   const Recording none(".bag");
   none.folder.write("recording.bag", std::string("nothing of the kind"));
   EXPECT_THAT(input_error_of([&] { (void)open_sequence(none.path); }),
-              HasSubstr("is no kind of file that is read"));
+              HasSubstr("is a file, expected a folder"));
 }
 
 /// A small recording: images of 64x48 px whose pixels tell their frame, and whatever else.
