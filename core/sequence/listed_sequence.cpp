@@ -10,6 +10,7 @@
 #include "core/sequence/association.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/image_file.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -35,6 +36,7 @@ ListedSequence::ListedSequence(std::unique_ptr<SequenceInput> input, const OpenO
   if (has_masks_) survey_mask_images(size);
   question_convention();
   for (const auto& [part, sentence] : why_not_) warnings_.push_back(sentence);
+  for (std::string& sentence : warnings_) sentence = printable(std::move(sentence));
 }
 
 ImageReader ListedSequence::reader() const {

@@ -13,6 +13,7 @@
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/listed_sequence.hpp"
 #include "core/sequence/source.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -77,6 +78,17 @@ std::unique_ptr<SequenceInput> open_input(const std::string& where, const OpenOp
   return make_folder_input(open_folder(where), options);
 }
 
+/// What is told quotes what the input holds, a name or a key, whose control characters must not part the
+/// sentence.
+std::unique_ptr<FrameSource> open_recorded(const std::string& where, const OpenOptions& options) {
+  try {
+    return std::make_unique<ListedSequence>(open_input(where, options), options);
+  } catch (const InputError& error) {
+    if (const std::string line = printable(error.what()); line != error.what()) throw InputError(line);
+    throw;
+  }
+}
+
 }  // namespace
 
 bool is_sequence_file(const std::string& path) {
@@ -92,7 +104,7 @@ std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenO
   constexpr std::string_view kGenerated = "generated:";
   if (where.starts_with(kGenerated))
     return make_generated_sequence(where.substr(kGenerated.size()), options.frames, options.seed);
-  auto recorded = std::make_unique<ListedSequence>(open_input(where, options), options);
+  auto recorded = open_recorded(where, options);
   if (options.frames < 0)
     throw InputError(fmt::format("{}: expected a number of frames, not {}", where, options.frames));
   if (options.frames == 0) return recorded;

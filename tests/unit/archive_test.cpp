@@ -257,6 +257,11 @@ TEST_F(Archives, WhatIsNoneIsSaidToBeNone) {
               HasSubstr("d.gz: holds neither an archive nor a bag"));
 }
 
+TEST_F(Archives, SentencesStayOneLineWhateverTheyQuote) {
+  input_.folder.write("camera.toml", std::string("\"a\\nb\" = 1\n"));
+  EXPECT_THAT(input_error_of([&] { (void)input_.open(); }), HasSubstr("a?b is no key of a camera"));
+}
+
 TEST_F(Archives, NamesThatLeadOutAreLeftOut) {
   EXPECT_EQ(archived_name("./a/./b.png"), "a/b.png");
   EXPECT_EQ(archived_name("/a/b.png"), "a/b.png");
