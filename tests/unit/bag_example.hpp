@@ -13,6 +13,7 @@
 #include "core/sequence/source.hpp"
 #include "tests/support/log_writer.hpp"
 #include "tests/support/message_writer.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
 
@@ -108,6 +109,31 @@ inline std::vector<LogMessage> messages_of(const FrameSource& source, const BagE
           pose_bytes(example.cdr, ns_of(pose.timestamp), "world", pose.world_from_camera));
   std::stable_sort(messages.begin(), messages.end(),
                    [](const LogMessage& a, const LogMessage& b) { return a.time < b.time; });
+  return messages;
+}
+
+/// A file in a folder whose name tells no camera.
+class Recording {
+ public:
+  explicit Recording(const std::string& ending) : path(folder.path("recording" + ending)) {}
+  TemporaryFolder folder;
+  std::string path;
+};
+
+/// A small recording: images of 64x48 px whose pixels tell their frame, and whatever else.
+inline std::vector<LogMessage> small_messages(int frames, const InfoExample& info) {
+  std::vector<LogMessage> messages;
+  for (int i = 0; i < frames; ++i) {
+    const std::int64_t stamp = 1'300'000'000'000'000'000 + i * 33'000'000LL;
+    messages.push_back(
+        {"/cam/rgb/camera_info", "sensor_msgs/CameraInfo", stamp, info_bytes(false, stamp, info)});
+    messages.push_back(
+        {"/cam/rgb/image_raw", "sensor_msgs/Image", stamp,
+         image_bytes(false, stamp, "cam", "bgr8", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(i)))});
+    messages.push_back(
+        {"/cam/depth/image", "sensor_msgs/Image", stamp,
+         image_bytes(false, stamp, "cam", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(1.0 + i)))});
+  }
   return messages;
 }
 
