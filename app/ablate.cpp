@@ -113,9 +113,7 @@ void add_ablate_command(CLI::App& app) {
   const auto arguments = std::make_shared<AblateArguments>();
   CLI::App* command = app.add_subcommand(
       "ablate", "Run a method whole and with one ingredient left out at a time, and compare");
-  command
-      ->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")
-      ->required();
+  command->add_option("SEQUENCES", arguments->sequences, kSequencesHelp)->required();
   std::string names;
   for (const Ingredient& one : ingredients(method_named(kDefaultMethod)))
     names += fmt::format("\n  {}: {}", one.name, one.help);

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/methods.hpp"
@@ -60,11 +61,15 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
       "What a folder's ground truth means by a pose: as-written, inverse, w-first, mirrored-x, "
       "mirrored-y (ICL-NUIM), mirrored-z, bonn");
   command.add_flag("--invert-masks", inverted_masks, "White in a folder's masks is what stands still");
+  command.add_option(
+      "--topics", topics,
+      "Of a bag: colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC, any of them, none but colour "
+      "where it is `none`; `stillpoint check` lists what it holds");
 }
 
 bool SequenceArguments::given() const {
   return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
-         depth_offset_s != 0 || !truth.empty() || inverted_masks;
+         depth_offset_s != 0 || !truth.empty() || inverted_masks || !topics.empty();
 }
 
 OpenOptions SequenceArguments::options(const Config& config) const {
@@ -77,6 +82,8 @@ OpenOptions SequenceArguments::options(const Config& config) const {
   options.depth_offset_s = depth_offset_s;
   options.truth = convention_argument("--truth", truth);
   options.inverted_masks = inverted_masks;
+  options.topics = topics;
+  options.progress = opening_progress();
   return options;
 }
 

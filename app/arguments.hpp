@@ -36,6 +36,18 @@ struct SequenceNeeds {
   bool oracle = false;  ///< ground-truth masks
 };
 
+/// What SEQUENCE may be, for the help of commands that take one, several, or also a finished run.
+inline constexpr const char* kSequenceHelp =
+    "A TUM RGB-D folder, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, .mcap, .db3), or "
+    "generated:KIND";
+inline constexpr const char* kSequencesHelp =
+    "TUM RGB-D folders, archives of them (.tgz, .tar, .zip, …), bags (.bag, .mcap, .db3), generated:KIND, or "
+    "generated:all";
+inline constexpr const char* kSequenceOrRunHelp =
+    "A TUM RGB-D folder, a folder of colour frames, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, "
+    ".mcap, "
+    ".db3), generated:KIND, or a finished run's folder";
+
 /// The options that say which frames, and how they are to be read.
 struct SequenceArguments {
   std::string camera;        ///< NAME|FILE; empty = the folder tells
@@ -46,6 +58,7 @@ struct SequenceArguments {
   double depth_offset_s = 0.0;
   std::string truth;  ///< a PoseConvention's name; empty = as written
   bool inverted_masks = false;
+  std::string topics;  ///< of a bag, as OpenOptions has them; empty = as they are found
 
   /// @param frames_option what sets `frames`, where --frames means something else
   void add_to(CLI::App& command, const char* frames_option = "--frames");

@@ -216,9 +216,7 @@ void add_benchmark_command(CLI::App& app) {
   const auto arguments = std::make_shared<BenchmarkArguments>();
   CLI::App* command = app.add_subcommand(
       "benchmark", "Run sequences by several methods and print the paper's Table 1 with our columns");
-  command
-      ->add_option("SEQUENCES", arguments->sequences, "TUM RGB-D folders, generated:KIND, or generated:all")
-      ->required();
+  command->add_option("SEQUENCES", arguments->sequences, kSequencesHelp)->required();
   command->add_option("--methods", arguments->methods, "Methods to compare, separated by commas")
       ->delimiter(',')
       ->capture_default_str();

@@ -66,6 +66,7 @@ void check(const CheckArguments& arguments) {
     json["frames"] = source->size();
     json["camera"] = camera.name;
     json["depth_scale"] = camera.depth_scale;
+    if (!source->contents().empty()) json["topics"] = source->contents();
     json["findings"] = nlohmann::json(findings);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
@@ -76,6 +77,7 @@ void check(const CheckArguments& arguments) {
         source->has_depth() ? fmt::format("at {:g} a metre", camera.depth_scale) : "none",
         source->has_masks() ? "yes" : "none",
         source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
+    for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);
     for (const Finding& finding : findings) fmt::print("  {:<9} {}\n", finding.about, finding.sentence);
     fmt::print("{}\n", findings.empty() ? "no findings" : fmt::format("{} finding(s)", findings.size()));
   }
@@ -89,7 +91,7 @@ void add_check_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("check",
                                          "Question an input: stamps, depth, masks, camera, ground truth, an "
                                          "estimate; status 3 when there are findings");
-  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp)->required();
   command->add_option("ESTIMATE", arguments->estimate,
                       "A trajectory to lay beside the ground truth in place of the odometry's own");
   command->add_flag("--json", arguments->json, "Print JSON");

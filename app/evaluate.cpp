@@ -8,6 +8,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/evaluation/evaluation_json.hpp"
@@ -28,7 +29,8 @@ struct EvaluateArguments {
 
 bool is_sequence(const std::string& where) {
   std::error_code none;
-  return where.starts_with("generated:") || std::filesystem::is_directory(where, none);
+  return where.starts_with("generated:") || std::filesystem::is_directory(where, none) ||
+         is_sequence_file(where);
 }
 
 /// Tells what was mended without touching standard output, which may be JSON.
@@ -56,6 +58,7 @@ struct Compared {
 std::unique_ptr<FrameSource> open_frames(const std::string& where, const EvaluateArguments& arguments) {
   OpenOptions options;
   options.frame_rate = arguments.frame_rate;
+  options.progress = opening_progress();
   return open_sequence(where, options);
 }
 

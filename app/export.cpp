@@ -40,7 +40,7 @@ void add_export_command(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand(
       "export", "Some frames of a sequence as a small TUM RGB-D folder that shows the same problem");
-  command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND")->required();
+  command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp)->required();
   command
       ->add_option("--frames", arguments->frames,
                    "Frames to write: 10:40 (40 not among them), -1 is the last; with commas between")

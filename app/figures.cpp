@@ -152,11 +152,7 @@ void add_figures_command(CLI::App& app) {
   const auto arguments = std::make_shared<FiguresArguments>();
   CLI::App* command = app.add_subcommand(
       "figures", "The paper's figures 1, 3, 4 and 6 from any sequence: masks, features, errors over time");
-  command
-      ->add_option(
-          "SEQUENCE", arguments->place.place,
-          "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder")
-      ->required();
+  command->add_option("SEQUENCE", arguments->place.place, kSequenceOrRunHelp)->required();
   command->add_option("--frame", arguments->frame, "The frame that figures 1, 3 and 4 show; -1 is the last")
       ->required();
   command->add_option("--out", arguments->out, "Folder for the figures; made if missing")->required();

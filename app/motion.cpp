@@ -256,6 +256,7 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
   // Its warnings are about cameras and times, which images alone do without.
   OpenOptions open;
   open.seed = static_cast<unsigned>(config.run.seed);
+  open.progress = opening_progress();
   const std::unique_ptr<FrameSource> source = open_sequence(options.first, open);
   if (method.needs.depth && !source->has_depth())
     throw InputError(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 
 namespace stillpoint {
 namespace {
@@ -38,6 +39,27 @@ const std::atomic<bool>& stop_requested() {
 
 void throw_if_interrupted() {
   if (stop_requested()) throw Interrupted{stop_signal};
+}
+
+std::function<void(const std::string&, double)> opening_progress() {
+  struct Line {
+    ~Line() {
+      if (is_shown) std::fputs("\r\033[K", stderr);
+    }
+    Stopwatch watch;
+    double last_ms = 0;
+    bool is_shown = false;
+  };
+  return [line = std::make_shared<Line>(), terminal = isatty(STDERR_FILENO) != 0](const std::string& what,
+                                                                                  double share) {
+    constexpr double kInterval = 100.0;  // ms
+    throw_if_interrupted();
+    const double now = line->watch.milliseconds();
+    if (!terminal || now - line->last_ms < kInterval) return;
+    line->last_ms = now, line->is_shown = true;
+    fmt::print(stderr, "\r\033[K{}: {:.0f} %", what, 100.0 * share);
+    std::fflush(stderr);
+  };
 }
 
 Progress::Progress(std::string title, int total)

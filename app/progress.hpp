@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <string>
 
 #include "core/stopwatch.hpp"
@@ -40,5 +41,9 @@ class Progress {
   Stopwatch watch_;
   double last_shown_ms_ = 0.0;
 };
+
+/// What OpenOptions::progress is given: a line on a terminal, cleared at the end, and Ctrl-C ends what it
+/// tells of.
+[[nodiscard]] std::function<void(const std::string& what, double share)> opening_progress();
 
 }  // namespace stillpoint

@@ -108,8 +108,7 @@ void add_run_command(CLI::App& app) {
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* command =
       app.add_subcommand("run", "Run odometry over a sequence: trajectory, figures and per-frame data");
-  const CLI::Option* sequence =
-      command->add_option("SEQUENCE", arguments->sequence, "A TUM RGB-D folder, or generated:KIND");
+  const CLI::Option* sequence = command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp);
   command->add_option("--out", arguments->out,
                       "Folder for trajectory, frames.csv, summary.json, config and map");
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");

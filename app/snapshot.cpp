@@ -167,11 +167,7 @@ void add_snapshot_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "snapshot",
       "Panels of the workbench as images or a video, without a display: masks, trajectory, plots");
-  command
-      ->add_option(
-          "SEQUENCE", arguments->place.place,
-          "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder")
-      ->required();
+  command->add_option("SEQUENCE", arguments->place.place, kSequenceOrRunHelp)->required();
   command->add_option(
       "--frames", arguments->frames,
       "Frames to draw: 10, 20:40:5 (40 not among them), -1 is the last, and what is drawn when nothing "

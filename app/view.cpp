@@ -167,9 +167,7 @@ void add_view_command(CLI::App& app) {
   const auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Opens the workbench in a window, on a sequence or as it was left");
-  command->add_option(
-      "SEQUENCE", arguments->place.place,
-      "A TUM RGB-D folder, a folder of colour frames, generated:KIND, or a finished run's folder");
+  command->add_option("SEQUENCE", arguments->place.place, kSequenceOrRunHelp);
   arguments->place.add_to(*command);
   command->add_option("--layout", arguments->layout, "The workbench's tiles, a JSON file");
   const auto* record =

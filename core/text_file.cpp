@@ -42,7 +42,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-std::vector<TextLine> read_text_lines(const std::string& path, std::vector<TextLine>* comments) {
+std::string read_text(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(fmt::format("{}: a folder, where a text file was expected", path));
@@ -51,20 +51,29 @@ std::vector<TextLine> read_text_lines(const std::string& path, std::vector<TextL
   if (!file)
     throw InputError(
         fmt::format("{}: cannot be read: {}", path, errno != 0 ? std::strerror(errno) : "unknown cause"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
+  return text;
+}
+
+std::vector<TextLine> text_lines(std::string_view content, std::vector<TextLine>* comments) {
   std::vector<TextLine> lines;
-  std::string raw;
-  for (int number = 1; std::getline(file, raw); ++number) {
-    std::string_view text = raw;
-    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    const std::string_view whole = trimmed(text);
-    text = trimmed(without_comment(text));
+  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+  for (int number = 1; !content.empty(); ++number) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    const std::string_view whole = trimmed(content.substr(0, end));
+    const std::string_view text = trimmed(without_comment(whole));
     if (!text.empty())
       lines.push_back({number, std::string(text)});
     else if (comments != nullptr && !whole.empty())
       comments->push_back({number, std::string(trimmed(whole.substr(1)))});
+    content.remove_prefix(std::min(end + 1, content.size()));
   }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
   return lines;
+}
+
+std::vector<TextLine> read_text_lines(const std::string& path, std::vector<TextLine>* comments) {
+  return text_lines(read_text(path), comments);
 }
 
 std::vector<std::string_view> split_columns(std::string_view text) { return split(text, kSeparators); }
@@ -97,6 +106,12 @@ std::optional<double> parse_comma_number(std::string_view text) {
   std::string point(text);
   std::replace(point.begin(), point.end(), ',', '.');
   return parse_number(point);
+}
+
+std::string printable(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return name;
 }
 
 std::string in_quotes(std::string_view text) {

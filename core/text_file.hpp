@@ -20,6 +20,14 @@ struct TextLine {
 [[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path,
                                                     std::vector<TextLine>* comments = nullptr);
 
+/// The same of a text that is at hand already.
+[[nodiscard]] std::vector<TextLine> text_lines(std::string_view text,
+                                               std::vector<TextLine>* comments = nullptr);
+
+/// A whole text file.
+/// @throws InputError when it cannot be read.
+[[nodiscard]] std::string read_text(const std::string& path);
+
 /// The columns of a line, parted by blanks, tabs, commas or semicolons.
 [[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
 
@@ -33,6 +41,9 @@ struct TextLine {
 /// The whole text as a number written in the C manner, whatever the locale is; nothing when it is not one.
 /// May be NaN or infinite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+/// A foreign name without control characters, which become '?', so that a message that holds it stays one line.
+[[nodiscard]] std::string printable(std::string name);
 
 /// A foreign text fit for an error message: in quotes, clipped, and without control characters.
 [[nodiscard]] std::string in_quotes(std::string_view text);

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
+#include <functional>
 
 #include "core/error.hpp"
 #include "core/geometry/camera_yaml.hpp"
@@ -173,11 +174,13 @@ std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
   return std::nullopt;
 }
 
-Camera read_camera(const std::string& path) {
-  if (is_yaml(path)) return read_yaml_camera(path);
+namespace {
+
+/// The camera of a TOML file. @param parse gives its table
+Camera camera_from_toml(const std::string& path, const std::function<toml::table()>& parse) {
   toml::table table;
   try {
-    table = toml::parse_file(path);
+    table = parse();
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: not a readable camera file: {}", path, error.source().begin.line,
                                  std::string(error.description())));
@@ -231,6 +234,18 @@ Camera read_camera(const std::string& path) {
   if (std::abs(camera.readout_s) > 0.2)
     throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
   return camera;
+}
+
+}  // namespace
+
+Camera read_camera(const std::string& path) {
+  if (is_yaml(path)) return read_yaml_camera(path);
+  return camera_from_toml(path, [&] { return toml::parse_file(path); });
+}
+
+Camera read_camera_text(const std::string& path, const std::string& text) {
+  if (is_yaml(path)) return read_yaml_camera_text(path, text);
+  return camera_from_toml(path, [&] { return toml::parse(text, path); });
 }
 
 Camera camera_from_argument(const std::string& argument) {

@@ -69,6 +69,9 @@ struct Camera {
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);
 
+/// The same of a text that is at hand; `path` names it in messages, and its ending tells TOML from YAML.
+[[nodiscard]] Camera read_camera_text(const std::string& path, const std::string& text);
+
 /// `NAME|FILE.toml|FILE.yaml` as given on the command line.
 /// @throws InputError as camera_by_name and read_camera do.
 [[nodiscard]] Camera camera_from_argument(const std::string& argument);

@@ -22,12 +22,7 @@ std::string lower(std::string text) {
 }
 
 /// The file as YAML 1.2 has it: OpenCV's first line, `%YAML:1.0`, is none.
-YAML::Node load(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: the camera file cannot be read", path));
-  std::stringstream text;
-  text << file.rdbuf();
-  std::string content = text.str();
+YAML::Node load(const std::string& path, std::string content) {
   // The line is kept, empty, so that faults keep their line.
   if (content.starts_with("%YAML")) content.erase(0, content.find('\n'));
   try {
@@ -40,7 +35,7 @@ YAML::Node load(const std::string& path) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), root_(load(path)) {
+  Reader(const std::string& path, std::string text) : path_(path), root_(load(path, std::move(text))) {
     if (!root_.IsMap()) throw InputError(fmt::format("{}: no camera file: no keys with values", path));
     camera_.name = path;
   }
@@ -207,8 +202,16 @@ class Reader {
 }  // namespace
 
 Camera read_yaml_camera(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: the camera file cannot be read", path));
+  std::stringstream text;
+  text << file.rdbuf();
+  return read_yaml_camera_text(path, text.str());
+}
+
+Camera read_yaml_camera_text(const std::string& path, std::string text) {
   try {
-    return Reader(path).read();
+    return Reader(path, std::move(text)).read();
   } catch (const YAML::Exception& error) {
     throw InputError(
         fmt::format("{}:{}: not a readable camera file: {}", path, error.mark.line + 1, error.msg));

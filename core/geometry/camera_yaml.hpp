@@ -15,4 +15,7 @@ namespace stillpoint {
 ///         that are missing or out of range.
 [[nodiscard]] Camera read_yaml_camera(const std::string& path);
 
+/// The same of a text that is at hand; `path` names it in messages.
+[[nodiscard]] Camera read_yaml_camera_text(const std::string& path, std::string text);
+
 }  // namespace stillpoint

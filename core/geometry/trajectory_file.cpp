@@ -39,9 +39,9 @@ enum class Fault { none, columns, number, not_finite, quaternion };
 
 class Reader {
  public:
-  Reader(const std::string& path, std::optional<QuaternionOrder> order) : path_(path) {
+  Reader(const std::string& path, std::string_view text, std::optional<QuaternionOrder> order) : path_(path) {
     std::vector<TextLine> comments;
-    lines_ = read_text_lines(path, &comments);
+    lines_ = text_lines(text, &comments);
     layout_ = find_layout(lines_, comments);
     if (layout_.header_rows > 0) lines_.erase(lines_.begin());
     if (order && !layout_.is_matrix) layout_.set_order(*order);
@@ -189,7 +189,12 @@ class Reader {
 }  // namespace
 
 TrajectoryFile read_trajectory_file(const std::string& path, std::optional<QuaternionOrder> order) {
-  return Reader(path, order).read();
+  return Reader(path, read_text(path), order).read();
+}
+
+TrajectoryFile read_trajectory_text(const std::string& path, std::string_view text,
+                                    std::optional<QuaternionOrder> order) {
+  return Reader(path, text, order).read();
 }
 
 }  // namespace stillpoint

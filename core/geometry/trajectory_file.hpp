@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry/trajectory.hpp"
@@ -40,6 +41,10 @@ struct TrajectoryFile {
 /// are
 ///         bad for another reason than NaN, and one of which most poses repeat a stamp.
 [[nodiscard]] TrajectoryFile read_trajectory_file(const std::string& path,
+                                                  std::optional<QuaternionOrder> order = {});
+
+/// The same of a text that is at hand; `path` names it in messages.
+[[nodiscard]] TrajectoryFile read_trajectory_text(const std::string& path, std::string_view text,
                                                   std::optional<QuaternionOrder> order = {});
 
 }  // namespace stillpoint

@@ -43,6 +43,8 @@ SequenceOrigin origin_of(const FrameSource& source, const std::string& where, co
   origin.depth_offset_s = options.depth_offset_s;
   origin.truth = options.truth;
   origin.inverted_masks = options.inverted_masks;
+  origin.depth_scale = options.depth_scale;
+  origin.topics = options.topics;
   origin.camera = source.camera();
   origin.has_depth = source.has_depth();
   origin.fingerprint = sequence_fingerprint(source);
@@ -66,6 +68,8 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
   if (origin.depth_offset_s != 0) json["depth_offset_s"] = origin.depth_offset_s;
   if (origin.truth != PoseConvention::as_written) json["truth"] = to_string(origin.truth);
   if (origin.inverted_masks) json["inverted_masks"] = true;
+  if (origin.depth_scale) json["depth_scale"] = *origin.depth_scale;
+  if (!origin.topics.empty()) json["topics"] = origin.topics;
   json["fingerprint"] = origin.fingerprint;
   visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
   return json;
@@ -84,6 +88,8 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   origin.depth_offset_s = json.value("depth_offset_s", 0.0);
   origin.truth = convention_by_name(json.value("truth", std::string())).value_or(PoseConvention::as_written);
   origin.inverted_masks = json.value("inverted_masks", false);
+  if (json.contains("depth_scale")) origin.depth_scale = json.at("depth_scale").get<double>();
+  origin.topics = json.value("topics", std::string());
   json.at("fingerprint").get_to(origin.fingerprint);
   const nlohmann::json& camera = json.at("camera");
   visit_camera(origin.camera, [&camera](const char* name, auto& value) { camera.at(name).get_to(value); });

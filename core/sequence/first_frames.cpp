@@ -20,6 +20,7 @@ class FirstFrames final : public FrameSource {
   [[nodiscard]] bool has_masks() const override { return whole_->has_masks(); }
   [[nodiscard]] std::string why_not(FramePart part) const override { return whole_->why_not(part); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return whole_->warnings(); }
+  [[nodiscard]] std::vector<std::string> contents() const override { return whole_->contents(); }
 
  private:
   std::unique_ptr<FrameSource> whole_;

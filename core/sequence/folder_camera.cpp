@@ -4,33 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace stillpoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kSameSides =
     0.01;  // relative difference of the two scales: a rounded pixel, not another shape
 
 }  // namespace
 
-Camera camera_of_folder(const std::string& folder, const std::optional<Camera>& given,
+Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& given,
                         std::vector<std::string>& warnings) {
   if (given) return *given;
-  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"}) {
-    const fs::path path = fs::path(folder) / name;
-    std::error_code none;
-    if (fs::exists(path, none)) return read_camera(path.string());
-  }
-  fs::path whole = fs::absolute(folder).lexically_normal();
-  if (whole.filename().empty()) whole = whole.parent_path();
-  if (const auto own = camera_from_folder_name(whole.filename().string())) return *own;
-  if (const auto parents = camera_from_folder_name(whole.parent_path().filename().string())) return *parents;
+  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"})
+    if (folder.is_there(name)) return read_camera_text(folder.path_of(name), folder.read_text(name));
+  for (const std::string& name : folder.own_names())
+    if (const auto known = camera_from_folder_name(name)) return *known;
   Camera camera = camera_by_name("ros_default");
-  warnings.push_back(fmt::format(
-      "{}: the name tells no camera; {} is assumed (--camera NAME|FILE says which)", folder, camera.name));
+  warnings.push_back(
+      fmt::format("{}: the name tells no camera; {} is assumed (--camera NAME|FILE says which)",
+                  folder.place(), camera.name));
   return camera;
 }
 

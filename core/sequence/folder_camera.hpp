@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
+#include "core/sequence/file_store.hpp"
 
 namespace stillpoint {
 
 /// The camera of a folder: `given` (the command line's), else its `camera.toml` or `camera.yaml`, else what
-/// its own or its parent's name says, else ros_default, which is told.
+/// its own, its parent's or its archive's name says, else ros_default, which is told.
 /// @throws InputError for a camera file that cannot be read
-[[nodiscard]] Camera camera_of_folder(const std::string& folder, const std::optional<Camera>& given,
+[[nodiscard]] Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& given,
                                       std::vector<std::string>& warnings);
 
 /// The camera for images of this size. Images of the same sides are scaled. Images of other sides are taken

@@ -26,19 +26,10 @@ constexpr Names kColourFolders = {"rgb", "color", "colour", "image", "images"};
 constexpr Names kDepthFolders = {"depth", "aligned_depth"};
 constexpr Names kMaskFolders = {"mask", "masks"};
 
-std::string in(const std::string& folder, const std::string& name) {
-  return (fs::path(folder) / name).string();
-}
-
-bool is_there(const std::string& path) {
-  std::error_code none;
-  return fs::exists(path, none);
-}
-
 /// The first of these names that the folder holds.
-std::optional<std::string> first_there(const std::string& folder, Names names) {
+std::optional<std::string> first_there(const FileStore& folder, Names names) {
   for (const char* name : names)
-    if (is_there(in(folder, name))) return in(folder, name);
+    if (folder.is_there(name)) return name;
   return std::nullopt;
 }
 
@@ -60,21 +51,20 @@ std::optional<double> number_in(const fs::path& file) {
   return parse_number(std::string(before.base(), last.base()));
 }
 
-/// The images of a folder as a list: stamps by their names' numbers where all have one and no two the same,
-/// otherwise by their order. `prefix` stands before each name.
-ImageList images_of(const std::string& folder, const std::string& prefix) {
-  ImageList list{folder, {}};
+/// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have
+/// one and no two the same, otherwise by their order.
+ImageList images_of(const FileStore& store, const std::string& folder) {
+  ImageList list{store.path_of(folder), {}};
+  const std::string prefix = folder.empty() ? "" : folder + "/";
   std::vector<fs::path> files;
-  std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(folder, failed))
-    if (is_image_name(entry.path())) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  for (const std::string& name : store.entries(folder))
+    if (is_image_name(name)) files.emplace_back(name);
   std::set<double> stamps;
   bool numbered = true;
   for (const fs::path& file : files) {
     const auto number = number_in(file);
     numbered = numbered && number && stamps.insert(*number).second;
-    list.entries.push_back({number.value_or(0.0), prefix + file.filename().string(), 0});
+    list.entries.push_back({number.value_or(0.0), prefix + file.string(), 0});
   }
   if (numbered)
     std::sort(list.entries.begin(), list.entries.end(),
@@ -110,16 +100,16 @@ std::vector<std::string> other_places(const std::string& name, Names folders) {
 }
 
 /// Sends a list's names to where its images lie, all in the way the first of them that can be found is found.
-void find_images(const std::string& folder, ImageList& list, Names folders,
+void find_images(const FileStore& folder, ImageList& list, Names folders,
                  std::vector<std::string>& warnings) {
   constexpr std::size_t kTried = 5;
   const std::size_t tried = std::min(kTried, list.entries.size());
   for (std::size_t i = 0; i < tried; ++i)
-    if (is_there(in(folder, list.entries[i].file))) return;
+    if (folder.is_there(list.entries[i].file)) return;
   for (std::size_t i = 0; i < tried; ++i) {
     const auto places = other_places(list.entries[i].file, folders);
     const auto found = std::find_if(places.begin(), places.end(),
-                                    [&](const std::string& place) { return is_there(in(folder, place)); });
+                                    [&](const std::string& place) { return folder.is_there(place); });
     if (found == places.end()) continue;
     const auto way = found - places.begin();
     warnings.push_back(fmt::format("{}:{}: there is no {}, but {}; all its names were read so", list.path,
@@ -133,22 +123,22 @@ void find_images(const std::string& folder, ImageList& list, Names folders,
 }
 
 /// A last line that was cut in the middle of its name names nothing.
-void drop_cut_name(const std::string& folder, ImageList& list, std::vector<std::string>& warnings) {
+void drop_cut_name(const FileStore& folder, ImageList& list, std::vector<std::string>& warnings) {
   if (list.entries.size() < 2) return;
   const auto last = std::max_element(list.entries.begin(), list.entries.end(),
                                      [](const auto& a, const auto& b) { return a.line < b.line; });
   const auto& other = list.entries.front().line == last->line ? list.entries[1] : list.entries.front();
   const auto kind = [](const ListEntry& entry) { return fs::path(entry.file).extension(); };
-  std::error_code none;
-  if (kind(*last) == kind(other) || fs::is_regular_file(in(folder, last->file), none)) return;
+  if (kind(*last) == kind(other) || folder.is_file(last->file)) return;
   warnings.push_back(fmt::format("{}:{}: the last line was cut short in its name {} and skipped", list.path,
                                  last->line, in_quotes(last->file)));
   list.entries.erase(last);
 }
 
-ImageList read_image_list(const std::string& folder, const std::string& path, Names folders,
+ImageList read_image_list(const FileStore& folder, const std::string& name, Names folders,
                           std::vector<std::string>& warnings) {
-  ImageList list{path, read_list(path, warnings)};
+  const std::string path = folder.path_of(name);
+  ImageList list{path, read_list(path, folder.read_text(name), warnings)};
   find_images(folder, list, folders, warnings);
   drop_cut_name(folder, list, warnings);
   return list;
@@ -159,27 +149,25 @@ void convert(ImageList& list, StampUnit unit, double frame_rate) {
 }
 
 /// What a folder without lists holds that looks like a sequence of another kind.
-std::string what_else(const std::string& folder) {
+std::string what_else(const FileStore& folder) {
   std::vector<std::string> names;
-  std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(folder, failed)) {
-    const std::string name = entry.path().filename().string();
-    const std::string kind = entry.path().extension().string();
+  for (const std::string& name : folder.entries("")) {
+    const std::string kind = fs::path(name).extension().string();
     if (kind == ".bag" || kind == ".mcap" || kind == ".db3" || kind == ".tgz" || kind == ".zip" ||
-        kind == ".txt" || kind == ".csv" || fs::is_directory(entry.path(), failed))
+        kind == ".txt" || kind == ".csv" || folder.is_folder(name))
       names.push_back(name);
   }
-  std::sort(names.begin(), names.end());
   constexpr std::size_t kMost = 6;
   if (names.size() > kMost) names.resize(kMost), names.emplace_back("…");
   return names.empty() ? "" : fmt::format("; it holds {}", fmt::join(names, ", "));
 }
 
-void read_paired(const std::string& folder, const std::string& path, FolderLists& lists) {
+void read_paired(const FileStore& folder, const std::string& name, FolderLists& lists) {
+  const std::string path = folder.path_of(name);
   lists.colours.path = path;
   lists.depths = ImageList{path, {}};
   lists.paired = true;
-  for (ListedPair& pair : read_associations(path, lists.warnings)) {
+  for (ListedPair& pair : read_associations(path, folder.read_text(name), lists.warnings)) {
     lists.colours.entries.push_back(std::move(pair.colour));
     lists.depths->entries.push_back(std::move(pair.depth));
   }
@@ -188,13 +176,13 @@ void read_paired(const std::string& folder, const std::string& path, FolderLists
 }
 
 /// Images that nothing lists. @return false where there are none
-bool read_images_alone(const std::string& folder, FolderLists& lists) {
+bool read_images_alone(const FileStore& folder, FolderLists& lists) {
   const auto colours = first_there(folder, kColourFolders);
-  if (colours) lists.colours = images_of(*colours, fs::path(*colours).filename().string() + "/");
+  if (colours) lists.colours = images_of(folder, *colours);
   if (lists.colours.entries.empty()) lists.colours = images_of(folder, "");
   if (lists.colours.entries.empty()) return false;
   if (const auto depths = first_there(folder, kDepthFolders); depths && colours) {
-    lists.depths = images_of(*depths, fs::path(*depths).filename().string() + "/");
+    lists.depths = images_of(folder, *depths);
     lists.paired = lists.depths->entries.size() == lists.colours.entries.size() &&
                    unit_of(stamps_of(lists.colours)) == StampUnit::frames;
     if (lists.depths->entries.empty()) lists.depths.reset();
@@ -229,11 +217,11 @@ void settle_stamps(FolderLists& lists, double frame_rate) {
 
 }  // namespace
 
-FolderLists read_folder_lists(const std::string& folder, double frame_rate) {
+FolderLists read_folder_lists(const FileStore& folder, double frame_rate) {
   FolderLists lists;
-  const auto explain_unusual = [&lists](const std::string& path, const char* usual) {
-    if (fs::path(path).filename() != usual)
-      lists.warnings.push_back(fmt::format("{}: is read in place of {}", path, usual));
+  const auto explain_unusual = [&](const std::string& name, const char* usual) {
+    if (name != usual)
+      lists.warnings.push_back(fmt::format("{}: is read in place of {}", folder.path_of(name), usual));
   };
   if (const auto associations = first_there(folder, kAssociations)) {
     explain_unusual(*associations, "associations.txt");
@@ -249,7 +237,7 @@ FolderLists read_folder_lists(const std::string& folder, double frame_rate) {
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt nor images, expected a folder in the TUM "
                     "RGB-D layout{}",
-                    folder, what_else(folder)));
+                    folder.place(), what_else(folder)));
   }
   if (const auto masks = first_there(folder, kMaskLists))
     lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);

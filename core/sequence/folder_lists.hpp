@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sequence/file_store.hpp"
 #include "core/sequence/list_file.hpp"
 #include "core/sequence/stamps.hpp"
 
@@ -35,6 +36,6 @@ struct FolderLists {
 /// the images lie. Stamps are converted to seconds, all lists by the same rules (core/sequence/stamps.hpp).
 /// @param frame_rate Hz, of stamps that are frame numbers
 /// @throws InputError in one sentence where no images are named, with what was found instead
-[[nodiscard]] FolderLists read_folder_lists(const std::string& folder, double frame_rate);
+[[nodiscard]] FolderLists read_folder_lists(const FileStore& folder, double frame_rate);
 
 }  // namespace stillpoint

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "core/error.hpp"
@@ -13,20 +12,16 @@
 namespace stillpoint {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* kIclEnding = ".gt.freiburg";
 constexpr double kFewestShare = 0.5;  // of the frames; truth of fewer is told
 
-std::optional<std::string> find_truth(const std::string& folder) {
-  std::error_code none;
+/// The name of the file of ground truth.
+std::optional<std::string> find_truth(const FileStore& folder) {
   for (const char* name : {"groundtruth.txt", "groundtruth.csv", "ground_truth.txt", "gt.txt"})
-    if (const auto path = fs::path(folder) / name; fs::exists(path, none)) return path.string();
-  std::vector<std::string> others;
-  for (const auto& file : fs::directory_iterator(folder, none))
-    if (file.path().string().ends_with(kIclEnding)) others.push_back(file.path().string());
-  if (others.empty()) return std::nullopt;
-  return *std::min_element(others.begin(), others.end());
+    if (folder.is_there(name)) return name;
+  for (const std::string& name : folder.entries(""))
+    if (name.ends_with(kIclEnding)) return name;
+  return std::nullopt;
 }
 
 std::vector<double> stamps_of(const Trajectory& poses) {
@@ -51,21 +46,30 @@ std::string apart(const std::string& path, const Trajectory& poses, const std::v
 
 }  // namespace
 
-FolderTruth read_folder_truth(const std::string& folder, const std::vector<double>& frame_stamps,
+FolderTruth read_folder_truth(const FileStore& folder, const std::vector<double>& frame_stamps,
                               StampUnit unit, double frame_rate, PoseConvention convention) {
   FolderTruth truth;
-  const auto path = find_truth(folder);
-  if (!path) return truth;
-  truth.path = *path;
+  const auto name = find_truth(folder);
+  if (!name) return truth;
+  truth.path = folder.path_of(*name);
   TrajectoryFile file;
   try {
-    file = read_trajectory_file(*path);
+    file = read_trajectory_text(truth.path, folder.read_text(*name));
   } catch (const InputError& error) {
     truth.why_not = error.what();
     return truth;
   }
-  truth.warnings = std::move(file.warnings);
-  truth.poses = std::move(file.poses);
+  FolderTruth settled =
+      settle_truth(truth.path, std::move(file.poses), frame_stamps, unit, frame_rate, convention);
+  settled.warnings.insert(settled.warnings.begin(), file.warnings.begin(), file.warnings.end());
+  return settled;
+}
+
+FolderTruth settle_truth(const std::string& path, Trajectory poses, const std::vector<double>& frame_stamps,
+                         StampUnit unit, double frame_rate, PoseConvention convention) {
+  FolderTruth truth;
+  truth.path = path;
+  truth.poses = std::move(poses);
   const StampUnit own =
       unit_beside(stamps_of(truth.poses), frame_stamps, unit, frame_rate, kAssociationTolerance);
   for (StampedPose& pose : truth.poses) {
@@ -74,22 +78,22 @@ FolderTruth read_folder_truth(const std::string& folder, const std::vector<doubl
   }
   const int met = meetings(frame_stamps, stamps_of(truth.poses), kAssociationTolerance);
   if (met == 0) {
-    truth.why_not = apart(*path, truth.poses, frame_stamps);
+    truth.why_not = apart(path, truth.poses, frame_stamps);
     truth.poses.clear();
     return truth;
   }
   if (own != unit)
-    truth.warnings.push_back(fmt::format("{}: the stamps are {}, where those of the frames are {}", *path,
+    truth.warnings.push_back(fmt::format("{}: the stamps are {}, where those of the frames are {}", path,
                                          to_string(own), to_string(unit)));
   if (met < kFewestShare * static_cast<double>(frame_stamps.size()))
     truth.warnings.push_back(fmt::format("{}: has poses for {} of the {} frames; errors are of these alone",
-                                         *path, met, frame_stamps.size()));
-  if (path->ends_with(kIclEnding) && convention == PoseConvention::as_written)
+                                         path, met, frame_stamps.size()));
+  if (path.ends_with(kIclEnding) && convention == PoseConvention::as_written)
     truth.warnings.push_back(
         fmt::format("{}: ICL-NUIM's poses as published are mirrored in y against its PNG images; if these "
                     "are (rotations off by "
                     "degrees), `--truth mirrored-y` reads them rightly",
-                    *path));
+                    path));
   return truth;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/geometry/pose_convention.hpp"
 #include "core/geometry/trajectory.hpp"
+#include "core/sequence/file_store.hpp"
 #include "core/sequence/stamps.hpp"
 
 namespace stillpoint {
@@ -22,8 +23,13 @@ struct FolderTruth {
 /// cannot be read or meets no frame costs the truth, not the sequence.
 /// @param frame_stamps s, increasing; @param unit what they were written in; @param frame_rate Hz, of frame
 /// numbers
-[[nodiscard]] FolderTruth read_folder_truth(const std::string& folder,
-                                            const std::vector<double>& frame_stamps, StampUnit unit,
-                                            double frame_rate, PoseConvention convention);
+[[nodiscard]] FolderTruth read_folder_truth(const FileStore& folder, const std::vector<double>& frame_stamps,
+                                            StampUnit unit, double frame_rate, PoseConvention convention);
+
+/// Truth as it was read, in whatever unit and convention, made fit for frames: what read_folder_truth does
+/// once the file is read. @param path names it in messages
+[[nodiscard]] FolderTruth settle_truth(const std::string& path, Trajectory poses,
+                                       const std::vector<double>& frame_stamps, StampUnit unit,
+                                       double frame_rate, PoseConvention convention);
 
 }  // namespace stillpoint

@@ -17,8 +17,6 @@
 namespace stillpoint {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-
 constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 constexpr std::uint32_t kLargestSide = 16384;  // px
 
@@ -79,6 +77,8 @@ std::string other_format(const Bytes& bytes) {
   return fmt::format("is {}, which is not read; depth is expected as a PNG of 16 bits", kind);
 }
 
+}  // namespace
+
 std::string read_bytes(const std::string& path, Bytes& bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -99,13 +99,23 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   return {};
 }
 
-}  // namespace
-
 ImageRead read_image(const std::string& path) {
+  Bytes bytes;
   ImageRead result;
   try {
-    Bytes bytes, kept;
-    std::string fault = read_bytes(path, bytes);
+    const std::string fault = read_bytes(path, bytes);
+    if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);
+  } catch (const std::exception& error) {
+    result.problem = fmt::format("{} cannot be read", path);
+  }
+  return result.problem.empty() ? decode_image(path, std::move(bytes)) : result;
+}
+
+ImageRead decode_image(const std::string& path, Bytes bytes) {
+  ImageRead result;
+  try {
+    Bytes kept;
+    std::string fault = bytes.empty() ? "is empty (0 bytes)" : "";
     if (fault.empty() && bytes.size() >= kPngSignature.size() &&
         std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
       fault = check_png(bytes, kept);

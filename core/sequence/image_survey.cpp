@@ -41,8 +41,9 @@ bool is_plausible(double nearest_m, double median_m, double farthest_m) {
 
 }  // namespace
 
-std::string fault_of_depth(const std::string& path, const cv::Mat& image, cv::Size colour) {
-  if (image.type() != CV_16UC1) {
+std::string fault_of_depth(const std::string& path, const ImageRead& read, cv::Size colour) {
+  const cv::Mat& image = read.image;
+  if (image.type() != CV_16UC1 && !read.in_metres) {
     const bool is_float = image.depth() == CV_32F || image.depth() == CV_64F;
     return fmt::format("{} holds {} channel(s) of {} bits{}, expected depth as 1 channel of 16 bits", path,
                        image.channels(), 8 * image.elemSize1(), is_float ? " (floating point)" : "");
@@ -53,12 +54,12 @@ std::string fault_of_depth(const std::string& path, const cv::Mat& image, cv::Si
   return {};
 }
 
-DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour) {
+DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour, const ImageReader& read_image) {
   DepthSurvey survey;
   std::vector<std::uint16_t> values;
   double pixels = 0, zeros = 0;
   for (const std::string& path : paths) {
-    const ImageRead read = read_image(path);
+    ImageRead read = read_image(path);
     if (read.image.empty()) {
       if (survey.fault.empty() && read.is_other_format) survey.fault = read.problem;
       survey.read += read.is_other_format ? 1 : 0;
@@ -67,11 +68,16 @@ DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour) {
     // An image tool may write a frame without any depth in another kind.
     if (cv::countNonZero(strongest(read.image)) == 0) continue;
     ++survey.read;
-    if (const std::string fault = fault_of_depth(path, read.image, colour); !fault.empty()) {
+    if (const std::string fault = fault_of_depth(path, read, colour); !fault.empty()) {
       if (survey.fault.empty()) survey.fault = fault;
       continue;
     }
     ++survey.fit;
+    survey.in_metres = read.in_metres;
+    if (read.in_metres) {
+      read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
+      cv::min(read.image, kNoMeasurement - 1, read.image);
+    }
     constexpr int kStride = 3;
     for (int y = 0; y < read.image.rows; y += kStride)
       for (int x = 0; x < read.image.cols; x += kStride) {
@@ -99,7 +105,7 @@ std::optional<ScaleDoubt> doubt_scale(const DepthSurvey& survey, double scale) {
   return doubt;
 }
 
-MaskSurvey survey_masks(const ImagePaths& paths) {
+MaskSurvey survey_masks(const ImagePaths& paths, const ImageReader& read_image) {
   MaskSurvey survey;
   std::vector<cv::Mat> images;
   double white = 0, nonzero = 0, half_of_range = kMaskHalf;

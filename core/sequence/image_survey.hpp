@@ -15,22 +15,30 @@ namespace stillpoint {
 /// Paths of images, spread over the sequence.
 using ImagePaths = std::vector<std::string>;
 
+/// How an image is read by its path.
+using ImageReader = std::function<ImageRead(const std::string& path)>;
+
+/// Image units a metre in which a survey has depth that is in metres.
+inline constexpr double kMetresSurveyScale = 1000.0;
+
 /// Depth images by sample.
 struct DepthSurvey {
   int read = 0;       ///< images that could be read
   int fit = 0;        ///< of these, those that hold depth of the colour images' size
   std::string fault;  ///< of the first that does not fit, one sentence
   double nearest = 0, median = 0,
-         farthest = 0;  ///< 2, 50 and 98 % of all values of those that fit, in image units
-  double zeros = 0;     ///< share of pixels without a measurement
+         farthest = 0;     ///< 2, 50 and 98 % of all values of those that fit, in image units
+  double zeros = 0;        ///< share of pixels without a measurement
+  bool in_metres = false;  ///< the images were; the values are in kMetresSurveyScale units a metre
 };
 
 /// Depth images as sequences have them: 16 bits, one channel, the colour image's size; 65535 and 0 are no
-/// measurement.
+/// measurement. Or depth in metres, where the reader says so.
 /// @return why the image is no such depth, empty when it is
-[[nodiscard]] std::string fault_of_depth(const std::string& path, const cv::Mat& image, cv::Size colour);
+[[nodiscard]] std::string fault_of_depth(const std::string& path, const ImageRead& read, cv::Size colour);
 
-[[nodiscard]] DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour);
+[[nodiscard]] DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour,
+                                       const ImageReader& read_image = stillpoint::read_image);
 
 /// What cameras measure indoors: 2 % nearest and 98 % farthest, m.
 inline constexpr double kNearestPlausible = 0.33, kFarthestPlausible = 25.0;
@@ -58,7 +66,8 @@ struct MaskSurvey {
   double moving_share = 0.0;  ///< of all pixels
   cv::Size size;              ///< of the first that could be read
 };
-[[nodiscard]] MaskSurvey survey_masks(const ImagePaths& paths);
+[[nodiscard]] MaskSurvey survey_masks(const ImagePaths& paths,
+                                      const ImageReader& read_image = stillpoint::read_image);
 
 /// A mask image as 255 = moving, 0 = not, of its own size.
 [[nodiscard]] cv::Mat moving_pixels(const cv::Mat& image, MaskCoding coding);

@@ -42,9 +42,9 @@ bool is_header(std::string_view text) {
 /// The entries of a list's lines, one by one by `read`; those it finds malformed are skipped as long as they
 /// are few.
 template <typename T, typename Read>
-std::vector<T> read_lines(const std::string& path, const char* expected, std::vector<std::string>& warnings,
-                          const Read& read) {
-  std::vector<TextLine> lines = read_text_lines(path);
+std::vector<T> read_lines(const std::string& path, std::string_view text, const char* expected,
+                          std::vector<std::string>& warnings, const Read& read) {
+  std::vector<TextLine> lines = text_lines(text);
   if (!lines.empty() && is_header(lines.front().text)) lines.erase(lines.begin());
   std::vector<T> entries;
   std::string fault, last_fault;
@@ -107,8 +107,17 @@ bool lies_in_depth(std::string_view file) {
 }  // namespace
 
 std::vector<ListEntry> read_list(const std::string& path, std::vector<std::string>& warnings) {
+  return read_list(path, read_text(path), warnings);
+}
+
+std::vector<ListedPair> read_associations(const std::string& path, std::vector<std::string>& warnings) {
+  return read_associations(path, read_text(path), warnings);
+}
+
+std::vector<ListEntry> read_list(const std::string& path, std::string_view text,
+                                 std::vector<std::string>& warnings) {
   constexpr const char* kExpected = "a line of 'timestamp filename'";
-  auto entries = read_lines<ListEntry>(path, kExpected, warnings, [&](const TextLine& line) {
+  auto entries = read_lines<ListEntry>(path, text, kExpected, warnings, [&](const TextLine& line) {
     const auto columns = split_columns(line.text);
     if (columns.size() < 2)
       throw MalformedLine(
@@ -122,9 +131,10 @@ std::vector<ListEntry> read_list(const std::string& path, std::vector<std::strin
   return entries;
 }
 
-std::vector<ListedPair> read_associations(const std::string& path, std::vector<std::string>& warnings) {
+std::vector<ListedPair> read_associations(const std::string& path, std::string_view text,
+                                          std::vector<std::string>& warnings) {
   constexpr const char* kExpected = "a line of 't_rgb rgb/FILE t_depth depth/FILE'";
-  auto pairs = read_lines<ListedPair>(path, kExpected, warnings, [&](const TextLine& line) {
+  auto pairs = read_lines<ListedPair>(path, text, kExpected, warnings, [&](const TextLine& line) {
     const auto columns = split_columns(line.text);
     if (columns.size() != 4)
       throw MalformedLine(fmt::format("{}:{}: found {} columns in {}, expected {}", path, line.number,

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stillpoint {
@@ -28,11 +29,17 @@ struct ListedPair {
 ///         without entries.
 [[nodiscard]] std::vector<ListEntry> read_list(const std::string& path, std::vector<std::string>& warnings);
 
+/// The same of a list whose text is at hand; `path` names it in messages.
+[[nodiscard]] std::vector<ListEntry> read_list(const std::string& path, std::string_view text,
+                                               std::vector<std::string>& warnings);
+
 /// Reads `associations.txt`: `t_rgb rgb/… t_depth depth/…`, or depth first as ICL-NUIM writes it; the order
 /// is told by which name lies in a folder of depth. Sorted and cleared of repeats as read_list does, by the
 /// colour stamp.
 /// @throws InputError as read_list does.
 [[nodiscard]] std::vector<ListedPair> read_associations(const std::string& path,
+                                                        std::vector<std::string>& warnings);
+[[nodiscard]] std::vector<ListedPair> read_associations(const std::string& path, std::string_view text,
                                                         std::vector<std::string>& warnings);
 
 }  // namespace stillpoint

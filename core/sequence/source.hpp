@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,8 @@ class FrameSource {
   [[nodiscard]] virtual std::string why_not(FramePart) const { return {}; }
   /// What was mended while opening, one sentence each (unsorted lists, dropped duplicates, …).
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
+  /// What its file holds, a line each, where there is something to choose from: a bag's topics.
+  [[nodiscard]] virtual std::vector<std::string> contents() const { return {}; }
 };
 
 struct OpenOptions {
@@ -53,11 +56,20 @@ struct OpenOptions {
   PoseConvention truth = PoseConvention::as_written;  ///< what the ground truth's poses mean
   bool inverted_masks = false;                        ///< white is what is static
   double depth_offset_s = 0.0;                        ///< added to the depth images' stamps
+  std::string topics{};  ///< of a bag: `colour=/TOPIC,depth=…,info=…,truth=…`; empty = as they are found
+  /// Told how far what takes long on opening is (unpacking into the cache), from 0 to 1. What it throws ends
+  /// that.
+  std::function<void(const std::string& what, double share)> progress{};
 };
 
-/// Opens `FOLDER` (TUM RGB-D layout) or `generated:KIND`.
+/// Opens a recorded sequence or `generated:KIND`. A recorded one is a folder in the TUM RGB-D layout, an
+/// archive of one (.tar, .tgz, .tar.bz2, .zip, …), or a bag (ROS 1 .bag, ROS 2 .mcap and .db3, or rosbag2's
+/// folder).
 /// @throws InputError in one sentence when it is neither or cannot be used.
 [[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where,
                                                          const OpenOptions& options = {});
+
+/// Whether a file is an archive or a bag by its first bytes, whatever its name.
+[[nodiscard]] bool is_sequence_file(const std::string& path);
 
 }  // namespace stillpoint

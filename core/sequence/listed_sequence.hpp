@@ -1,30 +1,32 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/sequence/folder_lists.hpp"
 #include "core/sequence/image_survey.hpp"
+#include "core/sequence/sequence_input.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
 
-/// A folder in the TUM RGB-D layout or near it: which lists and images it may hold is said in
-/// folder_lists.hpp, which ground truth in folder_truth.hpp, which camera in folder_camera.hpp. Bonn and
-/// ICL-NUIM folders share it.
+/// A recorded sequence: the images that an input names, a folder in the TUM RGB-D layout or near it, an
+/// archive of one, or a bag of messages. What a folder may hold is said in folder_lists.hpp, folder_truth.hpp
+/// and folder_camera.hpp; what a bag may, in bag/bag_input.hpp. Bonn and ICL-NUIM folders share the layout.
 ///
 /// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, or as
 /// `associations.txt` pairs them where that is given. Whatever can be known before the first frame is told
 /// then, in warnings() and why_not(): a few images of each kind are looked at on opening.
-class TumFolder final : public FrameSource {
+class ListedSequence final : public FrameSource {
  public:
   /// @param options camera, frame_rate, depth_scale, truth, inverted_masks and depth_offset_s are used
-  /// @throws InputError in one sentence when the folder, its lists or its camera file cannot be used, or when
+  /// @throws InputError in one sentence when its lists or its camera cannot be used, or when
   /// not one of
   ///         its colour images can be read.
-  explicit TumFolder(const std::string& folder, const OpenOptions& options = {});
+  explicit ListedSequence(std::unique_ptr<SequenceInput> input, const OpenOptions& options = {});
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Camera& camera() const override { return camera_; }
@@ -37,6 +39,7 @@ class TumFolder final : public FrameSource {
   [[nodiscard]] bool has_masks() const override { return has_masks_; }
   [[nodiscard]] std::string why_not(FramePart part) const override;
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+  [[nodiscard]] std::vector<std::string> contents() const override { return input_->contents(); }
 
  private:
   struct Entry {
@@ -51,14 +54,17 @@ class TumFolder final : public FrameSource {
   int join(const ImageList& list, Part part);
   [[nodiscard]] cv::Size choose_camera();
   void survey_depth_images(cv::Size colour);
+  void question_scale(const DepthSurvey& survey);
   void survey_mask_images(cv::Size colour);
   void question_convention();
   [[nodiscard]] ImagePaths sample(Part part, std::size_t count) const;
   void read_depth(const Entry& entry, Frame& frame) const;
-  [[nodiscard]] std::string path_of(const std::string& file) const;
+  [[nodiscard]] ImageReader reader() const;
+  [[nodiscard]] std::string path_of(const std::string& file) const { return input_->path_of(file); }
   [[nodiscard]] const Entry& entry(int index) const { return frames_.at(static_cast<std::size_t>(index)); }
   [[nodiscard]] std::vector<double> stamps() const;
 
+  std::unique_ptr<SequenceInput> input_;
   std::string folder_, name_, colour_list_, depth_list_, mask_list_;
   OpenOptions options_;
   std::vector<Entry> frames_;

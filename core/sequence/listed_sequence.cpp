@@ -1,22 +1,19 @@
-#include "core/sequence/tum_folder.hpp"
+#include "core/sequence/listed_sequence.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <system_error>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/folder_camera.hpp"
-#include "core/sequence/folder_truth.hpp"
 #include "core/sequence/image_file.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kTruthMaxGap =
     0.05;  // s, between the ground-truth poses a frame's pose is interpolated from
@@ -24,33 +21,13 @@ constexpr double kFewestJoined = 0.7;                     // of the colour image
 constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
 constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted
 
-void check_folder(const std::string& folder) {
-  std::error_code error;
-  const fs::file_status status = fs::status(folder, error);
-  if (status.type() == fs::file_type::not_found)
-    throw InputError(fmt::format("{}: there is no such folder", folder));
-  if (error) throw InputError(fmt::format("{}: cannot be opened: {}", folder, error.message()));
-  if (!fs::is_directory(status))
-    throw InputError(fmt::format("{}: is a file, expected a folder in the TUM RGB-D layout", folder));
-  const fs::directory_iterator entries(folder, error);
-  if (error) throw InputError(fmt::format("{}: cannot be opened: {}", folder, error.message()));
-}
-
-bool is_there(const std::string& path) {
-  std::error_code none;
-  return fs::exists(path, none);
-}
-
 }  // namespace
 
-TumFolder::TumFolder(const std::string& folder, const OpenOptions& options)
-    : folder_(folder), options_(options) {
-  check_folder(folder);
-  fs::path whole = fs::absolute(folder).lexically_normal();
-  if (whole.filename().empty()) whole = whole.parent_path();
-  name_ = whole.filename().string();
+ListedSequence::ListedSequence(std::unique_ptr<SequenceInput> input, const OpenOptions& options)
+    : input_(std::move(input)), folder_(input_->place()), name_(input_->name()), options_(options) {
+  options_.progress = nullptr;  // of the opening alone
   read_lists();
-  FolderTruth truth = read_folder_truth(folder_, stamps(), unit_, options_.frame_rate, options_.truth);
+  FolderTruth truth = input_->truth(stamps(), unit_);
   ground_truth_ = std::move(truth.poses);
   if (!truth.why_not.empty()) why_not_[FramePart::truth] = truth.why_not;
   warnings_.insert(warnings_.end(), truth.warnings.begin(), truth.warnings.end());
@@ -59,25 +36,29 @@ TumFolder::TumFolder(const std::string& folder, const OpenOptions& options)
   if (has_masks_) survey_mask_images(size);
   question_convention();
   for (const auto& [part, sentence] : why_not_) warnings_.push_back(sentence);
+  for (std::string& sentence : warnings_) sentence = printable(std::move(sentence));
 }
 
-std::string TumFolder::path_of(const std::string& file) const { return (fs::path(folder_) / file).string(); }
+ImageReader ListedSequence::reader() const {
+  return [this](const std::string& file) { return input_->image(file); };
+}
 
-std::string TumFolder::why_not(FramePart part) const {
+std::string ListedSequence::why_not(FramePart part) const {
   const auto known = why_not_.find(part);
   return known == why_not_.end() ? std::string() : known->second;
 }
 
-std::vector<double> TumFolder::stamps() const {
+std::vector<double> ListedSequence::stamps() const {
   std::vector<double> all;
   all.reserve(frames_.size());
   for (const Entry& frame : frames_) all.push_back(frame.colour.timestamp);
   return all;
 }
 
-void TumFolder::read_lists() {
-  FolderLists lists = read_folder_lists(folder_, options_.frame_rate);
-  warnings_ = std::move(lists.warnings);
+void ListedSequence::read_lists() {
+  FolderLists lists = input_->lists();
+  warnings_ = input_->warnings();
+  warnings_.insert(warnings_.end(), lists.warnings.begin(), lists.warnings.end());
   colour_list_ = lists.colours.path;
   unit_ = lists.unit;
   for (ListEntry& colour : lists.colours.entries) frames_.push_back({std::move(colour), {}, {}});
@@ -85,7 +66,7 @@ void TumFolder::read_lists() {
   if (lists.masks) join_masks(*lists.masks);
 }
 
-void TumFolder::join_depth(FolderLists& lists) {
+void ListedSequence::join_depth(FolderLists& lists) {
   depth_list_ = lists.depths->path;
   for (ListEntry& depth : lists.depths->entries) depth.timestamp += options_.depth_offset_s;
   has_depth_ = true;
@@ -121,7 +102,7 @@ void TumFolder::join_depth(FolderLists& lists) {
   }
 }
 
-void TumFolder::join_masks(const ImageList& masks) {
+void ListedSequence::join_masks(const ImageList& masks) {
   mask_list_ = masks.path;
   has_masks_ = true;
   if (join(masks, &Entry::mask) == 0) {
@@ -130,14 +111,14 @@ void TumFolder::join_masks(const ImageList& masks) {
                                              mask_list_, kAssociationTolerance);
     return;
   }
-  const auto gone = [this](const Entry& e) { return e.mask && !is_there(path_of(e.mask->file)); };
+  const auto gone = [this](const Entry& e) { return e.mask && !input_->is_there(e.mask->file); };
   if (const auto first = std::find_if(frames_.begin(), frames_.end(), gone); first != frames_.end())
     warnings_.push_back(fmt::format(
         "{}:{}: {} is missing; {} mask(s) are, and their frames have no true mask", mask_list_,
         first->mask->line, first->mask->file, std::count_if(frames_.begin(), frames_.end(), gone)));
 }
 
-int TumFolder::join(const ImageList& list, Part part) {
+int ListedSequence::join(const ImageList& list, Part part) {
   std::vector<double> listed;
   for (const ListEntry& image : list.entries) listed.push_back(image.timestamp);
   const auto pairs = associate(stamps(), listed);
@@ -145,12 +126,12 @@ int TumFolder::join(const ImageList& list, Part part) {
   return static_cast<int>(pairs.size());
 }
 
-cv::Size TumFolder::choose_camera() {
-  camera_ = camera_of_folder(folder_, options_.camera, warnings_);
+cv::Size ListedSequence::choose_camera() {
+  camera_ = input_->camera(warnings_);
   if (options_.depth_scale) camera_.depth_scale = *options_.depth_scale;
   std::string first_problem;
   for (const Entry& frame : frames_) {
-    const ImageRead image = read_image(path_of(frame.colour.file));
+    const ImageRead image = input_->image(frame.colour.file);
     if (image.image.empty()) {
       if (first_problem.empty()) first_problem = fmt::format("line {}: {}", frame.colour.line, image.problem);
       continue;
@@ -162,27 +143,38 @@ cv::Size TumFolder::choose_camera() {
       fmt::format("{}: none of its {} images can be read; {}", colour_list_, frames_.size(), first_problem));
 }
 
-ImagePaths TumFolder::sample(Part part, std::size_t count) const {
+ImagePaths ListedSequence::sample(Part part, std::size_t count) const {
   std::vector<const ListEntry*> listed;
   for (const Entry& frame : frames_)
     if (frame.*part) listed.push_back(&*(frame.*part));
   ImagePaths paths;
   for (std::size_t i = 0; i < std::min(count, listed.size()); ++i) {
     const std::size_t at = listed.size() <= count ? i : i * (listed.size() - 1) / (count - 1);
-    paths.push_back(path_of(listed[at]->file));
+    paths.push_back(listed[at]->file);
   }
   return paths;
 }
 
-void TumFolder::survey_depth_images(cv::Size colour) {
-  const DepthSurvey survey = survey_depth(sample(&Entry::depth, kDepthSample), colour);
+void ListedSequence::survey_depth_images(cv::Size colour) {
+  const DepthSurvey survey = survey_depth(sample(&Entry::depth, kDepthSample), colour, reader());
   if (survey.fit == 0 && survey.read > 0) {
     has_depth_ = false;
     why_not_[FramePart::depth] = survey.fault;
     return;
   }
-  const auto doubt = doubt_scale(survey, camera_.depth_scale);
+  question_scale(survey);
+}
+
+void ListedSequence::question_scale(const DepthSurvey& survey) {
+  const auto doubt = doubt_scale(survey, survey.in_metres ? kMetresSurveyScale : camera_.depth_scale);
   if (!doubt) return;
+  if (survey.in_metres) {
+    warnings_.push_back(fmt::format(
+        "{}: depth in metres reads {:.2f} to {:.2f} m, {:.2f} m in the middle, which is no range of "
+        "a depth camera (`--depth-scale 1000` takes it for millimetres)",
+        depth_list_, doubt->nearest_m, doubt->farthest_m, doubt->median_m));
+    return;
+  }
   std::string sentence = fmt::format(
       "{}: at {:g} units a metre (camera {}) depth reads {:.2f} to {:.2f} m, {:.2f} m in the middle, which "
       "is no range of a depth "
@@ -197,8 +189,8 @@ void TumFolder::survey_depth_images(cv::Size colour) {
   warnings_.push_back(sentence);
 }
 
-void TumFolder::survey_mask_images(cv::Size colour) {
-  const MaskSurvey survey = survey_masks(sample(&Entry::mask, kMaskSample));
+void ListedSequence::survey_mask_images(cv::Size colour) {
+  const MaskSurvey survey = survey_masks(sample(&Entry::mask, kMaskSample), reader());
   if (survey.read == 0) return;
   mask_coding_ = survey.coding;
   if (survey.size != colour) {
@@ -222,7 +214,7 @@ void TumFolder::survey_mask_images(cv::Size colour) {
         options_.inverted_masks ? "leaving out `--invert-masks`" : "`--invert-masks`"));
 }
 
-void TumFolder::question_convention() {
+void ListedSequence::question_convention() {
   if (camera_.name == "bonn" && !ground_truth_.empty() && options_.truth == PoseConvention::as_written)
     warnings_.push_back(
         fmt::format("{}: Bonn's ground truth is the pose of a marker body, turned some 173 deg from the "
@@ -231,14 +223,14 @@ void TumFolder::question_convention() {
                     folder_));
 }
 
-double TumFolder::timestamp(int index) const { return entry(index).colour.timestamp; }
+double ListedSequence::timestamp(int index) const { return entry(index).colour.timestamp; }
 
-Frame TumFolder::read(int index) const {
+Frame ListedSequence::read(int index) const {
   const Entry& listed = entry(index);
   Frame frame;
   frame.index = index;
   frame.timestamp = listed.colour.timestamp;
-  const ImageRead image = read_image(path_of(listed.colour.file));
+  const ImageRead image = input_->image(listed.colour.file);
   frame.problem = image.problem;
   if (image.image.empty()) return frame;
   if (image.image.cols != camera_.width || image.image.rows != camera_.height) {
@@ -254,28 +246,31 @@ Frame TumFolder::read(int index) const {
   return frame;
 }
 
-void TumFolder::read_depth(const Entry& listed, Frame& frame) const {
+void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
   if (!listed.depth) {
     frame.problem = fmt::format("no depth image within {} s", kAssociationTolerance);
     return;
   }
   const std::string path = path_of(listed.depth->file);
-  ImageRead depth = read_image(path);
+  ImageRead depth = input_->image(listed.depth->file);
   if (depth.image.empty())
     frame.problem = depth.problem;
-  else if (std::string fault = fault_of_depth(path, depth.image, frame.gray.size()); !fault.empty())
+  else if (std::string fault = fault_of_depth(path, depth, frame.gray.size()); !fault.empty())
     frame.problem = std::move(fault);
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
   else {
-    // The largest value is what sensors write where they measured nothing.
-    depth.image.setTo(0, depth.image == 65535);
-    depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
+    frame.depth = depth.image;
+    if (!depth.in_metres) {
+      // The largest value is what sensors write where they measured nothing.
+      depth.image.setTo(0, depth.image == 65535);
+      depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
+    }
     frame.depth_timestamp = listed.depth->timestamp;
   }
 }
 
-FrameTruth TumFolder::truth(int index) const {
+FrameTruth ListedSequence::truth(int index) const {
   const Entry& listed = entry(index);
   FrameTruth truth;
   truth.world_from_camera = interpolate(ground_truth_, listed.colour.timestamp, kTruthMaxGap);
@@ -283,7 +278,7 @@ FrameTruth TumFolder::truth(int index) const {
     if (const auto near = nearest_pose(ground_truth_, listed.colour.timestamp, kAssociationTolerance))
       truth.world_from_camera = ground_truth_[*near].world_from_camera;
   if (listed.mask && has_masks_) {
-    const ImageRead mask = read_image(path_of(listed.mask->file));
+    const ImageRead mask = input_->image(listed.mask->file);
     if (!mask.image.empty() && mask.image.cols == camera_.width && mask.image.rows == camera_.height) {
       truth.moving = moving_pixels(mask.image, mask_coding_);
       if (options_.inverted_masks) truth.moving = truth.moving == 0;

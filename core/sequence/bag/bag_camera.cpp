@@ -1,0 +1,111 @@
+#include "core/sequence/bag/bag_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "core/text_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr std::uint32_t kSmallestSide = 32, kLargestSide = 16384;  // px
+constexpr double kFitRemarkable = 0.05;                            // px
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Camera's radial terms nearest to OpenCV's rational ones over the image, each place of the image weighing
+/// the same. @return the largest difference, px
+double fit_radial(Camera& camera, const std::vector<double>& d) {
+  const auto rational = [&](double r2) {
+    return (1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]))) / (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
+  };
+  constexpr int kSteps = 40;
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  const auto each_place = [&](const auto& visit) {
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; j <= kSteps; ++j) {
+        const double x = (camera.width * i / static_cast<double>(kSteps) - camera.cx) / camera.fx;
+        const double y = (camera.height * j / static_cast<double>(kSteps) - camera.cy) / camera.fy;
+        visit(x * x + y * y);
+      }
+  };
+  each_place([&](double r2) {
+    const double r = std::sqrt(r2);
+    const Eigen::Vector3d row(r * r2, r * r2 * r2, r * r2 * r2 * r2);
+    a += row * row.transpose(), b += row * (r * (rational(r2) - 1));
+  });
+  const Eigen::Vector3d k = a.ldlt().solve(b);
+  camera.k1 = k[0], camera.k2 = k[1], camera.k3 = k[2];
+  double worst = 0;
+  each_place([&](double r2) {
+    const double fitted = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
+    worst = std::max(worst, std::sqrt(r2) * std::abs(fitted - rational(r2)) * camera.fx);
+  });
+  return worst;
+}
+
+}  // namespace
+
+std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rectified,
+                                     const std::string& path, std::string& why_not,
+                                     std::vector<std::string>& warnings) {
+  Camera camera;
+  camera.name = "camera_info";
+  for (const std::uint32_t side : {info.width, info.height})
+    if (side < kSmallestSide || side > kLargestSide) {
+      why_not = fmt::format("{}: the camera's images are said to be {}x{} px", path, info.width, info.height);
+      return std::nullopt;
+    }
+  camera.width = static_cast<int>(info.width), camera.height = static_cast<int>(info.height);
+  if (is_rectified)
+    camera.fx = info.p[0], camera.fy = info.p[5], camera.cx = info.p[2], camera.cy = info.p[6];
+  else
+    camera.fx = info.k[0], camera.fy = info.k[4], camera.cx = info.k[2], camera.cy = info.k[5];
+  const bool is_finite = std::isfinite(camera.cx) && std::isfinite(camera.cy) && std::isfinite(camera.fx) &&
+                         std::isfinite(camera.fy);
+  if (!is_finite || camera.fx <= 0 || camera.fy <= 0) {
+    why_not = fmt::format("{}: the camera is not calibrated (its focal length is {:g})", path, camera.fx);
+    return std::nullopt;
+  }
+  std::vector<double> d = info.distortion;
+  if (is_rectified || std::all_of(d.begin(), d.end(), [](double v) { return v == 0; })) return camera;
+  const std::string model = lower(info.model);
+  const bool is_finite_too = std::all_of(d.begin(), d.end(), [](double v) { return std::isfinite(v); });
+  const bool is_rational = model == "rational_polynomial";
+  if (!is_finite_too ||
+      (!is_rational && model != "plumb_bob" && model != "brown conrady" && !model.empty()) || d.size() < 4 ||
+      d.size() > (is_rational ? 14 : 5)) {
+    why_not = fmt::format(
+        "{}: its distortion, {} with {} coefficients, is not supported; plumb_bob and rational_polynomial "
+        "are",
+        path, model.empty() ? "without a name" : in_quotes(info.model), d.size());
+    return std::nullopt;
+  }
+  d.resize(14, 0.0);
+  camera.k1 = d[0], camera.k2 = d[1], camera.p1 = d[2], camera.p2 = d[3], camera.k3 = d[4];
+  if (std::any_of(d.begin() + 8, d.end(), [](double v) { return v != 0; })) {
+    why_not = fmt::format("{}: its distortion has thin prism terms, which are not supported", path);
+    return std::nullopt;
+  }
+  if (d[5] != 0 || d[6] != 0 || d[7] != 0)
+    if (const double worst = fit_radial(camera, d); worst > kFitRemarkable)
+      warnings.push_back(
+          fmt::format("{}: its rational distortion is read as k1 {:.4f}, k2 {:.4f}, k3 {:.4f}, "
+                      "which is up to {:.2f} px off",
+                      path, camera.k1, camera.k2, camera.k3, worst));
+  return camera;
+}
+
+bool is_factory_default(const Camera& camera) {
+  return camera.fx == 525.0 && camera.fy == 525.0 && !camera.has_distortion();
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,226 @@
+#include "core/sequence/bag/topic_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <map>
+
+#include "core/error.hpp"
+#include "core/sequence/bag/messages.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr const char* kImage = "sensor_msgs/Image";
+constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
+constexpr const char* kInfo = "sensor_msgs/CameraInfo";
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+ImageTopic look_at(const MessageLog& log, std::size_t topic) {
+  ImageTopic image;
+  image.topic = topic;
+  const LoggedTopic& logged = log.topics()[topic];
+  image.is_compressed = logged.type == kCompressed;
+  try {
+    const Bytes head = log.read(topic, 0, kImageHeadBytes);
+    const ImageMessage message = image_message(head, logged.format, image.is_compressed, false);
+    image.encoding = message.encoding, image.frame = message.header.frame;
+    image.may_be_depth = message.may_be_depth(), image.is_float = message.is_float();
+    // compressed_image_transport gives depth that was not compressed for depth as plain PNG, and names no
+    // kind.
+    const std::string name = lower(logged.name);
+    if (image.is_compressed && message.encoding.find("8UC") == std::string::npos &&
+        name.find("depth") != std::string::npos && message.encoding.find("png") != std::string::npos)
+      image.may_be_depth = true;
+  } catch (const MalformedBytes&) {  // told where it is chosen and read
+  }
+  return image;
+}
+
+bool has_any(const std::string& name, std::initializer_list<const char*> parts) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+/// How likely a topic is the colour images; below 0 it is not.
+int colour_score(const ImageTopic& image, const LoggedTopic& topic) {
+  const std::string name = lower(topic.name);
+  if (image.may_be_depth || image.encoding.empty() || has_any(name, {"depth", "disparity", "confidence"}))
+    return -1;
+  int score = has_any(name, {"rgb", "color", "colour"}) ? 40 : 10;
+  if (has_any(name, {"infra", "/ir/", "ir_", "thermal"})) score = 1;
+  if (has_any(name, {"fisheye", "right"})) score -= 1;
+  if (!image.is_compressed) score += 4;
+  if (has_any(name, {"rect"})) score += 2;
+  if (image.encoding.starts_with("mono8") || image.encoding.starts_with("8UC1")) score -= 5;
+  return std::max(score, 0);
+}
+
+int depth_score(const ImageTopic& image, const LoggedTopic& topic) {
+  const std::string name = lower(topic.name);
+  if (!image.may_be_depth || has_any(name, {"disparity", "confidence", "infra", "/ir/"})) return -1;
+  int score = has_any(name, {"depth"}) ? 20 : 5;
+  if (has_any(name, {"aligned", "registered", "to_color", "to_rgb"})) score += 20;
+  if (has_any(name, {"rect"})) score += 2;
+  if (!image.is_compressed) score += 4;
+  return score;
+}
+
+std::size_t shared_parts(const std::string& a, const std::string& b) {
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()) && a[i] == b[i]; ++i) parts += a[i] == '/' ? 1 : 0;
+  return parts;
+}
+
+/// `colour=/a,depth=/b` taken apart.
+std::map<std::string, std::string> asked_for(const std::string& asked) {
+  std::map<std::string, std::string> topics;
+  for (std::size_t at = 0; at < asked.size();) {
+    const std::size_t end = std::min(asked.find(',', at), asked.size());
+    const std::string part = asked.substr(at, end - at);
+    at = end + 1;
+    const std::size_t equals = part.find('=');
+    std::string key = part.substr(0, equals);
+    if (key == "color" || key == "rgb") key = "colour";
+    if (equals == std::string::npos || equals + 1 == part.size() ||
+        (key != "colour" && key != "depth" && key != "info" && key != "truth"))
+      throw InputError(fmt::format(
+          "--topics: found '{}', expected colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC", part));
+    if (!topics.try_emplace(key, part.substr(equals + 1)).second)
+      throw InputError(fmt::format("--topics: {} is named twice", key));
+  }
+  return topics;
+}
+
+class Chooser {
+ public:
+  Chooser(const MessageLog& log, const std::string& asked) : log_(log), asked_(asked_for(asked)) {
+    for (std::size_t i = 0; i < log.topics().size(); ++i) {
+      const LoggedTopic& topic = log.topics()[i];
+      const bool is_image = topic.type == kImage || topic.type == kCompressed;
+      if (is_image && !topic.times.empty() && topic.format != WireFormat::other)
+        images_.push_back(look_at(log, i));
+    }
+  }
+
+  TopicChoice choose() {
+    TopicChoice choice;
+    if (const auto named = asked("colour", is_image))
+      choice.colour = look_at(log_, *named);
+    else if (const auto found = best(colour_score))
+      choice.colour = *found;
+    else
+      throw InputError(no_images());
+    if (const auto named = asked("depth", is_image))
+      choice.depth = look_at(log_, *named);
+    else if (!is_none("depth"))
+      choice.depth = best(depth_score);
+    if (const auto named = asked("info", [](const LoggedTopic& topic) { return topic.type == kInfo; }))
+      choice.info = named;
+    else if (!is_none("info"))
+      choice.info = info_beside(log_, choice.colour.topic);
+    choice.truth = asked(
+        "truth", [](const LoggedTopic& topic) { return is_tf_type(topic.type) || is_pose_type(topic.type); });
+    choice.no_truth = is_none("truth");
+    return choice;
+  }
+
+ private:
+  static bool is_image(const LoggedTopic& topic) { return topic.type == kImage || topic.type == kCompressed; }
+
+  [[nodiscard]] bool is_none(const std::string& key) const {
+    const auto named = asked_.find(key);
+    return named != asked_.end() && named->second == "none" && key != "colour";
+  }
+
+  /// The topic asked for. @throws InputError where it is not there or does not fit
+  [[nodiscard]] std::optional<std::size_t> asked(const std::string& key,
+                                                 const std::function<bool(const LoggedTopic&)>& fits) const {
+    const auto named = asked_.find(key);
+    if (named == asked_.end() || is_none(key)) return std::nullopt;
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < log_.topics().size(); ++i) {
+      const LoggedTopic& topic = log_.topics()[i];
+      if (fits(topic)) others.push_back(topic.name);
+      if (topic.name != named->second && topic.name != "/" + named->second) continue;
+      if (!fits(topic))
+        throw InputError(fmt::format("{}: {} holds {}, which cannot be read as {}", log_.path(), topic.name,
+                                     topic.type, key));
+      if (topic.times.empty())
+        throw InputError(fmt::format("{}: {} holds no messages", log_.path(), topic.name));
+      if (topic.format == WireFormat::other)
+        throw InputError(fmt::format("{}: {} is encoded as '{}', and ROS 1's and CDR are read", log_.path(),
+                                     topic.name, topic.encoding));
+      return i;
+    }
+    throw InputError(fmt::format("{}: has no topic {}; as {} it has {}", log_.path(), named->second, key,
+                                 others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", "))));
+  }
+
+  [[nodiscard]] std::optional<ImageTopic> best(int (*score)(const ImageTopic&, const LoggedTopic&)) const {
+    std::optional<ImageTopic> found;
+    int highest = -1;
+    for (const ImageTopic& image : images_) {
+      const int value = score(image, log_.topics()[image.topic]);
+      if (value > highest) found = image, highest = value;
+    }
+    return found;
+  }
+
+  [[nodiscard]] std::string no_images() const {
+    std::vector<std::string> holds;
+    for (const LoggedTopic& topic : log_.topics())
+      holds.push_back(fmt::format("{} ({}{})", topic.name, topic.type,
+                                  topic.format == WireFormat::other ? ", as '" + topic.encoding + "'" : ""));
+    constexpr std::size_t kMost = 8;
+    if (holds.size() > kMost) holds.resize(kMost), holds.emplace_back("…");
+    return fmt::format("{}: holds no colour images that can be read; it holds {}", log_.path(),
+                       holds.empty() ? "no messages" : fmt::format("{}", fmt::join(holds, ", ")));
+  }
+
+  const MessageLog& log_;
+  std::map<std::string, std::string> asked_;
+  std::vector<ImageTopic> images_;
+};
+
+}  // namespace
+
+TopicChoice choose_topics(const MessageLog& log, const std::string& asked) {
+  return Chooser(log, asked).choose();
+}
+
+std::optional<std::size_t> info_beside(const MessageLog& log, std::size_t images) {
+  std::optional<std::size_t> found;
+  std::size_t most = 1;  // the first slash, which all share
+  for (std::size_t i = 0; i < log.topics().size(); ++i) {
+    const LoggedTopic& topic = log.topics()[i];
+    if (topic.type != kInfo || topic.times.empty() || topic.format == WireFormat::other) continue;
+    const std::size_t shared = shared_parts(topic.name, log.topics()[images].name);
+    if (shared > most) found = i, most = shared;
+  }
+  return found;
+}
+
+std::vector<std::string> describe_topics(const MessageLog& log, const TopicChoice& choice,
+                                         std::optional<std::size_t> truth) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < log.topics().size(); ++i) {
+    const LoggedTopic& topic = log.topics()[i];
+    std::string as;
+    if (i == choice.colour.topic) as = "  read as colour";
+    if (choice.depth && i == choice.depth->topic) as += "  read as depth";
+    if (choice.info == i) as += "  read as info";
+    if (truth == i) as += "  read as truth";
+    lines.push_back(fmt::format("{}  {}  {} messages{}", topic.name, topic.type, topic.times.size(), as));
+  }
+  return lines;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/sequence/bag/message_log.hpp"
+
+namespace stillpoint {
+
+/// What a topic of images holds, by its first message.
+struct ImageTopic {
+  std::size_t topic = 0;  ///< index into MessageLog::topics
+  bool is_compressed = false;
+  std::string encoding;  ///< of the first message; empty where it cannot be read
+  std::string frame;     ///< that the images are of
+  bool may_be_depth = false, is_float = false;
+};
+
+/// Which topics of a recording are read as what.
+struct TopicChoice {
+  ImageTopic colour;
+  std::optional<ImageTopic> depth;
+  std::optional<std::size_t> info;   ///< sensor_msgs/CameraInfo of the colour images
+  std::optional<std::size_t> truth;  ///< asked for by name: tf, or a topic of poses
+  bool no_truth = false;             ///< `truth=none`
+};
+
+/// Chooses topics:
+/// - as `asked` says: `colour=/TOPIC,depth=/TOPIC,info=/TOPIC,truth=/TOPIC`, each may be left out, and all
+/// but
+///   colour may be `none` (`color` and `rgb` mean colour);
+/// - otherwise by what they hold and how drivers name them: depth is what has 16 bits or floats and, of
+/// several,
+///   what is registered to colour; colour what has 8 bits and is no infrared image, raw before compressed;
+///   info the one that shares most of its name with colour.
+/// @throws InputError in one sentence for a recording without images, an option that is none, and a topic
+/// that is not there or of another type
+[[nodiscard]] TopicChoice choose_topics(const MessageLog& log, const std::string& asked);
+
+/// The sensor_msgs/CameraInfo that belongs to a topic of images: the one that shares most of its name with
+/// it.
+[[nodiscard]] std::optional<std::size_t> info_beside(const MessageLog& log, std::size_t images);
+
+/// A line a topic: name, type, messages, what it is read as.
+[[nodiscard]] std::vector<std::string> describe_topics(const MessageLog& log, const TopicChoice& choice,
+                                                       std::optional<std::size_t> truth);
+
+}  // namespace stillpoint

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/sequence/folder_camera.hpp"
+#include "core/sequence/sequence_input.hpp"
+
+namespace stillpoint {
+namespace {
+
+class FolderInput final : public SequenceInput {
+ public:
+  FolderInput(std::unique_ptr<FileStore> files, const OpenOptions& options)
+      : files_(std::move(files)), options_(options) {
+    options_.progress = nullptr;  // of the opening alone
+  }
+
+  [[nodiscard]] std::string name() const override { return files_->own_names().front(); }
+  [[nodiscard]] const std::string& place() const override { return files_->place(); }
+  [[nodiscard]] FolderLists lists() override {
+    try {
+      return read_folder_lists(*files_, options_.frame_rate);
+    } catch (const InputError& error) {
+      // An archive that is cut off may lack what is missed.
+      if (files_->warnings().empty()) throw;
+      throw InputError(fmt::format("{} ({})", error.what(), files_->warnings().front()));
+    }
+  }
+  [[nodiscard]] FolderTruth truth(const std::vector<double>& stamps, StampUnit unit) override {
+    return read_folder_truth(*files_, stamps, unit, options_.frame_rate, options_.truth);
+  }
+  [[nodiscard]] Camera camera(std::vector<std::string>& warnings) override {
+    return camera_of_folder(*files_, options_.camera, warnings);
+  }
+  [[nodiscard]] ImageRead image(const std::string& file) const override {
+    Bytes bytes;
+    const std::string path = path_of(file);
+    const std::string fault = files_->read(file, bytes);
+    return fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
+  }
+  [[nodiscard]] bool is_there(const std::string& file) const override { return files_->is_there(file); }
+  [[nodiscard]] std::string path_of(const std::string& file) const override { return files_->path_of(file); }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return files_->warnings(); }
+
+ private:
+  std::unique_ptr<FileStore> files_;
+  OpenOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<SequenceInput> make_folder_input(std::unique_ptr<FileStore> files,
+                                                 const OpenOptions& options) {
+  return std::make_unique<FolderInput>(std::move(files), options);
+}
+
+}  // namespace stillpoint
