@@ -207,9 +207,9 @@ class ComparePanel final : public NamedPanel {
     ImGui::PopTextWrapPos();
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
     if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
-      ImGui::TableSetupColumn("");
-      ImGui::TableSetupColumn(session.run->name.c_str());
-      ImGui::TableSetupColumn(ghost.name.c_str());
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.2F);
+      ImGui::TableSetupColumn(session.run->name.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
+      ImGui::TableSetupColumn(ghost.name.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
       ImGui::TableHeadersRow();
       for (const FigurePair& pair : difference_.figures) {
         ImGui::TableNextRow();
