@@ -52,7 +52,7 @@ void generate(const GenerateOptions& options) {
   const int written = write_sequence(*sequence, options.out, write).frames;
   fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
   if (written < sequence->size())
-    fmt::print("stopped early; {}\n", written > 0 ? "what was filmed is a sequence" : "nothing was filmed");
+    fmt::print("stopped early; {}\n", written > 0 ? "what was rendered is a sequence" : "nothing was rendered");
   throw_if_interrupted();
 }
 
@@ -69,7 +69,7 @@ void add_generate_command(CLI::App& app) {
       ->required();
   command->add_option("--out", options->out, "the folder to write, created when missing")->required();
   command->add_option("--frames", options->frames, "how many frames; 0 = the kind's own length (300)");
-  command->add_option("--seed", options->seed, "another seed is another film of the same kind")
+  command->add_option("--seed", options->seed, "another seed is another sequence of the same kind")
       ->capture_default_str();
   command
       ->add_option("--threads", options->threads, "threads that make frames; any number gives the same files")

@@ -42,40 +42,18 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
        fmt::format("{:.2f} °", rotation_angle(r.world_from_camera.linear()) * 180.0 / 3.14159265358979)},
       {"Pose", r.estimated ? "estimated" : "predicted"},
       {"Pose begun from", std::string(to_string(r.pose_start))},
-      {"Refers to keyframe", r.reference_keyframe == kNone ? "–" : fmt::format("{}", r.reference_keyframe)},
-      {"Features found", fmt::format("{}", r.features_found)},
-      {"Features removed", fmt::format("{}", r.features_removed)},
-      {"Features kept", fmt::format("{}", r.features_kept)},
-      {"Mask", fmt::format("{:.2f} % of the pixels", 100.0 * r.mask_share)},
-      {"Motion rounds", r.motion_rounds > 0 ? fmt::format("{}", r.motion_rounds) : "–"},
-      {"Matches", fmt::format("{}", r.matches)},
-      {"Inliers", fmt::format("{}", r.inliers)},
-      {"Reprojection RMS", reprojection_text(r)},
-      {"Refining steps", fmt::format("{}", r.refine_iterations)},
-      {"Keyframe", yes(r.keyframe)},
-      {"New points", fmt::format("{}", r.new_points)},
-      {"Fused points", fmt::format("{}", r.fused_points)},
-      {"Culled points", fmt::format("{}", r.culled_points)},
-      {"Culled keyframes", fmt::format("{}", r.culled_keyframes)},
-      {"Map points", fmt::format("{}", r.map_points)},
-      {"Map keyframes", fmt::format("{}", r.map_keyframes)}};
-  if (r.bundle_iterations > 0) {
-    rows.emplace_back("Bundle RMS", fmt::format("{:.3f} → {:.3f} px in {} steps", r.bundle_rms_before_px,
-                                                r.bundle_rms_px, r.bundle_iterations));
-  } else {
-    rows.emplace_back("Bundle RMS", "none applied");
+      {"Refers to keyframe", r.reference_keyframe == kNone ? "–" : fmt::format("{}", r.reference_keyframe)}};
+  const auto row = record_of(session, r.index);
+  if (!row) return rows;
+  // Every figure of the one table that people are shown, as far as it is known here.
+  const std::vector<double> values = figures_of_frame(session.run->measured(), *row);
+  const auto& infos = frame_figure_infos();
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const bool own = static_cast<int>(i) >= first_method_figure();
+    if (std::isnan(values[i]) || (infos[i].title.empty() && !own)) continue;
+    rows.emplace_back(infos[i].title.empty() ? label_of(infos[i].name) : infos[i].title,
+                      shown_value(infos[i], values[i]));
   }
-  for (const FigureInfo& info : method_of(session.config).figures)
-    for (const MotionFigure& figure : r.motion_figures)
-      if (figure.name == info.name)
-        rows.emplace_back(label_of(info.name),
-                          fmt::format("{:.{}f} {}", figure.value, info.digits, to_string(info.unit)));
-  for (const FigureInfo& info : engine_of(session.config).figures)
-    for (const MotionFigure& figure : r.motion_figures)
-      if (figure.name == info.name)
-        rows.emplace_back(label_of(info.name),
-                          fmt::format("{:.{}f} {}", figure.value, info.digits, to_string(info.unit)));
-  rows.emplace_back("Took", fmt::format("{:.1f} ms", r.ms.total));
   return rows;
 }
 

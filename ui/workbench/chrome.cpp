@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_verdict.hpp"
 #include "core/odometry/engines.hpp"
+#include "ui/panels/run_series.hpp"
+#include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {
 namespace {
 
+constexpr float kVerdictHeight = 22.0F;                  // design px
 constexpr double kSpeeds[] = {1, 2, 5, 10, 15, 30, 60};  // frames a second
 
 /// What a status is called and how it is coloured.
@@ -191,6 +195,40 @@ void Workbench::draw_speed() {
     if (host_.speed) host_.speed(speed);
   }
   ImGui::EndCombo();
+}
+
+void Workbench::draw_verdict() {
+  const Theme& theme = frame_->theme;
+  const float scale = frame_->scale, height = std::round(kVerdictHeight * scale);
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  ImGui::PushFont(frame_->fonts.small);
+  const float y = low.y + 0.5F * (height - ImGui::GetFontSize()) - scale,
+              right = frame_->size.x - 12.0F * scale;
+  float x = 12.0F * scale;
+  const auto put = [&](const std::string& text, Rgb colour) {
+    if (x >= right) return;
+    draw_clipped_text({x, y}, text, right - x, to_u32(colour));
+    x += ImGui::CalcTextSize(text.c_str()).x + 16.0F * scale;
+  };
+  if (const auto row = record_of(*session_, session_->current->index)) {
+    const FrameVerdict verdict = frame_verdict(*session_->run, *row, hurt_frames(session_->debug));
+    const Rgb bad = role_colour(Role::kRemoved, theme.name), good = role_colour(Role::kKept, theme.name);
+    for (const FrameVerdict::Part& part : verdict.parts) {
+      if (x < right)
+        ImGui::GetWindowDrawList()->AddCircleFilled({x + 3.0F * scale, y + 0.5F * ImGui::GetFontSize()},
+                                                    3.0F * scale,
+                                                    to_u32(part.tone == Tone::bad    ? bad
+                                                           : part.tone == Tone::good ? good
+                                                                                     : theme.text_dim));
+      x += 11.0F * scale;
+      put(part.text, theme.text);
+    }
+    put(verdict.sentence, verdict.bad ? role_colour(Role::kWarning, theme.name) : theme.text_dim);
+  } else {
+    put("This frame has not been processed yet.", theme.text_dim);
+  }
+  ImGui::PopFont();
+  ImGui::SetCursorScreenPos({0.0F, low.y + height});
 }
 
 void Workbench::draw_status_bar(float height) {

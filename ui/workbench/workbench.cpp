@@ -150,7 +150,10 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
   const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
-  if (session != nullptr) draw_toolbar();
+  if (session != nullptr) {
+    draw_toolbar();
+    draw_verdict();
+  }
   const float top = ImGui::GetCursorScreenPos().y;
   tiles_area_ = {gap, top, frame.size.x - 2.0F * gap, frame.size.y - top - status - 1.0F};
   if (session != nullptr)

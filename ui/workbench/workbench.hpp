@@ -106,6 +106,7 @@ class Workbench {
   void draw_menu_bar();
   void draw_menu_row();
   void draw_toolbar();
+  void draw_verdict();
   void draw_transport();
   void draw_frame_slider(float width);
   void draw_speed();

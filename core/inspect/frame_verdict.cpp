@@ -1,0 +1,140 @@
+#include "core/inspect/frame_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/median.hpp"
+#include "core/run/worst_frames.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr double kWorstShare = 0.1;  // of the frames, from the worst one on
+constexpr double kTimesUsual = 2.0;  // a bad value is that far off the run's median
+constexpr double kManyOnDynamic =
+    0.15;  // share of a pose's inliers: more on dynamic objects explain an error
+constexpr double kLowIou = 0.5;
+
+const FigureInfo& info_of(int figure) { return frame_figure_infos()[static_cast<std::size_t>(figure)]; }
+
+std::string ordinal(int n) {
+  const int tens = n % 100;
+  const char* ending = tens >= 11 && tens <= 13 ? "th"
+                       : n % 10 == 1            ? "st"
+                       : n % 10 == 2            ? "nd"
+                       : n % 10 == 3            ? "rd"
+                                                : "th";
+  return fmt::format("{}{}", n, ending);
+}
+
+/// A figure of one frame among those of its run.
+struct Standing {
+  double value = 0.0, median = 0.0;
+  int rank = 0, of = 0;  // 1 = the worst
+  bool bad = false;
+};
+
+std::optional<Standing> standing_of(const MeasuredFrames& frames, int figure, std::size_t row) {
+  std::vector<double> values = frame_figure_values(frames, figure);
+  Standing standing{.value = values[row]};
+  if (!std::isfinite(standing.value)) return std::nullopt;
+  const bool low_is_bad = info_of(figure).worse == WorseWhen::low;
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  standing.of = static_cast<int>(values.size());
+  standing.rank = 1 + static_cast<int>(std::count_if(values.begin(), values.end(), [&](double value) {
+                    return low_is_bad ? value < standing.value : value > standing.value;
+                  }));
+  standing.median = median_of(values);
+  const bool among_worst = standing.rank <= std::max(1.0, std::ceil(kWorstShare * standing.of));
+  standing.bad = among_worst && (low_is_bad ? kTimesUsual * standing.value < standing.median
+                                            : standing.value > kTimesUsual * standing.median);
+  return standing;
+}
+
+std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+
+/// What was recorded that explains a bad pose, likeliest first.
+std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
+  const FrameRecord& record = run.records[row];
+  const FrameScores* scores = row < run.scores.size() && run.scores[row].known ? &run.scores[row] : nullptr;
+  if (scores != nullptr && record.inliers > 0 &&
+      scores->dynamic_inliers > kManyOnDynamic * static_cast<double>(record.inliers)) {
+    const std::optional<double> recall = scores->mask.recall();
+    return fmt::format("{} of {} inliers lie on dynamic objects{}", scores->dynamic_inliers, record.inliers,
+                       recall ? fmt::format("; the mask holds {} of these", percent(*recall)) : "");
+  }
+  if (removal_hurt) return "solved without removal, the step is better";
+  if (!record.note.empty()) return record.note;
+  const auto inliers = standing_of(run.measured(), frame_figure("inliers"), row);
+  if (inliers && inliers->bad)
+    return fmt::format("the pose rests on {:.0f} inliers, usually {:.0f}", inliers->value, inliers->median);
+  if (const auto residual = standing_of(run.measured(), frame_figure("residual"), row);
+      residual && residual->bad)
+    return fmt::format("inliers miss by {:.2f} px, usually {:.2f}", residual->value, residual->median);
+  if (scores != nullptr && scores->mask.iou() && *scores->mask.iou() < kLowIou)
+    return fmt::format("the mask agrees with the ground truth to {} (IoU)", percent(*scores->mask.iou()));
+  return "nothing recorded explains it";
+}
+
+FrameVerdict without_pose(const FrameRecord& record) {
+  FrameVerdict verdict;
+  verdict.bad = true;
+  verdict.parts.push_back({std::string(to_string(record.status)), Tone::bad});
+  verdict.sentence =
+      record.note.empty() ? "No pose could be estimated." : fmt::format("No pose: {}.", record.note);
+  return verdict;
+}
+
+}  // namespace
+
+FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vector<int>& hurt) {
+  const FrameRecord& record = run.records[row];
+  if (record.status == FrameStatus::lost || record.status == FrameStatus::unreadable)
+    return without_pose(record);
+  FrameVerdict verdict;
+  const bool removal_hurt = std::binary_search(hurt.begin(), hurt.end(), record.index);
+  const FrameScores* scores = row < run.scores.size() && run.scores[row].known ? &run.scores[row] : nullptr;
+
+  const int figure = usual_figure(run.measured());
+  const auto standing = standing_of(run.measured(), figure, row);
+  if (standing)
+    verdict.parts.push_back(
+        {fmt::format("{} {}, {} of {}", shown_name(info_of(figure)),
+                     shown_value(info_of(figure), standing->value),
+                     standing->rank == 1 ? "worst" : ordinal(standing->rank) + " worst", standing->of),
+         standing->bad ? Tone::bad : Tone::good});
+  std::string mask = fmt::format("mask {:.1f} %", 100.0 * record.mask_share);
+  Tone of_mask = Tone::neutral;
+  if (scores != nullptr && scores->mask.iou()) {
+    mask += fmt::format(", IoU {}", percent(*scores->mask.iou()));
+    of_mask = *scores->mask.iou() < kLowIou ? Tone::bad : Tone::good;
+  }
+  verdict.parts.push_back({mask, of_mask});
+  if (scores != nullptr && record.inliers > 0) {
+    const bool many = scores->dynamic_inliers > kManyOnDynamic * static_cast<double>(record.inliers);
+    verdict.parts.push_back(
+        {fmt::format("{} of {} inliers on dynamic objects", scores->dynamic_inliers, record.inliers),
+         many ? Tone::bad : Tone::good});
+  } else if (figure != frame_figure("inliers") && record.inliers > 0) {
+    verdict.parts.push_back({fmt::format("{} inliers", record.inliers)});
+  }
+  if (record.direct.believed) verdict.parts.push_back({"aligned directly: too few matches"});
+  if (removal_hurt) verdict.parts.push_back({"removal hurt", Tone::bad});
+
+  verdict.bad = standing && standing->bad;
+  if (verdict.bad)
+    verdict.sentence =
+        fmt::format("{} where {} is usual: {}.", shown_value(info_of(figure), standing->value),
+                    shown_value(info_of(figure), standing->median), cause_of(run, row, removal_hurt));
+  else if (record.status == FrameStatus::initialised)
+    verdict.sentence = "The map begins here.";
+  else if (standing)
+    verdict.sentence =
+        fmt::format("As usual in this run (median {}).", shown_value(info_of(figure), standing->median));
+  return verdict;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,95 @@
+#include "core/inspect/frame_verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace stillpoint {
+namespace {
+
+using testing::HasSubstr;
+
+/// Ten tracked frames, each step off by 2 mm but for that of frame 5, by 40 mm; 60 inliers a frame.
+RunView run_with_a_bad_step() {
+  RunView run;
+  for (int i = 0; i < 10; ++i) {
+    FrameRecord record;
+    record.index = 100 + i;
+    record.timestamp = i / 30.0;
+    record.status = i == 0 ? FrameStatus::initialised : FrameStatus::tracked;
+    record.estimated = true;
+    record.inliers = 60;
+    record.mask_share = 0.033;
+    run.records.push_back(record);
+    if (i > 0)
+      run.evaluation.rpe_frame.errors.push_back({(i - 1) / 30.0, i / 30.0, i == 5 ? 0.040 : 0.002, 0.0});
+  }
+  return run;
+}
+
+std::vector<std::string> texts(const FrameVerdict& verdict) {
+  std::vector<std::string> all;
+  for (const FrameVerdict::Part& part : verdict.parts) all.push_back(part.text);
+  return all;
+}
+
+TEST(FrameVerdict, NamesInliersOnDynamicObjects) {
+  RunView run = run_with_a_bad_step();
+  run.scores.resize(10);
+  run.scores[5].known = true;
+  run.scores[5].dynamic_inliers = 31;
+  run.scores[5].mask = {.found_rightly = 12, .found_wrongly = 12, .missed = 88, .left_rightly = 1000};
+  const FrameVerdict verdict = frame_verdict(run, 5);
+  EXPECT_TRUE(verdict.bad);
+  EXPECT_EQ(verdict.sentence,
+            "40.00 mm where 2.00 mm is usual: 31 of 60 inliers lie on dynamic objects; the mask holds 12 % "
+            "of these.");
+  EXPECT_THAT(texts(verdict), testing::ElementsAre("Step error 40.00 mm, worst of 9", "mask 3.3 %, IoU 11 %",
+                                                   "31 of 60 inliers on dynamic objects"));
+  ASSERT_EQ(verdict.parts.size(), 3U);
+  for (const FrameVerdict::Part& part : verdict.parts) EXPECT_EQ(part.tone, Tone::bad) << part.text;
+}
+
+TEST(FrameVerdict, WithoutMasksNamesWhatElseWasRecorded) {
+  RunView run = run_with_a_bad_step();
+  EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("nothing recorded explains it"));
+  run.records[5].inliers = 22;
+  EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("the pose rests on 22 inliers, usually 60"));
+  run.records[5].note = "little was left without what is dynamic";
+  EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("little was left"));
+  EXPECT_THAT(frame_verdict(run, 5, {105}).sentence, HasSubstr("solved without removal, the step is better"));
+  EXPECT_THAT(texts(frame_verdict(run, 5, {105})), testing::Contains("removal hurt"));
+  EXPECT_THAT(texts(frame_verdict(run, 5, {104})), testing::Not(testing::Contains("removal hurt")));
+}
+
+TEST(FrameVerdict, AUsualFrameIsNotBlamed) {
+  const RunView run = run_with_a_bad_step();
+  const FrameVerdict verdict = frame_verdict(run, 3);
+  EXPECT_FALSE(verdict.bad);
+  EXPECT_EQ(verdict.sentence, "As usual in this run (median 2.00 mm).");
+  EXPECT_THAT(texts(verdict),
+              testing::ElementsAre("Step error 2.00 mm, 2nd worst of 9", "mask 3.3 %", "60 inliers"));
+  EXPECT_EQ(frame_verdict(run, 0).sentence, "The map begins here.");
+}
+
+TEST(FrameVerdict, AFrameWithoutAPoseSaysWhy) {
+  RunView run = run_with_a_bad_step();
+  run.records[4].status = FrameStatus::lost;
+  run.records[4].note = "too few inliers";
+  const FrameVerdict verdict = frame_verdict(run, 4);
+  EXPECT_TRUE(verdict.bad);
+  EXPECT_EQ(verdict.sentence, "No pose: too few inliers.");
+  EXPECT_THAT(texts(verdict), testing::ElementsAre("lost"));
+}
+
+TEST(FrameVerdict, WithoutGroundTruthGoesByInliers) {
+  RunView run = run_with_a_bad_step();
+  run.evaluation = {};
+  run.records[7].inliers = 12;
+  const FrameVerdict verdict = frame_verdict(run, 7);
+  EXPECT_TRUE(verdict.bad);
+  EXPECT_THAT(texts(verdict), testing::Contains("Inliers 12, worst of 10"));
+  EXPECT_FALSE(frame_verdict(run, 6).bad);
+}
+
+}  // namespace
+}  // namespace stillpoint
