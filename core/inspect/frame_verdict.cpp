@@ -79,6 +79,9 @@ std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
   return "nothing recorded explains it";
 }
 
+/// Through fmt, for GCC 12 warns falsely of a literal copied into an aggregate's string.
+FrameVerdict::Part part_of(const char* text, Tone tone) { return {fmt::format("{}", text), tone}; }
+
 FrameVerdict without_pose(const FrameRecord& record) {
   FrameVerdict verdict;
   verdict.bad = true;
@@ -100,12 +103,15 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
 
   const int figure = usual_figure(run.measured());
   const auto standing = standing_of(run.measured(), figure, row);
-  if (standing)
-    verdict.parts.push_back(
-        {fmt::format("{} {}, {} of {}", shown_name(info_of(figure)),
-                     shown_value(info_of(figure), standing->value),
-                     standing->rank == 1 ? "worst" : ordinal(standing->rank) + " worst", standing->of),
-         standing->bad ? Tone::bad : Tone::good});
+  if (standing) {
+    std::string text =
+        fmt::format("{} {}", shown_name(info_of(figure)), shown_value(info_of(figure), standing->value));
+    if (standing->rank == 1)
+      text += fmt::format(", worst of {}", standing->of);
+    else if (2 * standing->rank <= standing->of)
+      text += fmt::format(", {} worst of {}", ordinal(standing->rank), standing->of);
+    verdict.parts.push_back({std::move(text), standing->bad ? Tone::bad : Tone::good});
+  }
   std::string mask = fmt::format("mask {:.1f} %", 100.0 * record.mask_share);
   Tone of_mask = Tone::neutral;
   if (scores != nullptr && scores->mask.iou()) {
@@ -121,8 +127,9 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
   } else if (figure != frame_figure("inliers") && record.inliers > 0) {
     verdict.parts.push_back({fmt::format("{} inliers", record.inliers)});
   }
-  if (record.direct.believed) verdict.parts.push_back({"aligned directly: too few matches"});
-  if (removal_hurt) verdict.parts.push_back({"removal hurt", Tone::bad});
+  if (record.direct.believed)
+    verdict.parts.push_back(part_of("aligned directly: too few matches", Tone::neutral));
+  if (removal_hurt) verdict.parts.push_back(part_of("removal hurt", Tone::bad));
 
   verdict.bad = standing && standing->bad;
   if (verdict.bad)

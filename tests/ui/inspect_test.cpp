@@ -160,7 +160,7 @@ TEST_F(Inspecting, AClickedFeatureIsExplainedAndStaysChosen) {
   workbench_.set_layout(columns({"features_before", "feature"}));
   const cv::Mat before = render();
   // The picture's middle.
-  click(296, 376);
+  click(296, 388);
   point(1100, 690);
   const cv::Mat chosen = render();
   EXPECT_FALSE(images_agree(chosen(column(0, 2)), before(column(0, 2)), {2, 20.0, 0.0}));

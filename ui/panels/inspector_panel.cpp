@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/inspect/point_readings.hpp"
-#include "core/odometry/engines.hpp"
 #include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -15,8 +14,6 @@ namespace stillpoint {
 namespace {
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
-
-std::string yes(bool is) { return is ? "yes" : "no"; }
 
 std::string position_text(const Pose& pose) {
   const Eigen::Vector3d t = pose.translation();
