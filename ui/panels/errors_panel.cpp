@@ -121,7 +121,7 @@ class ErrorsPanel final : public NamedPanel {
   /// "12.3 mm over 1 s"; errors there are none of are not said to be 0.
   [[nodiscard]] static std::string figure(const ErrorStatistics& statistics, double factor, const char* unit,
                                           const std::string& delta) {
-    if (statistics.count == 0) return fmt::format("none over {}", delta);
+    if (statistics.count == 0) return fmt::format("– over {}", delta);
     return fmt::format("{:.3g} {} over {}", factor * statistics.rmse, unit, delta);
   }
 

@@ -62,7 +62,7 @@ class InputPanel final : public FramePanel {
     }
     ColourScale scale;
     scale.unit = "m";
-    scale.none = "none";
+    scale.none = "not measured";
     scale.none_colour = no_value_colour(frame.theme);
     scale.colour = [this](double z) { return colour_of(z); };
     const Texture& texture = depth_.get(frame, session.current, 0, [&] {
