@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -51,7 +52,10 @@ OpenedSource open_finished_run(const SourceArguments& arguments) {
   if (arguments.config.threads > 0) opened.config.run.threads = arguments.config.threads;
   opened.options.recorded = run.recorded;
   opened.options.recorded_baseline = baseline_beside(arguments, *run.recorded);
-  opened.options.no_images = opened.problem = run.no_images;
+  opened.options.no_images = run.no_images;
+  opened.problem = run.no_images.empty() ? run.recorded->cut_short : run.no_images;
+  if (!run.recorded->cut_short.empty())
+    std::fprintf(stderr, "stillpoint: warning: %s\n", run.recorded->cut_short.c_str());
   return opened;
 }
 

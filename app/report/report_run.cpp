@@ -60,9 +60,10 @@ std::vector<ReportGroup> open_report_runs(const std::vector<std::string>& folder
       groups.push_back({run.report.sequence, {}, {}});
     }
     ReportGroup& group = groups[place];
-    if (!run.opened.no_images.empty() &&
-        std::find(group.warnings.begin(), group.warnings.end(), run.opened.no_images) == group.warnings.end())
-      group.warnings.push_back(run.opened.no_images);
+    for (const std::string& warning : {run.opened.no_images, run.recorded().cut_short})
+      if (!warning.empty() &&
+          std::find(group.warnings.begin(), group.warnings.end(), warning) == group.warnings.end())
+        group.warnings.push_back(warning);
     group.runs.push_back(std::move(run));
   }
   for (ReportGroup& group : groups) label_runs(group);

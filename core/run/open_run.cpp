@@ -58,15 +58,15 @@ OpenedRun open_run(const fs::path& folder, const std::string& sequence) {
         "{}: has no {}, without which a run cannot be looked at; `stillpoint run … --force` writes it anew",
         folder.string(), kRecordsName));
   OpenedRun opened;
-  opened.recorded = std::make_shared<const RecordedRun>(read_records(folder));
-  const SequenceOrigin& origin = opened.recorded->origin;
-  if (!sequence.empty()) {
-    opened.source = open_as_it_was(origin, sequence, folder);
-    return opened;
-  }
+  const auto recorded = std::make_shared<RecordedRun>(read_records(folder));
+  opened.recorded = recorded;
+  const SequenceOrigin& origin = recorded->origin;
   try {
-    opened.source = open_as_it_was(origin, place_of(origin, folder), folder);
+    opened.source = open_as_it_was(origin, sequence.empty() ? place_of(origin, folder) : sequence, folder);
+    // A run that was killed left no ground truth: the sequence still has it.
+    if (!recorded->cut_short.empty()) recorded->ground_truth = opened.source->ground_truth();
   } catch (const InputError& error) {
+    if (!sequence.empty()) throw;
     opened.no_images = error.what();
     opened.source = make_recorded_source(opened.recorded, opened.no_images);
   }

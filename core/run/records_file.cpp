@@ -24,6 +24,9 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& bytes) {
   return static_cast<std::uint32_t>(::crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
 
+/// The file ends within a chunk.
+struct CutShort {};
+
 /// Reads chunk after chunk, and says what is wrong with the file in a sentence.
 class ChunkReader {
  public:
@@ -43,16 +46,17 @@ class ChunkReader {
   }
 
   /// The next chunk's content, unpacked; its kind goes to `kind`.
+  /// @throws CutShort where the file ends before the chunk does
   [[nodiscard]] std::vector<std::uint8_t> next(char& kind) {
     std::uint32_t size = 0, unpacked_size = 0, crc = 0;
     file_.read(&kind, 1);
     for (std::uint32_t* number : {&size, &unpacked_size, &crc})
       file_.read(reinterpret_cast<char*>(number), sizeof(*number));
-    if (!file_) throw cut_short();
+    if (!file_) throw CutShort();
     if (size > kMostBytes || unpacked_size > kMostBytes) throw damaged();
     packed_.resize(size);
     file_.read(reinterpret_cast<char*>(packed_.data()), size);
-    if (!file_) throw cut_short();
+    if (!file_) throw CutShort();
     if (crc_of(packed_) != crc) throw damaged();
     std::vector<std::uint8_t> content(unpacked_size);
     uLongf length = unpacked_size;
@@ -62,8 +66,8 @@ class ChunkReader {
     return content;
   }
 
-  [[nodiscard]] InputError cut_short() const {
-    return InputError(fmt::format("{}: is cut short after {} frames", path_.string(), frames_));
+  [[nodiscard]] std::string cut_short() const {
+    return fmt::format("{}: is cut short after {} frames", path_.string(), frames_);
   }
   [[nodiscard]] InputError damaged() const {
     return InputError(fmt::format("{}: is damaged after {} frames", path_.string(), frames_));
@@ -105,8 +109,15 @@ void read_tail(const std::vector<std::uint8_t>& content, RecordedRun& recorded) 
   run.orb_unit_ms = end.orb_unit_ms;
   run.interrupted = end.interrupted;
   recorded.ground_truth = std::move(end.ground_truth);
-  for (const FrameRecord& record : run.records)
-    if (record.estimated) run.live.push_back({record.timestamp, record.world_from_camera});
+}
+
+/// The run as far as its frames tell: poses are those of the moment, and nothing was scored.
+void do_without_tail(RecordedRun& recorded, const std::string& cut_short) {
+  recorded.cut_short = cut_short + "; what it holds is shown, without map, mask scores and adjusted poses";
+  recorded.run.scores.resize(recorded.run.records.size());
+  recorded.run.interrupted = true;
+  recorded.run.trajectory = recorded.run.live;
+  recorded.hash = run_hash(recorded.run.records);
 }
 
 }  // namespace
@@ -159,6 +170,7 @@ void RecordsWriter::put_chunk(char kind) {
   file_.put(kind);
   file_.write(reinterpret_cast<const char*>(numbers.data()), sizeof(numbers));
   file_.write(reinterpret_cast<const char*>(packed_.data()), static_cast<std::streamsize>(length));
+  file_.flush();
   if (!file_) error_ = errno != 0 ? errno : EIO;
 }
 
@@ -166,6 +178,7 @@ RecordedRun read_records(const std::filesystem::path& run_folder) {
   ChunkReader chunks(run_folder / kRecordsName);
   RecordedRun recorded;
   char kind = 0;
+  bool whole = false;
   try {
     const auto header = chunks.next(kind);
     if (kind != kHeader) throw chunks.damaged();
@@ -174,16 +187,22 @@ RecordedRun read_records(const std::filesystem::path& run_folder) {
       const auto content = chunks.next(kind);
       if (kind == kEnd) {
         read_tail(content, recorded);
+        whole = true;
         break;
       }
       if (kind != kFrame) throw chunks.damaged();
       read_frame(content, recorded);
     }
+  } catch (const CutShort&) {
+    if (recorded.run.records.empty()) throw InputError(chunks.cut_short());
   } catch (const ByteReader::Exhausted&) {
     throw chunks.damaged();
   } catch (const nlohmann::json::exception&) {
     throw chunks.damaged();
   }
+  for (const FrameRecord& record : recorded.run.records)
+    if (record.estimated) recorded.run.live.push_back({record.timestamp, record.world_from_camera});
+  if (!whole) do_without_tail(recorded, chunks.cut_short());
   if (recorded.run.scores.size() != recorded.run.records.size() ||
       run_hash(recorded.run.records) != recorded.hash)
     throw chunks.damaged();

@@ -14,7 +14,7 @@ namespace stillpoint {
 // looked at again without being run again.
 //
 //   8 bytes  "STILLREC"
-//   u32      version: 5
+//   u32      version: kRecordsVersion
 //   chunks, each
 //     u8     kind: 'H' header, 'F' frame, 'E' end
 //     u32    bytes of the content as it lies here
@@ -25,7 +25,8 @@ namespace stillpoint {
 // Numbers are little-endian. The header comes first and is JSON: the sequence (sequence_origin.hpp), the
 // config as TOML. Frames follow in order as they are processed: the record (record_codec.cpp has the order of
 // its fields), then the mask. The end comes once the run has ended: map, trajectories, scores, and, last, the
-// run's hash.
+// run's hash. Each chunk is handed to the system at once: a run that is killed leaves its frames, and is read
+// without what the end would have told.
 
 inline constexpr std::uint32_t kRecordsVersion = 6;
 inline constexpr const char* kRecordsName = "records.bin";
@@ -60,10 +61,12 @@ struct RecordedRun {
   std::vector<PackedMask> masks;  ///< one a record: what was removed
   Trajectory ground_truth;        ///< the sequence's, as it was
   std::string hash;               ///< run_hash of the records
+  std::string cut_short;  ///< one sentence where the file ends early: what it holds is there without map,
+                          ///< scores and adjusted poses; empty when it is whole
 };
 
-/// @throws InputError in one sentence for a file that is missing, no records file, of another version, cut
-/// short or damaged
+/// @throws InputError in one sentence for a file that is missing, no records file, of another version,
+/// damaged, or cut short before its first frame
 [[nodiscard]] RecordedRun read_records(const std::filesystem::path& run_folder);
 
 }  // namespace stillpoint

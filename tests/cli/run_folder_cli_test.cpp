@@ -104,10 +104,11 @@ TEST_F(RunFolder, WhatIsWrongIsToldInOneSentence) {
   expect_one_sentence(
       run_cli({"snapshot", sequence_.path(), "--baseline", run("none"), "--out", out_.path("i")}),
       "goes with a finished run's folder");
-  out_.truncate("runs/stillpoint/records.bin", 0.5);
+  out_.truncate("runs/stillpoint/records.bin", 0.001);
   for (const char* command : {"snapshot", "report"})
-    expect_one_sentence(run_cli({command, run("stillpoint"), "--out", out_.path("x")}), "is cut short after");
-  expect_one_sentence(run_cli({"view", run("stillpoint")}), "is cut short after");
+    expect_one_sentence(run_cli({command, run("stillpoint"), "--out", out_.path("x")}),
+                        "is cut short after 0");
+  expect_one_sentence(run_cli({"view", run("stillpoint")}), "is cut short after 0");
   fs::remove(run("stillpoint") + "/records.bin");
   expect_one_sentence(snapshot({}), "has no records.bin");
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 
+#include "core/error.hpp"
 #include "core/run/open_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_report.hpp"
@@ -48,7 +49,11 @@ class Records : public ::testing::Test {
   [[nodiscard]] std::string run_folder() const { return out_.path("run"); }
   [[nodiscard]] std::string records() const { return "run/records.bin"; }
   [[nodiscard]] std::string error_when_opened() const {
-    return input_error_of([&] { (void)open_run(run_folder()); });
+    try {
+      return open_run(run_folder()).recorded->cut_short;
+    } catch (const InputError& error) {
+      return error.what();
+    }
   }
 
   SmallSequence sequence_{kFrames};
@@ -158,6 +163,28 @@ TEST_F(Records, AChangedSequenceIsNoticed) {
   EXPECT_THAT(open_run(run_folder()).no_images, HasSubstr("no longer, the sequence"));
   EXPECT_THAT(input_error_of([&] { (void)open_run(run_folder(), sequence_.path()); }),
               HasSubstr("no longer, the sequence"));
+}
+
+TEST_F(Records, OfARunThatWasKilledOpenWithTheFramesTheyHold) {
+  const std::string whole = out_.read(records());
+  std::size_t least = kFrames, most = 0;
+  for (const double share : {0.3, 0.55, 0.8, 0.97}) {
+    out_.write(records(),
+               whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+    const OpenedRun opened = open_run(run_folder());
+    const RunResult& run = opened.recorded->run;
+    ASSERT_FALSE(run.records.empty()) << share;
+    least = std::min(least, run.records.size()), most = std::max(most, run.records.size());
+    EXPECT_THAT(opened.recorded->cut_short,
+                HasSubstr(fmt::format("is cut short after {} frames", run.records.size())));
+    EXPECT_EQ(run.scores.size(), run.records.size());
+    EXPECT_EQ(opened.recorded->masks.size(), run.records.size());
+    EXPECT_TRUE(run.interrupted);
+    EXPECT_EQ(opened.recorded->ground_truth.size(), source_->ground_truth().size());
+    for (std::size_t i = 0; i < run.records.size(); ++i)
+      EXPECT_EQ(run.records[i].inliers, run_.records[i].inliers) << i;
+  }
+  EXPECT_LT(least, most);
 }
 
 TEST_F(Records, BadFilesAreToldInOneSentence) {

@@ -169,6 +169,8 @@ void AppController::take_opened() {
     const FrameSource& source = *opened.place->source;
     workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
+    if (const auto& recorded = opened.place->options.recorded; recorded && !recorded->cut_short.empty())
+      workbench_.say(recorded->cut_short, true);
     if (!opened.place->options.no_images.empty()) workbench_.say(opened.place->options.no_images, true);
   }
   // Its worker finishes the frame at hand first, which must not hold up the interface.
