@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <cstdio>
+#include <filesystem>
 
 #include "app/progress.hpp"
 #include "core/error.hpp"
@@ -70,6 +72,59 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
 bool SequenceArguments::given() const {
   return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
          depth_offset_s != 0 || !truth.empty() || inverted_masks || !topics.empty();
+}
+
+namespace {
+
+/// Calls `visit(name, field)` for what says how a sequence is read.
+template <typename Arguments, typename Visit>
+void visit_reading(Arguments& arguments, Visit visit) {
+  visit("camera", arguments.camera);
+  visit("frames", arguments.frames);
+  visit("seed", arguments.seed);
+  visit("frame_rate", arguments.frame_rate);
+  visit("depth_scale", arguments.depth_scale);
+  visit("depth_offset", arguments.depth_offset_s);
+  visit("truth", arguments.truth);
+  visit("invert_masks", arguments.inverted_masks);
+  visit("topics", arguments.topics);
+}
+
+void read_word(const std::string& word, std::string& value) { value = word; }
+void read_word(const std::string& word, bool& value) { value = word == "true"; }
+template <typename Number>
+void read_word(const std::string& word, Number& value) {
+  (void)std::from_chars(word.data(), word.data() + word.size(), value);
+}
+
+}  // namespace
+
+std::vector<std::string> SequenceArguments::words() const {
+  SequenceArguments kept = *this, plain;
+  std::error_code none;
+  if (std::filesystem::is_regular_file(camera, none))
+    kept.camera = std::filesystem::absolute(camera).string();
+  std::vector<std::string> defaults, words;
+  visit_reading(plain, [&](const char*, const auto& value) { defaults.push_back(fmt::format("{}", value)); });
+  std::size_t at = 0;
+  visit_reading(kept, [&](const char* name, const auto& value) {
+    const std::string text = fmt::format("{}", value);
+    if (text != defaults[at++]) words.push_back(fmt::format("{}={}", name, text));
+  });
+  return words;
+}
+
+SequenceArguments SequenceArguments::from_words(const std::vector<std::string>& words) {
+  SequenceArguments arguments;
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    visit_reading(arguments, [&](const std::string& name, auto& value) {
+      if (word.compare(0, equals, name) == 0 && name.size() == equals)
+        read_word(word.substr(equals + 1), value);
+    });
+  }
+  return arguments;
 }
 
 OpenOptions SequenceArguments::options(const Config& config) const {

@@ -64,6 +64,10 @@ struct SequenceArguments {
   void add_to(CLI::App& command, const char* frames_option = "--frames");
   /// Whether any was given.
   [[nodiscard]] bool given() const;
+  /// What was given, "camera=freiburg1", …, to be kept and given again. Paths are made absolute.
+  [[nodiscard]] std::vector<std::string> words() const;
+  /// @param words those that are none are passed over
+  [[nodiscard]] static SequenceArguments from_words(const std::vector<std::string>& words);
   /// What open_sequence is given.
   /// @throws InputError for a camera or a convention that is none
   [[nodiscard]] OpenOptions options(const Config& config) const;

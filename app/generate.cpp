@@ -52,7 +52,8 @@ void generate(const GenerateOptions& options) {
   const int written = write_sequence(*sequence, options.out, write).frames;
   fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
   if (written < sequence->size())
-    fmt::print("stopped early; {}\n", written > 0 ? "what was rendered is a sequence" : "nothing was rendered");
+    fmt::print("stopped early; {}\n",
+               written > 0 ? "what was rendered is a sequence" : "nothing was rendered");
   throw_if_interrupted();
 }
 

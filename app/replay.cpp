@@ -72,13 +72,13 @@ void ReplayPlan::prepare_out(const std::string& folder, bool force) {
 void ReplayPlan::play(const ReplayShell& shell, std::function<void()> wake) {
   Settings settings;
   settings.look = look();
-  AppController desk(
-      {.open_source = [this](const std::string& where, const Config&) { return open_untimed(where); },
-       .config = config_,
-       .settings = settings,
-       .marks_folder = {},
-       .plays_when_opened = {},
-       .wake = std::move(wake)});
+  AppController desk({.open_source = [this](const std::string& where, const Config&,
+                                            const std::vector<std::string>&) { return open_untimed(where); },
+                      .config = config_,
+                      .settings = settings,
+                      .marks_folder = {},
+                      .plays_when_opened = {},
+                      .wake = std::move(wake)});
   if (!recording_.start.layout.empty())
     desk.workbench().set_layout(
         parse_layout(recording_.start.layout, recording_.file, desk.workbench().panel_names()));

@@ -41,7 +41,7 @@ class Viewer {
       : settings_path_(settings_path()),
         settings_(read_settings(settings_path_, panel_names(), &problem_)),
         window_(window_options(settings_)),
-        controller_(controller_options(arguments, config)) {
+        controller_(controller_options(config)) {
     if (!problem_.empty()) controller_.workbench().say(problem_, true);
     if (!arguments.layout.empty())
       controller_.workbench().set_layout(
@@ -51,11 +51,6 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   [[nodiscard]] AppController& controller() { return controller_; }
-
-  /// The sequence that was open when the window was last closed; empty when none was.
-  [[nodiscard]] std::string last_sequence() const {
-    return settings_.recent.empty() ? "" : settings_.recent.front();
-  }
 
   /// Records what is done from now on.
   void record(const std::string& file) {
@@ -87,10 +82,11 @@ class Viewer {
     return names;
   }
 
-  ControllerOptions controller_options(const ViewArguments& arguments, const Config& config) const {
-    return {.open_source = [source = arguments.place.source](
-                               const std::string& where,
-                               const Config& wanted) { return open_source_as(where, source, wanted); },
+  ControllerOptions controller_options(const Config& config) const {
+    return {.open_source =
+                [](const std::string& where, const Config& wanted, const std::vector<std::string>& reading) {
+                  return open_source_as(where, SequenceArguments::from_words(reading), wanted);
+                },
             .config = config,
             .settings = settings_,
             .marks_folder = settings_path_.empty() ? fs::path() : settings_path_.parent_path() / "sequences",
@@ -138,9 +134,9 @@ void view(const ViewArguments& arguments) {
   if (!arguments.place.place.empty()) place = open_source(arguments.place);
   Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
-    viewer.controller().show(std::move(*place), arguments.place.place);
-  else if (const std::string last = viewer.last_sequence(); !last.empty())
-    viewer.controller().open(last);
+    viewer.controller().show(std::move(*place), arguments.place.place, arguments.place.source.words());
+  else
+    viewer.controller().open_last(arguments.place.config.given() ? &viewer.controller().config() : nullptr);
   if (!arguments.record.empty()) viewer.record(arguments.record);
   viewer.run();
 }

@@ -24,7 +24,7 @@ inline ControllerOptions controller_options() {
   Config config;
   config.run.method = "stillpoint";
   return {.open_source =
-              [](const std::string& where, const Config& wanted) {
+              [](const std::string& where, const Config& wanted, const std::vector<std::string>&) {
                 OpenOptions options;
                 options.frames = where.starts_with("generated:") ? kDemoFrames : 0;
                 return untimed(open_sequence(where, options), wanted);

@@ -81,7 +81,7 @@ TEST(AppController, AThousandSequencesLeaveNothingBehind) {
   Offscreen offscreen({.width = 200, .height = 150});
   ControllerOptions options = controller_options();
   options.config.run.method = "none";
-  options.open_source = [](const std::string&, const Config& config) {
+  options.open_source = [](const std::string&, const Config& config, const std::vector<std::string>&) {
     return untimed(std::make_shared<const TinySource>(), config);
   };
   {
@@ -101,7 +101,8 @@ TEST(AppController, AThousandSequencesLeaveNothingBehind) {
     open(900);
     EXPECT_LE(next_texture(offscreen.gl()), texture + 1);
     EXPECT_LT(resident_mb() - before, 15.0);
-    EXPECT_EQ(controller.settings().recent, std::vector<std::string>{"tiny"});
+    ASSERT_EQ(controller.settings().recent.size(), 1U);
+    EXPECT_EQ(controller.settings().recent[0].where, "tiny");
     offscreen.make_current();
   }
   EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
@@ -127,7 +128,8 @@ TEST(AppController, WhatIsOpenedMeanwhileRunsWithTheConfigThatWasChosen) {
   const std::shared_future<void> opened(gate.get_future());
   ControllerOptions options = controller_options();
   options.config.run.method = "none";
-  options.open_source = [opened, &folder](const std::string& where, const Config& config) {
+  options.open_source = [opened, &folder](const std::string& where, const Config& config,
+                                          const std::vector<std::string>&) {
     if (where == "slow") opened.wait();
     return untimed(open_sequence(folder.path()), config);
   };
@@ -168,7 +170,8 @@ TEST(AppController, OpensBesideTheInterface) {
   std::promise<void> gate;
   const std::shared_future<void> opened(gate.get_future());
   ControllerOptions options = controller_options();
-  options.open_source = [opened](const std::string& where, const Config& config) {
+  options.open_source = [opened](const std::string& where, const Config& config,
+                                 const std::vector<std::string>&) {
     if (where == "bad") throw InputError("bad: is no sequence.");
     opened.wait();
     return untimed(std::make_shared<const TinySource>(), config);
@@ -200,7 +203,7 @@ TEST(AppController, OfSeveralAskedForTheLastIsOpened) {
   std::vector<std::string> asked;
   std::mutex mutex;
   ControllerOptions options = controller_options();
-  options.open_source = [&](const std::string& where, const Config& config) {
+  options.open_source = [&](const std::string& where, const Config& config, const std::vector<std::string>&) {
     const std::lock_guard lock(mutex);
     asked.push_back(where);
     return untimed(std::make_shared<const TinySource>(), config);
@@ -211,7 +214,63 @@ TEST(AppController, OfSeveralAskedForTheLastIsOpened) {
     EXPECT_TRUE(draw_until([&] { offscreen.draw([&](UiFrame& frame) { controller.draw(frame); }); },
                            [&] { return controller.idle() && controller.view(); }));
     EXPECT_EQ(asked, (std::vector<std::string>{"a", "c"}));
-    EXPECT_EQ(controller.settings().recent, std::vector<std::string>{"c"});
+    ASSERT_EQ(controller.settings().recent.size(), 1U);
+    EXPECT_EQ(controller.settings().recent[0].where, "c");
+    offscreen.make_current();
+  }
+}
+
+/// What an experiment consists of comes back with its sequence: how it was read, its constants, its frame.
+TEST(AppController, ASequenceComesBackAsItWasLeft) {
+  Offscreen offscreen({.width = 400, .height = 300});
+  std::mutex mutex;
+  std::vector<std::string> read;
+  std::string method;
+  const auto options_with = [&](Settings settings) {
+    ControllerOptions options = controller_options();
+    options.settings = std::move(settings);
+    options.open_source = [&](const std::string&, const Config& config,
+                              const std::vector<std::string>& reading) {
+      const std::lock_guard lock(mutex);
+      read = reading, method = config.run.method;
+      return untimed(std::make_shared<const TinySource>(), config);
+    };
+    return options;
+  };
+  const auto until_idle = [&](AppController& controller) {
+    return draw_until([&] { offscreen.draw([&](UiFrame& frame) { controller.draw(frame); }); },
+                      [&] { return controller.idle() && controller.view(); });
+  };
+  Settings left;
+  {
+    AppController controller(options_with({}));
+    controller.show(untimed(std::make_shared<const TinySource>(), controller.config()), "first",
+                    {"camera=freiburg2"});
+    ASSERT_TRUE(until_idle(controller));
+    Config other = controller.config();
+    other.run.method = "paper";
+    other.features.count = 777;
+    controller.request(request::RunAll{other});
+    ASSERT_TRUE(until_idle(controller));
+    controller.session()->request_frame(2);
+    ASSERT_TRUE(until_idle(controller));
+    controller.open("second");
+    ASSERT_TRUE(until_idle(controller));
+    left = controller.settings();
+    ASSERT_EQ(left.recent.size(), 2U);
+    EXPECT_EQ(left.recent[1].where, "first");
+    EXPECT_EQ(left.recent[1].reading, std::vector<std::string>{"camera=freiburg2"});
+    EXPECT_EQ(left.recent[1].frame, 2);
+    offscreen.make_current();
+  }
+  {
+    AppController controller(options_with(left));
+    controller.open("first");
+    ASSERT_TRUE(until_idle(controller));
+    EXPECT_EQ(read, std::vector<std::string>{"camera=freiburg2"});
+    EXPECT_EQ(method, "paper");
+    EXPECT_EQ(controller.config().features.count, 777);
+    EXPECT_EQ(controller.view()->current->index, 2);
     offscreen.make_current();
   }
 }

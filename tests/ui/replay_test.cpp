@@ -28,9 +28,9 @@ class Replay : public ::testing::Test {
     Offscreen offscreen({.width = 1280, .height = 800});
     std::string problem;
     {
-      AppController desk(
+      AppController controller(
           {.open_source =
-               [](const std::string& where, const Config& config) {
+               [](const std::string& where, const Config& config, const std::vector<std::string>&) {
                  OpenedSource place{
                      .source = open_sequence(where), .config = config, .options = {}, .problem = {}};
                  place.options.keep_times = false;
@@ -42,10 +42,11 @@ class Replay : public ::testing::Test {
            .plays_when_opened = {},
            .wake = {}});
       if (!layout.empty())
-        desk.workbench().set_layout(parse_layout(layout, recording.file, desk.workbench().panel_names()));
-      if (opens_) desk.open(folder_.path());
+        controller.workbench().set_layout(
+            parse_layout(layout, recording.file, controller.workbench().panel_names()));
+      if (opens_) controller.open(folder_.path());
       try {
-        replay(recording, desk, replay_shell(offscreen),
+        replay(recording, controller, replay_shell(offscreen),
                {.out = out_.path(), .patience_s = 60.0, .between = [] {}});
       } catch (const InputError& error) {
         problem = error.what();

@@ -194,9 +194,10 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
   settings.look = {ThemeName::kLight, 1.25F};
   settings.layout = default_layout();
   settings.window_size = {1234, 777};
-  remember(settings.recent, "a");
-  remember(settings.recent, "b");
-  remember(settings.recent, "a");
+  const RecentSequence a{"a", {"camera=freiburg3", "frames=60"}, {"run.method=paper"}, 17}, b{"b", {}, {}};
+  remember(settings.recent, {"a", {}, {}});
+  remember(settings.recent, b);
+  remember(settings.recent, a);
   const std::string path = folder.path("deep/settings.json");
   write_settings(path, settings);
   std::string problem;
@@ -205,8 +206,17 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
   EXPECT_EQ(read.look, settings.look);
   EXPECT_EQ(read.layout, settings.layout);
   EXPECT_EQ(read.window_size, settings.window_size);
-  EXPECT_THAT(read.recent, ElementsAre("a", "b"));
+  EXPECT_THAT(read.recent, ElementsAre(a, b));
   EXPECT_EQ(read_layout(path, panels_of(default_layout())), default_layout());
+}
+
+TEST(Settings, PathsOfEarlierVersionsAreRecentSequences) {
+  const TemporaryFolder folder;
+  folder.write("settings.json", std::string(R"({"recent": ["x", "y"]})"));
+  std::string problem;
+  const Settings read = read_settings(folder.path("settings.json"), {}, &problem);
+  EXPECT_EQ(problem, "");
+  EXPECT_THAT(read.recent, ElementsAre(RecentSequence{"x", {}, {}}, RecentSequence{"y", {}, {}}));
 }
 
 TEST(Settings, DamagedOnesGiveTheDefaults) {

@@ -65,7 +65,7 @@ AppController::AppController(ControllerOptions options)
     : options_(std::move(options)), workbench_(make_panels(), host()) {
   workbench_.set_layout(options_.settings.layout ? *options_.settings.layout
                                                  : default_layout(options_.config.run.method));
-  workbench_.set_recent(options_.settings.recent);
+  tell_recent();
 }
 
 AppController::~AppController() {
@@ -83,20 +83,22 @@ WorkbenchHost AppController::host() {
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
           .open = [this](const std::string& where) { open(where); },
-          .request =
-              [this](SessionRequest wanted) {
-                // What is opened next is run as this one is.
-                if (const auto* all = std::get_if<request::RunAll>(&wanted)) {
-                  options_.config = all->config;
-                  ++configured_;
-                }
-                if (session_) session_->request(std::move(wanted));
-              },
+          .request = [this](SessionRequest wanted) { request(std::move(wanted)); },
           .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
 }
 
+void AppController::request(SessionRequest wanted) {
+  // What is opened next is run as this one is.
+  if (const auto* all = std::get_if<request::RunAll>(&wanted)) {
+    options_.config = all->config;
+    ++configured_;
+  }
+  if (session_) session_->request(std::move(wanted));
+}
+
 std::unique_ptr<Session> AppController::make_session(const OpenedSource& place,
-                                                     const std::string& where) const {
+                                                     const RecentSequence& sequence) const {
+  const std::string& where = sequence.where;
   SessionOptions options = place.options;
   std::error_code none;
   if (options_.marks_folder)
@@ -105,44 +107,81 @@ std::unique_ptr<Session> AppController::make_session(const OpenedSource& place,
   auto session = std::make_unique<Session>(place.source, place.config, options);
   session->start(options_.wake ? options_.wake : [] {});
   // What is dynamic shows from the first frame that has another to be compared with.
-  session->request_frame(1);
+  session->request_frame(std::clamp(sequence.frame, 0, std::max(place.source->size() - 1, 1)));
   if (!where.empty() && where == options_.plays_when_opened) session->request_play(true);
   return session;
 }
 
-void AppController::begin_opening(const std::string& where, std::optional<OpenedSource> place) {
-  workbench_.set_opening(where);
-  Opened begun{.where = where,
+void AppController::begin_opening(RecentSequence sequence, const Config& config,
+                                  std::optional<OpenedSource> place) {
+  workbench_.set_opening(sequence.where);
+  Opened begun{.sequence = std::move(sequence),
                .problem = {},
                .place = std::move(place),
                .session = nullptr,
                .configured = configured_};
-  opening_ =
-      std::async(std::launch::async, [this, opened = std::move(begun), config = options_.config]() mutable {
-        give_way();
-        try {
-          if (!opened.place) opened.place = options_.open_source(opened.where, config);
-          opened.session = make_session(*opened.place, opened.where);
-        } catch (const std::exception& error) {
-          opened.problem = error.what();
-        }
-        if (options_.wake) options_.wake();
-        return std::move(opened);
-      });
+  opening_ = std::async(std::launch::async, [this, opened = std::move(begun), config]() mutable {
+    give_way();
+    try {
+      if (!opened.place)
+        opened.place = options_.open_source(opened.sequence.where, config, opened.sequence.reading);
+      opened.session = make_session(*opened.place, opened.sequence);
+    } catch (const std::exception& error) {
+      opened.problem = error.what();
+    }
+    if (options_.wake) options_.wake();
+    return std::move(opened);
+  });
+}
+
+RecentSequence AppController::known_as(const std::string& where) const {
+  const std::string name = lasting_name(where);
+  for (const RecentSequence& one : options_.settings.recent)
+    if (one.where == name) return one;
+  return {.where = where, .reading = {}, .settings = {}};
+}
+
+std::optional<Config> AppController::config_of(const RecentSequence& sequence) {
+  const auto& recent = options_.settings.recent;
+  if (std::find(recent.begin(), recent.end(), sequence) == recent.end()) return std::nullopt;
+  Config config;
+  config.run.threads = options_.config.run.threads;
+  for (const std::string& setting : sequence.settings) {
+    try {
+      set_parameter(config, setting);
+    } catch (const InputError& error) {
+      workbench_.say(fmt::format("{}: {} is not as it was left: {}", sequence.where, setting, error.what()));
+    }
+  }
+  return config;
 }
 
 void AppController::open(const std::string& where) {
-  if (opening_.valid())
+  if (opening_.valid()) {
     next_ = where;
-  else
-    begin_opening(where, std::nullopt);
+    return;
+  }
+  const RecentSequence sequence = known_as(where);
+  // A sequence that was never open is run as the one before it is.
+  if (const auto config = config_of(sequence)) options_.config = *config, ++configured_;
+  begin_opening(sequence, options_.config, std::nullopt);
 }
 
-void AppController::show(OpenedSource place, const std::string& where) {
+void AppController::open_last(const Config* config) {
+  if (options_.settings.recent.empty()) return;
+  const RecentSequence last = options_.settings.recent.front();
+  if (config != nullptr)
+    options_.config = *config;
+  else if (const auto left = config_of(last))
+    options_.config = *left;
+  begin_opening(last, options_.config, std::nullopt);
+}
+
+void AppController::show(OpenedSource place, const std::string& where, std::vector<std::string> reading) {
   if (opening_.valid()) opening_.get();
   given_ = place.source;
-  opened_from_ = where;
-  begin_opening(where, std::move(place));
+  open_ = {.where = where, .reading = std::move(reading), .settings = {}};
+  begin_opening(open_, options_.config, std::move(place));
 }
 
 void AppController::take_opened() {
@@ -152,20 +191,23 @@ void AppController::take_opened() {
   workbench_.set_opening("");
   if (next_) {
     // Another was asked for meanwhile: this one ends unseen.
-    begin_opening(*std::exchange(next_, std::nullopt), std::nullopt);
+    open(*std::exchange(next_, std::nullopt));
   } else if (!opened.problem.empty()) {
     workbench_.say(opened.problem, true);
     return;
   } else {
+    if (session_ && !open_.where.empty()) remember(options_.settings.recent, as_left());
     std::swap(session_, opened.session);
     // A finished run comes with a config of its own.
     if (opened.place->options.recorded)
       options_.config = opened.place->config;
     else if (opened.configured != configured_)
       session_->request_config(options_.config);
-    opened_from_ = opened.where;
-    remember(options_.settings.recent, lasting_name(opened.where));
-    workbench_.set_recent(options_.settings.recent);
+    open_ = opened.sequence;
+    open_.where = lasting_name(open_.where);
+    open_.settings = changed_settings(options_.config);
+    remember(options_.settings.recent, open_);
+    tell_recent();
     const FrameSource& source = *opened.place->source;
     workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
@@ -198,9 +240,23 @@ std::string AppController::title() const {
   return session_ ? fmt::format("{} - Stillpoint", session_->source().name()) : "Stillpoint";
 }
 
+void AppController::tell_recent() {
+  std::vector<std::string> names;
+  for (const RecentSequence& one : options_.settings.recent) names.push_back(one.where);
+  workbench_.set_recent(std::move(names));
+}
+
+RecentSequence AppController::as_left() const {
+  RecentSequence left = open_;
+  left.settings = changed_settings(options_.config);
+  left.frame = session_->view()->current->index;
+  return left;
+}
+
 Settings AppController::settings() const {
   Settings settings = options_.settings;
   settings.layout = workbench_.layout();
+  if (session_ && !open_.where.empty()) remember(settings.recent, as_left());
   return settings;
 }
 
@@ -209,7 +265,7 @@ RecordingStart AppController::recording_start(std::array<int, 2> size) const {
   if (const FrameSource* source = session_ ? &session_->source() : given_.get()) {
     start.sequence_name = source->name();
     start.sequence_frames = source->size();
-    start.opened_from = opened_from_;
+    start.opened_from = open_.where;
   }
   start.size = size;
   start.theme = options_.settings.look.theme == ThemeName::kDark ? "dark" : "light";

@@ -18,8 +18,10 @@ namespace stillpoint {
 /// What a AppController works with.
 struct ControllerOptions {
   /// Opens a folder, a finished run's too, or generated:KIND, to be run with a config; called on threads of
-  /// its own. Throws InputError.
-  std::function<OpenedSource(const std::string& where, const Config& config)> open_source;
+  /// its own. Throws InputError. @param reading how it is to be read, as RecentSequence has it
+  std::function<OpenedSource(const std::string& where, const Config& config,
+                             const std::vector<std::string>& reading)>
+      open_source;
   Config config{};
   Settings settings{};  ///< look, layout and recent sequences as they were left
   /// For marks in sequences that lie where nothing can be written; nothing: no marks are kept anywhere.
@@ -39,11 +41,16 @@ class AppController {
   AppController(const AppController&) = delete;
   AppController& operator=(const AppController&) = delete;
 
-  /// Opens a sequence soon; when that fails the one open stays, and the workbench says why. Of several asked
-  /// for meanwhile, the last is opened.
+  /// Opens a sequence soon, as it was left where it was open before; when that fails the one open stays, and
+  /// the workbench says why. Of several asked for meanwhile, the last is opened.
   void open(const std::string& where);
-  /// The same with what is open already.
-  void show(OpenedSource place, const std::string& where);
+  /// The same with what is open already. @param reading how it was read
+  void show(OpenedSource place, const std::string& where, std::vector<std::string> reading = {});
+  /// Opens the sequence that was open last, if any. @param config null: as it was left
+  void open_last(const Config* config);
+
+  /// Has the session do something, as panels ask for it.
+  void request(SessionRequest wanted);
 
   /// Draws the workbench, takes dropped folders, and takes in what was opened.
   void draw(UiFrame& frame);
@@ -67,24 +74,32 @@ class AppController {
 
  private:
   struct Opened {
-    std::string where, problem;
+    RecentSequence sequence;  ///< what it is and how it is read
+    std::string problem;
     std::optional<OpenedSource> place;
     std::unique_ptr<Session> session;
     int configured = 0;  ///< configured_ when it began
   };
 
   WorkbenchHost host();
-  void begin_opening(const std::string& where, std::optional<OpenedSource> place);
+  void begin_opening(RecentSequence sequence, const Config& config, std::optional<OpenedSource> place);
+  /// As it was left, where it was open before.
+  [[nodiscard]] RecentSequence known_as(const std::string& where) const;
+  /// The config a sequence was left with; nothing where it was never open.
+  [[nodiscard]] std::optional<Config> config_of(const RecentSequence& sequence);
   void take_opened();
+  void tell_recent();
+  /// The sequence shown, with its constants and frame as they are now.
+  [[nodiscard]] RecentSequence as_left() const;
   [[nodiscard]] std::unique_ptr<Session> make_session(const OpenedSource& place,
-                                                      const std::string& where) const;
+                                                      const RecentSequence& sequence) const;
 
   ControllerOptions options_;
   Workbench workbench_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<const FrameSource> given_;  // the one shown first, while it is not in session_ yet
-  std::string opened_from_;
-  int configured_ = 0;  // how often the config was changed
+  RecentSequence open_;                       // the sequence shown
+  int configured_ = 0;                        // how often the config was changed
   std::future<Opened> opening_;
   std::optional<std::string> next_;          // to be opened after that
   std::vector<std::future<void>> retiring_;  // sessions that end

@@ -31,7 +31,17 @@ Settings from_json(const Json& json, const fs::path& path, const std::vector<std
   Settings settings;
   settings.look.theme = parse_theme(json.value("theme", "dark"));
   settings.look.scale = std::clamp(json.value("scale", 1.0F), 0.5F, 4.0F);
-  settings.recent = json.value("recent", settings.recent);
+  for (const Json& one : json.value("recent", Json::array())) {
+    // Earlier versions kept the path alone.
+    if (one.is_string()) {
+      settings.recent.push_back({.where = one.get<std::string>(), .reading = {}, .settings = {}});
+      continue;
+    }
+    settings.recent.push_back({.where = one.at("where").get<std::string>(),
+                               .reading = one.value("reading", std::vector<std::string>{}),
+                               .settings = one.value("settings", std::vector<std::string>{}),
+                               .frame = std::max(one.value("frame", 1), 0)});
+  }
   settings.window_size = json.value("window", settings.window_size);
   for (int& side : settings.window_size) side = std::clamp(side, 320, 16384);
   if (json.contains("layout")) settings.layout = parse_layout(json["layout"].dump(), path.string(), known);
@@ -72,7 +82,10 @@ void write_settings(const fs::path& path, const Settings& settings) {
   json["theme"] = settings.look.theme == ThemeName::kDark ? "dark" : "light";
   json["scale"] = settings.look.scale;
   json["window"] = settings.window_size;
-  json["recent"] = settings.recent;
+  json["recent"] = Json::array();
+  for (const RecentSequence& one : settings.recent)
+    json["recent"].push_back(
+        {{"where", one.where}, {"reading", one.reading}, {"settings", one.settings}, {"frame", one.frame}});
   if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));
   prepare_out_folder(path.parent_path(), {}, true);
   // Beside it first, then in its place: on a full disk what was there before stays.
@@ -90,9 +103,9 @@ void write_settings(const fs::path& path, const Settings& settings) {
   if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path.string(), failed.message()));
 }
 
-void remember(std::vector<std::string>& recent, const std::string& sequence) {
-  std::erase(recent, sequence);
-  recent.insert(recent.begin(), sequence);
+void remember(std::vector<RecentSequence>& recent, RecentSequence sequence) {
+  std::erase_if(recent, [&](const RecentSequence& one) { return one.where == sequence.where; });
+  recent.insert(recent.begin(), std::move(sequence));
   if (recent.size() > kRecentKept) recent.resize(kRecentKept);
 }
 

@@ -11,11 +11,20 @@
 
 namespace stillpoint {
 
+/// A sequence as it was left: opened again, it is the same experiment.
+struct RecentSequence {
+  std::string where;
+  std::vector<std::string> reading;   ///< how it was read, "camera=freiburg1", …: what `view` was given
+  std::vector<std::string> settings;  ///< constants other than the defaults, "run.method=paper", …
+  int frame = 1;                      ///< the one shown last
+  bool operator==(const RecentSequence&) const = default;
+};
+
 /// What the window remembers from one time to the next.
 struct Settings {
   Look look{};
   std::optional<LayoutNode> layout;
-  std::vector<std::string> recent;            ///< sequences, newest first
+  std::vector<RecentSequence> recent;         ///< newest first
   std::array<int, 2> window_size{1600, 900};  ///< screen coordinates
 };
 
@@ -33,8 +42,8 @@ inline constexpr std::size_t kRecentKept = 8;
 /// @throws InputError when it cannot be written
 void write_settings(const std::filesystem::path& path, const Settings& settings);
 
-/// Puts a sequence in front of those opened before.
-void remember(std::vector<std::string>& recent, const std::string& sequence);
+/// Puts a sequence in front of those opened before, in place of what was known of it.
+void remember(std::vector<RecentSequence>& recent, RecentSequence sequence);
 
 /// Reads a whole layout file.
 /// @throws InputError for a file that cannot be read or is no layout
