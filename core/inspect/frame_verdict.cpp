@@ -17,6 +17,7 @@ constexpr double kTimesUsual = 2.0;  // a bad value is that far off the run's me
 constexpr double kManyOnDynamic =
     0.15;  // share of a pose's inliers: more on dynamic objects explain an error
 constexpr double kLowIou = 0.5;
+constexpr int kFewest = 5;  // frames with a value: among fewer there is no rank and nothing usual
 
 const FigureInfo& info_of(int figure) { return frame_figure_infos()[static_cast<std::size_t>(figure)]; }
 
@@ -48,7 +49,8 @@ std::optional<Standing> standing_of(const MeasuredFrames& frames, int figure, st
                     return low_is_bad ? value < standing.value : value > standing.value;
                   }));
   standing.median = median_of(values);
-  const bool among_worst = standing.rank <= std::max(1.0, std::ceil(kWorstShare * standing.of));
+  const bool among_worst =
+      standing.of >= kFewest && standing.rank <= std::max(1.0, std::ceil(kWorstShare * standing.of));
   standing.bad = among_worst && (low_is_bad ? kTimesUsual * standing.value < standing.median
                                             : standing.value > kTimesUsual * standing.median);
   return standing;
@@ -106,9 +108,9 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
   if (standing) {
     std::string text =
         fmt::format("{} {}", shown_name(info_of(figure)), shown_value(info_of(figure), standing->value));
-    if (standing->rank == 1)
+    if (standing->rank == 1 && standing->of >= kFewest)
       text += fmt::format(", worst of {}", standing->of);
-    else if (2 * standing->rank <= standing->of)
+    else if (standing->of >= kFewest && 2 * standing->rank <= standing->of)
       text += fmt::format(", {} worst of {}", ordinal(standing->rank), standing->of);
     verdict.parts.push_back({std::move(text), standing->bad ? Tone::bad : Tone::good});
   }
@@ -138,7 +140,7 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
                     shown_value(info_of(figure), standing->median), cause_of(run, row, removal_hurt));
   else if (record.status == FrameStatus::initialised)
     verdict.sentence = "The map begins here.";
-  else if (standing)
+  else if (standing && standing->of >= kFewest)
     verdict.sentence =
         fmt::format("As usual in this run (median {}).", shown_value(info_of(figure), standing->median));
   return verdict;

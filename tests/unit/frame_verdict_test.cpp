@@ -71,6 +71,15 @@ TEST(FrameVerdict, AUsualFrameIsNotBlamed) {
   EXPECT_EQ(frame_verdict(run, 0).sentence, "The map begins here.");
 }
 
+TEST(FrameVerdict, AmongAFewFramesNothingIsUsual) {
+  RunView run = run_with_a_bad_step();
+  run.records.resize(3);
+  run.evaluation.rpe_frame.errors.resize(2);
+  const FrameVerdict verdict = frame_verdict(run, 2);
+  EXPECT_THAT(texts(verdict), testing::Contains("Step error 2.00 mm"));
+  EXPECT_EQ(verdict.sentence, "");
+}
+
 TEST(FrameVerdict, AFrameWithoutAPoseSaysWhy) {
   RunView run = run_with_a_bad_step();
   run.records[4].status = FrameStatus::lost;
