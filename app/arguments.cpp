@@ -10,6 +10,7 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/geometry/camera.hpp"
+#include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
@@ -22,6 +23,9 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
   command.add_option("--threads", threads, "Worker threads; any number gives the same result")
       ->check(CLI::Range(1, 64));
   if (!with_method) return;
+  command.add_option("--masks", masks,
+                     "Masks made elsewhere, folders or lists of images parted by commas: alone, or with "
+                     "--method together with that method's own");
   command.add_option("--method", method,
                      fmt::format("Which method judges what is dynamic: {}", fmt::join(method_names(), ", ")));
   command.add_option(
@@ -29,17 +33,40 @@ void ConfigArguments::add_to(CLI::App& command, bool with_method) {
       fmt::format("Which engine tells where the camera is: {}", fmt::join(engine_names(), ", ")));
 }
 
+namespace {
+
+/// Masks by absolute paths, so that a run's config finds them from anywhere.
+std::string absolute_sources(const std::string& sources) {
+  std::vector<std::string> all;
+  for (const std::string& source : split_masks(sources))
+    all.push_back(std::filesystem::absolute(source).lexically_normal().string());
+  return fmt::format("{}", fmt::join(all, ","));
+}
+
+}  // namespace
+
 Config ConfigArguments::config() const {
   Config config = preset.empty() ? Config{} : load_config(preset);
   for (const std::string& assignment : assignments) set_parameter(config, assignment);
+  if (!masks.empty()) {
+    config.of<MasksConfig>().sources = absolute_sources(masks);
+    if (method.empty() && preset.empty()) config.run.method = outside_masks_method().name;
+  }
   if (!method.empty()) set_parameter(config, "run.method=" + method);
   if (!odometry.empty()) set_parameter(config, "run.odometry=" + odometry);
   if (threads > 0) config.run.threads = threads;
+  const OutsideMasks outside(config);
+  if (!outside.problem().empty()) throw InputError(outside.problem());
+  for (const std::string& warning : outside.warnings())
+    std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   return config;
 }
 
 void throw_if_no_pair(const Config& config) {
   if (const std::string why = why_no_pair(config); !why.empty()) throw InputError(why);
+  if (method_of(config).needs.outside_masks && !OutsideMasks(config).any())
+    throw InputError(fmt::format("method {} removes by masks made elsewhere: name them by --masks DIR|LIST",
+                                 config.run.method));
 }
 
 void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {

@@ -16,18 +16,19 @@ struct ConfigArguments {
   std::vector<std::string> assignments;  ///< `section.name=value`
   std::string method;                    ///< empty = the config's
   std::string odometry;                  ///< empty = the config's
+  std::string masks;                     ///< folders and lists, parted by commas; empty = the config's
   int threads = 0;                       ///< 0 = the config's
 
   void add_to(CLI::App& command, bool with_method);
   /// Whether any was given but the number of threads.
   [[nodiscard]] bool given() const {
-    return !preset.empty() || !assignments.empty() || !method.empty() || !odometry.empty();
+    return !preset.empty() || !assignments.empty() || !method.empty() || !odometry.empty() || !masks.empty();
   }
   /// @throws InputError for unknown presets, keys and values out of range.
   [[nodiscard]] Config config() const;
 };
 
-/// @throws InputError where the config's method cannot stand in front of its odometry
+/// @throws InputError where the config's method cannot stand in front of its odometry, or lacks masks
 void throw_if_no_pair(const Config& config);
 
 /// What a command cannot do without.

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/arguments.hpp"
+#include "app/benchmark_repeats.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
@@ -24,6 +25,7 @@ struct BenchmarkArguments {
   std::vector<std::string> sequences, methods = usual_methods(), engines;
   std::string out;
   bool force = false;
+  int repeats = 1;
   ConfigArguments config;
   SequenceArguments frames;
 };
@@ -120,7 +122,7 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .oracle = wants_masks}));
   if (!arguments.out.empty())
-    prepare_out_folder(arguments.out, {"table1.csv", "details.csv"}, arguments.force);
+    prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv"}, arguments.force);
   return sources;
 }
 
@@ -177,6 +179,14 @@ void benchmark(BenchmarkArguments arguments) {
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
   const auto sources = open_all(arguments, config);
+  if (arguments.repeats > 1) {
+    RepeatPlan plan{{},           arguments.methods, arguments.engines,
+                    config,       arguments.repeats, arguments.frames.frames,
+                    arguments.out};
+    for (const auto& source : sources) plan.sources.push_back(source.get());
+    benchmark_repeats(plan);
+    return;
+  }
   std::vector<EngineRows> all;
   for (const std::string& engine : arguments.engines) all.push_back({engine, {}});
   std::vector<RunReport> reports;
@@ -230,6 +240,12 @@ void add_benchmark_command(CLI::App& app) {
       "--out", arguments->out,
       "Folder for the tables, as Markdown and CSV, and for SEQUENCE/METHOD folders of the runs");
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
+  command
+      ->add_option(
+          "--repeat", arguments->repeats,
+          "Run each so many times, with a few features more or fewer, another seed and first frame, and "
+          "print median and spread; --out has them as Markdown, CSV, JSON and LaTeX")
+      ->check(CLI::Range(1, 99));
   arguments->config.add_to(*command, false);
   arguments->frames.add_to(*command);
   command->callback([arguments] { benchmark(*arguments); });

@@ -15,6 +15,7 @@ void add_commands(CLI::App& app) {
   add_report_command(app);
   add_view_command(app);
   add_export_command(app);
+  add_import_command(app);
   add_replay_command(app);
   add_config_command(app);
 }

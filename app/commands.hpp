@@ -27,6 +27,7 @@ void add_figures_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_import_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 

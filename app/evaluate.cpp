@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
@@ -13,19 +16,29 @@
 #include "core/evaluation/clocks.hpp"
 #include "core/evaluation/evaluation_json.hpp"
 #include "core/evaluation/suspicion.hpp"
+#include "core/evaluation/time_offset.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory_file.hpp"
+#include "core/run/estimate_file.hpp"
 #include "core/sequence/source.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
 
 struct EvaluateArguments {
   std::string truth, estimate, sequence, quaternion, truth_convention, estimate_convention;
-  bool json = false;
+  std::string align, protocol, time_offset, deltas;
+  std::string difference;  ///< s; empty = the protocol's
+  bool json = false, scale = false, lengths = false;
   double time_offset_s = 0.0, frame_rate = kFrameNumberRate;
   EvaluationOptions options;
 };
+
+constexpr std::pair<std::string_view, AlignBy> kAlignments[] = {{"none", AlignBy::nothing},
+                                                                {"origin", AlignBy::origin},
+                                                                {"se3", AlignBy::rigid},
+                                                                {"sim3", AlignBy::similarity}};
 
 bool is_sequence(const std::string& where) {
   std::error_code none;
@@ -87,7 +100,7 @@ void read_estimate(const EvaluateArguments& arguments, Compared& compared) {
   std::optional<QuaternionOrder> order;
   if (!arguments.quaternion.empty())
     order = arguments.quaternion == "wxyz" ? QuaternionOrder::wxyz : QuaternionOrder::xyzw;
-  TrajectoryFile file = read_trajectory_file(arguments.estimate, order);
+  TrajectoryFile file = read_estimate_file(arguments.estimate, order);
   compared.estimate = std::move(file.poses);
   compared.warnings.insert(compared.warnings.end(), file.warnings.begin(), file.warnings.end());
 }
@@ -126,13 +139,72 @@ void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& a
   if (const auto suspicion = suspect_convention(evaluation.matched, true))
     warnings.push_back(suspicion->sentence());
   else if (const std::string scale = scale_sentence(evaluation);
-           !scale.empty() && !arguments.options.with_scale)
-    warnings.push_back(fmt::format("{}: {} (`--scale` does so)", arguments.estimate, scale));
+           !scale.empty() && arguments.options.align == AlignBy::rigid)
+    warnings.push_back(fmt::format("{}: {} (`--align sim3` does so)", arguments.estimate, scale));
+}
+
+double number_argument(const char* option, const std::string& text, double least, double most) {
+  const auto value = parse_number(text);
+  if (!value || !(*value >= least) || !(*value <= most))
+    throw InputError(fmt::format("{} {}: expected a number from {:g} to {:g}", option, text, least, most));
+  return *value;
+}
+
+/// "none", "origin", "se3", "sim3", or "first:N".
+void read_alignment(const std::string& text, EvaluationOptions& options) {
+  constexpr std::string_view kFirst = "first:";
+  const auto known = std::find_if(std::begin(kAlignments), std::end(kAlignments),
+                                  [&text](const auto& named) { return text == named.first; });
+  if (known != std::end(kAlignments)) {
+    options.align = known->second;
+  } else if (text.starts_with(kFirst)) {
+    options.align = AlignBy::first;
+    options.align_first = static_cast<int>(number_argument("--align", text.substr(kFirst.size()), 3, 1e8));
+  } else {
+    throw InputError(fmt::format("--align {}: expected none, origin, first:N, se3 or sim3", text));
+  }
+}
+
+/// What the options say, over what the protocol says.
+void settle_options(EvaluateArguments& arguments) {
+  EvaluationOptions& options = arguments.options;
+  if (!arguments.protocol.empty())
+    use_protocol(arguments.protocol == "evo" ? Protocol::evo : Protocol::tum, options);
+  if (!arguments.difference.empty())
+    options.max_difference_s = number_argument("--max-difference", arguments.difference, 1e-6, 10.0);
+  if (arguments.scale) options.align = AlignBy::similarity;
+  if (!arguments.align.empty()) read_alignment(arguments.align, options);
+  for (std::size_t at = 0; at < arguments.deltas.size();) {
+    const std::size_t comma = std::min(arguments.deltas.find(',', at), arguments.deltas.size());
+    options.deltas.push_back(rpe_delta_of(arguments.deltas.substr(at, comma - at)));
+    at = comma + 1;
+  }
+  if (!arguments.time_offset.empty() && arguments.time_offset != "auto")
+    arguments.time_offset_s = number_argument("--time-offset", arguments.time_offset, -1e10, 1e10);
+}
+
+/// Shifts the estimate to where it fits the truth best, and tells by how much.
+void fit_time(const EvaluateArguments& arguments, Compared& compared) {
+  const auto found = estimate_time_offset(compared.truth, compared.estimate);
+  if (!found)
+    throw InputError(fmt::format(
+        "{}: the two paths do not tell a time offset; give it as --time-offset SECONDS", arguments.estimate));
+  for (StampedPose& pose : compared.estimate) pose.timestamp += found->offset_s;
+  compared.warnings.push_back(fmt::format(
+      "{}: {:+.6f} s were added to its stamps, which lowers the ATE against interpolated truth from "
+      "{:.5f} to {:.5f} m",
+      arguments.estimate, found->offset_s, found->rmse_before_m, found->rmse_after_m));
 }
 
 void evaluate(EvaluateArguments arguments) {
   EvaluationOptions& options = arguments.options;
+  settle_options(arguments);
   Compared compared = read_both(arguments, options);
+  if (arguments.time_offset == "auto") fit_time(arguments, compared);
+  if (arguments.lengths) {
+    options.lengths_m =
+        usual_lengths_m(match_trajectories(compared.truth, compared.estimate, options.max_difference_s));
+  }
   const TrajectoryEvaluation evaluation = evaluate_trajectory(compared.truth, compared.estimate, options);
   if (evaluation.matched.empty())
     throw InputError(fmt::format("{}: none of its poses ({}) is closer than {} s to one of {} ({}); {}",
@@ -174,13 +246,24 @@ void add_evaluate_command(CLI::App& app) {
                    "Trajectory: timestamp tx ty tz qx qy qz qw, or another of these formats")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON");
+  command->add_option("--max-difference", arguments->difference,
+                      "Poses belong together when strictly closer in time than this [s]; otherwise 0.02");
+  command->add_option(
+      "--align", arguments->align,
+      "How the estimate's world is laid over the truth's: none, origin (the first pose), first:N "
+      "(by the first N), se3 (otherwise), sim3 (with scale, as monocular estimates need)");
+  command->add_flag("--scale", arguments->scale, "The same as --align sim3");
+  command->add_option("--delta", arguments->deltas,
+                      "More relative errors: over seconds, frames or metres, as 2s,10f,5m");
+  command->add_flag("--lengths", arguments->lengths,
+                    "Errors of all parts of the path of a tenth to a half of its length, with box plots");
+  command->add_flag("--interpolate", arguments->options.interpolate_truth,
+                    "Take the truth at the estimate's own stamps, between its neighbours");
   command
-      ->add_option("--max-difference", arguments->options.max_difference_s,
-                   "Poses belong together when strictly closer in time than this [s]")
-      ->check(CLI::Range(1e-6, 10.0))
-      ->capture_default_str();
-  command->add_flag("--scale", arguments->options.with_scale,
-                    "Align with scale (Sim(3)), as monocular estimates need; the scale is told");
+      ->add_option("--protocol", arguments->protocol,
+                   "Measure as others do: evo (evo_ape and evo_rpe without options), tum (the benchmark's "
+                   "scripts without options)")
+      ->check(CLI::IsMember({"evo", "tum"}));
   command
       ->add_option("--quaternion", arguments->quaternion,
                    "Order of the estimate's quaternions, where no header tells")
@@ -190,8 +273,8 @@ void add_evaluate_command(CLI::App& app) {
       "What the ground truth's poses mean: as-written, inverse, w-first, mirrored-x, mirrored-y, "
       "mirrored-z, bonn");
   command->add_option("--estimate", arguments->estimate_convention, "The same of the estimate's poses");
-  command->add_option("--time-offset", arguments->time_offset_s, "Added to the estimate's stamps [s]")
-      ->check(CLI::Range(-1e10, 1e10));
+  command->add_option("--time-offset", arguments->time_offset,
+                      "Added to the estimate's stamps [s]; `auto` finds it from the two paths, and tells it");
   command->add_option("--frame-rate", arguments->frame_rate, "Of stamps that are frame numbers [Hz]")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();

@@ -4,6 +4,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/export_mcap.hpp"
 #include "app/progress.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/run/condition.hpp"
@@ -13,7 +14,8 @@ namespace stillpoint {
 namespace {
 
 struct ExportArguments {
-  std::string sequence, out, frames = "0:";
+  std::string sequence, out, frames = "0:", to, sequence_now;
+  std::vector<std::string> layers;
   bool force = false;
   SequenceArguments source;
 };
@@ -38,17 +40,34 @@ void export_sequence(const ExportArguments& arguments) {
 
 void add_export_command(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand(
-      "export", "Some frames of a sequence as a small TUM RGB-D folder that shows the same problem");
-  command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp)->required();
+  CLI::App* command = app.add_subcommand("export",
+                                         "Some frames of a sequence as a small TUM RGB-D folder that shows "
+                                         "the same problem; or a finished run as "
+                                         "an MCAP file, which Foxglove, Rerun and PlotJuggler open");
+  command->add_option("SEQUENCE", arguments->sequence, kSequenceOrRunHelp)->required();
   command
       ->add_option("--frames", arguments->frames,
                    "Frames to write: 10:40 (40 not among them), -1 is the last; with commas between")
       ->capture_default_str();
-  command->add_option("--out", arguments->out, "Folder for the sequence; made if missing")->required();
-  command->add_flag("--force", arguments->force, "Replace a sequence in that folder");
+  auto* out = command->add_option("--out", arguments->out, "Folder for the sequence; made if missing");
+  command->add_option("--to", arguments->to, "A finished run goes to this .mcap file")->excludes(out);
+  command
+      ->add_option(
+          "--layers", arguments->layers,
+          "Ids of stages' layers that go into the file too, with commas between: difference,forward_mask")
+      ->delimiter(',');
+  command->add_option("--sequence", arguments->sequence_now, "Where the run's sequence lies now");
+  command->add_flag("--force", arguments->force, "Replace a sequence in that folder, or the file");
   arguments->source.add_to(*command, "--length");
-  command->callback([arguments] { export_sequence(*arguments); });
+  command->callback([arguments] {
+    if (!arguments->to.empty())
+      export_mcap(arguments->sequence, arguments->sequence_now, arguments->to, arguments->force,
+                  arguments->layers);
+    else if (arguments->out.empty())
+      throw CLI::RequiredError("--out or --to");
+    else
+      export_sequence(*arguments);
+  });
 }
 
 }  // namespace stillpoint

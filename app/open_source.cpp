@@ -7,6 +7,8 @@
 
 #include "core/error.hpp"
 #include "core/run/open_run.hpp"
+#include "core/run/outside_run.hpp"
+#include "core/sequence/fingerprint.hpp"
 
 namespace stillpoint {
 namespace {
@@ -74,17 +76,46 @@ void SourceArguments::add_to(CLI::App& command) {
   command.add_option("--baseline", baseline,
                      "Of a finished run: another run's folder to compare with; otherwise the folder none "
                      "beside it, where there is one");
+  command.add_option("--run", runs,
+                     "Another program's run to stand beside: NAME=FILE, a trajectory or a folder of one with "
+                     "masks and features.csv, or a finished run's folder; may be given again");
   command.add_option("--sequence", sequence, "Of a finished run: where its sequence lies now");
 }
 
+namespace {
+
+/// Other programs' runs, laid onto the frames that were opened.
+void stand_beside(const SourceArguments& arguments, OpenedSource& opened) {
+  for (const std::string& text : arguments.runs) {
+    const OutsideRunFiles files = outside_run_argument(text);
+    std::vector<std::string> warnings;
+    auto run = std::make_shared<RecordedRun>(is_run_folder(files.where)
+                                                 ? read_records(files.where)
+                                                 : read_outside_run(*opened.source, {}, files, warnings));
+    if (is_run_folder(files.where) && run->origin.fingerprint != sequence_fingerprint(*opened.source))
+      throw InputError(fmt::format("--run {}: is a run of {}, not of the frames opened", text, run->origin.name));
+    opened.options.beside.push_back(std::move(run));
+    for (const std::string& warning : warnings)
+      std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
+  }
+}
+
+}  // namespace
+
 OpenedSource open_source(const SourceArguments& arguments) {
-  if (is_run_folder(arguments.place)) return open_finished_run(arguments);
+  if (is_run_folder(arguments.place)) {
+    OpenedSource opened = open_finished_run(arguments);
+    stand_beside(arguments, opened);
+    return opened;
+  }
   for (const auto& [option, value] :
        {std::pair("--baseline", arguments.baseline), std::pair("--sequence", arguments.sequence)})
     if (!value.empty())
       throw InputError(
           fmt::format("{}: goes with a finished run's folder, and {} is none", option, arguments.place));
-  return open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+  OpenedSource opened = open_sequence_at(arguments.place, arguments.source, arguments.config.config());
+  stand_beside(arguments, opened);
+  return opened;
 }
 
 OpenedSource open_source_as(const std::string& where, const SequenceArguments& source, const Config& config) {

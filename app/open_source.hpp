@@ -14,10 +14,11 @@ struct SourceArguments {
   std::string place;     ///< a sequence, or a run's folder
   std::string baseline;  ///< a run's folder; empty = the one of method none beside it, where there is one
   std::string sequence;  ///< where a run's sequence lies now; empty = where it lay
+  std::vector<std::string> runs;  ///< other programs' runs to stand beside, NAME=FILE
   ConfigArguments config;
   SequenceArguments source;
 
-  /// Adds --baseline and --sequence; the rest is the command's.
+  /// Adds --baseline, --sequence and --run; the rest is the command's.
   void add_to(CLI::App& command);
 };
 

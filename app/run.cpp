@@ -6,8 +6,10 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/export_mcap.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/export/mcap_export.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/records_file.hpp"
@@ -18,7 +20,7 @@ namespace stillpoint {
 namespace {
 
 struct RunArguments {
-  std::string sequence, out, break_at;
+  std::string sequence, out, break_at, mcap;
   bool force = false, measure_unit = false;
   ConfigArguments config;
   SequenceArguments frames;
@@ -72,12 +74,19 @@ void run(const RunArguments& arguments) {
     records.emplace(arguments.out, *origin, config);
   }
   options.measure_orb_unit = arguments.measure_unit;
+  std::optional<McapFileName> mcap_name;
+  std::optional<McapExport> mcap;
+  if (!arguments.mcap.empty()) {
+    mcap_name.emplace(arguments.mcap, arguments.force);
+    mcap.emplace(mcap_name->while_written(), source->camera());
+  }
   const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
   RunResult result;
   {
     Progress progress(fmt::format("{} ({})", source->name(), run_label(config)), total);
     options.on_frame = [&](const FrameResult& frame) {
       if (records) records->add(frame);
+      if (mcap) mcap->add(source->read(frame.record.index), frame.record, frame.mask);
       progress.advance(std::string(to_string(frame.record.status)));
     };
     result = run_sequence(*source, config, options);
@@ -89,6 +98,11 @@ void run(const RunArguments& arguments) {
     write_run(arguments.out, result, report, *source, *origin);
     records->finish(result, source->ground_truth());
     fmt::print("  written to    {}\n", arguments.out);
+  }
+  if (mcap) {
+    mcap->finish(result, source->ground_truth());
+    mcap_name->finish();
+    fmt::print("  written to    {}\n", arguments.mcap);
   }
   if (result.interrupted) {
     fmt::print("stopped after {} of {} frames{}\n", report.frames, total,
@@ -111,6 +125,9 @@ void add_run_command(CLI::App& app) {
   const CLI::Option* sequence = command->add_option("SEQUENCE", arguments->sequence, kSequenceHelp);
   command->add_option("--out", arguments->out,
                       "Folder for trajectory, frames.csv, summary.json, config and map");
+  command->add_option(
+      "--mcap", arguments->mcap,
+      "Also write the run to this .mcap file while it goes on, for Foxglove, Rerun, PlotJuggler");
   command->add_flag("--force", arguments->force, "Overwrite an earlier run in that folder");
   command->add_flag("--measure-unit", arguments->measure_unit,
                     "Also time OpenCV's ORB on every frame, the unit in which speed is compared");

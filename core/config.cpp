@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/assets.hpp"
@@ -50,8 +51,10 @@ void assign(const Parameter& p, const toml::node& node, const std::string& where
     **real = *value;
   } else {
     const auto value = node.value_exact<std::string>();
-    if (!value || std::find(p.choices.begin(), p.choices.end(), *value) == p.choices.end())
+    if (!p.choices.empty() &&
+        (!value || std::find(p.choices.begin(), p.choices.end(), *value) == p.choices.end()))
       throw InputError(fmt::format("{}{} takes one of: {}", where, p.key, fmt::join(p.choices, ", ")));
+    if (!value) throw InputError(fmt::format("{}{} takes a text", where, p.key));
     *std::get<std::string*>(p.value) = *value;
   }
 }
@@ -82,7 +85,12 @@ Parameter find_parameter(const std::vector<Parameter>& all, std::string_view wan
 std::string toml_value(const Parameter& p) {
   if (const auto* flag = std::get_if<bool*>(&p.value)) return **flag ? "true" : "false";
   if (const auto* integer = std::get_if<int*>(&p.value)) return fmt::format("{}", **integer);
-  if (const auto* text = std::get_if<std::string*>(&p.value)) return fmt::format("\"{}\"", **text);
+  if (const auto* text = std::get_if<std::string*>(&p.value)) {
+    if (!p.choices.empty() || (*text)->empty()) return fmt::format("\"{}\"", **text);
+    std::ostringstream quoted;
+    quoted << toml::value<std::string>(**text);
+    return quoted.str();
+  }
   std::string number =
       fmt::format("{}", *std::get<double*>(p.value));  // shortest text that reads back the same
   if (number.find_first_of(".e") == std::string::npos) number += ".0";

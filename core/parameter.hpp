@@ -14,7 +14,7 @@ struct Parameter {
   std::vector<std::string> old_keys;  ///< still read, written no more
   std::variant<bool*, int*, double*, std::string*> value;
   double min = 0.0, max = 0.0;       ///< inclusive, numbers only
-  std::vector<std::string> choices;  ///< strings only: the values allowed
+  std::vector<std::string> choices;  ///< strings only: the values allowed; empty: any text
   std::string unit;                  ///< "px", "m", "frames", "" for plain numbers
   std::string help;                  ///< one line
 };
@@ -43,6 +43,10 @@ class ParameterTable {
   ParameterTable& choice(const char* name, std::string& value, const char* standard,
                          std::vector<std::string> choices, const char* help) {
     return add(name, value, std::string(standard), 0.0, 0.0, std::move(choices), "", help);
+  }
+
+  ParameterTable& text(const char* name, std::string& value, const char* help) {
+    return add(name, value, std::string(), 0.0, 0.0, {}, "", help);
   }
 
   /// The constant listed last had another name before: files that use it are still read.

@@ -23,9 +23,9 @@ std::string folder_name(const std::string& folder) {
 /// By method where that is enough, else by folder as well.
 void label_runs(ReportGroup& group) {
   std::map<std::string, int> methods, labels;
-  for (const ReportRun& run : group.runs) ++methods[run_label(run.result().config)];
+  for (const ReportRun& run : group.runs) ++methods[run_name(run.recorded())];
   for (ReportRun& run : group.runs) {
-    run.label = run_label(run.result().config);
+    run.label = run_name(run.recorded());
     const std::string name = folder_name(run.folder);
     if (methods[run.label] > 1 && name != run.label) run.label += fmt::format(" ({})", name);
     const int times = ++labels[run.label];
@@ -36,8 +36,9 @@ void label_runs(ReportGroup& group) {
 }  // namespace
 
 const ReportRun* ReportGroup::baseline() const {
-  const auto it = std::find_if(runs.begin(), runs.end(),
-                               [](const ReportRun& run) { return method_named(run.report.method).baseline; });
+  const auto it = std::find_if(runs.begin(), runs.end(), [](const ReportRun& run) {
+    return run.recorded().outside.empty() && method_named(run.report.method).baseline;
+  });
   return it == runs.end() ? nullptr : &*it;
 }
 

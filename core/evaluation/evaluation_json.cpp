@@ -15,12 +15,20 @@ nlohmann::json text_or_null(const std::string& text) {
 
 void to_json(nlohmann::json& json, const ErrorStatistics& s) {
   if (s.count == 0) {
-    json = {{"count", 0},        {"rmse", nullptr}, {"mean", nullptr}, {"median", nullptr},
-            {"stddev", nullptr}, {"min", nullptr},  {"max", nullptr}};
+    json = {{"count", 0},        {"rmse", nullptr},           {"mean", nullptr},
+            {"median", nullptr}, {"stddev", nullptr},         {"min", nullptr},
+            {"max", nullptr},    {"lower_quartile", nullptr}, {"upper_quartile", nullptr}};
     return;
   }
-  json = {{"count", s.count},   {"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median},
-          {"stddev", s.stddev}, {"min", s.min},   {"max", s.max}};
+  json = {{"count", s.count},
+          {"rmse", s.rmse},
+          {"mean", s.mean},
+          {"median", s.median},
+          {"stddev", s.stddev},
+          {"min", s.min},
+          {"max", s.max},
+          {"lower_quartile", s.lower_quartile},
+          {"upper_quartile", s.upper_quartile}};
 }
 
 void to_json(nlohmann::json& json, const AbsoluteTrajectoryError& error) {
@@ -54,7 +62,9 @@ void to_json(nlohmann::json& json, const TrajectoryEvaluation& e) {
           {"applied_scale", e.applied_scale},
           {"ate", e.ate},
           {"rpe_time", e.rpe_time},
-          {"rpe_frame", e.rpe_frame}};
+          {"rpe_frame", e.rpe_frame},
+          {"rpe_more", e.rpe_more},
+          {"by_length", e.by_length}};
 }
 
 void to_json(nlohmann::json& json, const MaskScore& score) {

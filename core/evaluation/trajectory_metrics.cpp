@@ -21,19 +21,6 @@ std::vector<double> column(const std::vector<Error>& errors, double Error::*memb
   return values;
 }
 
-template <typename Result, typename Error>
-void summarise(Result& result, const std::vector<Error>& errors) {
-  result.translation_m = statistics_of(column(errors, &Error::translation_m));
-  result.rotation_deg = statistics_of(column(errors, &Error::rotation_deg));
-}
-
-RelativeError relative_error(const MatchedPose& i, const MatchedPose& j) {
-  const Pose truth_motion = i.truth.inverse() * j.truth;
-  const Pose estimated_motion = i.estimate.inverse() * j.estimate;
-  const Pose error = truth_motion.inverse() * estimated_motion;
-  return {i.timestamp, j.timestamp, error.translation().norm(), degrees(rotation_angle(error.linear()))};
-}
-
 /// Below three poses an alignment leaves nothing over to be an error.
 constexpr std::size_t kFewestToAlign = 3;
 
@@ -65,6 +52,13 @@ ErrorStatistics statistics_of(std::vector<double> errors) {
   s.count = static_cast<int>(errors.size());
   s.min = errors.front(), s.max = errors.back();
   s.median = errors.size() % 2 == 1 ? errors[half] : 0.5 * (errors[half - 1] + errors[half]);
+  const auto quantile = [&errors, n](double share) {
+    const double at = share * (n - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, errors.size() - 1);
+    return errors[below] + (at - static_cast<double>(below)) * (errors[above] - errors[below]);
+  };
+  s.lower_quartile = quantile(0.25), s.upper_quartile = quantile(0.75);
   s.mean = std::accumulate(errors.begin(), errors.end(), 0.0) / n;
   double squares = 0.0, deviations = 0.0;
   for (const double error : errors) {
@@ -89,68 +83,82 @@ std::vector<MatchedPose> match_trajectories(const Trajectory& truth, const Traje
   return matched;
 }
 
-AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched) {
+std::vector<MatchedPose> match_nearest(const Trajectory& truth, const Trajectory& estimate,
+                                       double max_difference_s) {
+  const bool from_truth = truth.size() < estimate.size();
+  const Trajectory &shorter = from_truth ? truth : estimate, &longer = from_truth ? estimate : truth;
+  std::vector<MatchedPose> matched;
+  if (longer.empty()) return matched;
+  for (const StampedPose& pose : shorter) {
+    // The first of the nearest, as an argument of the minimum is.
+    const auto apart = [&pose](const StampedPose& other) {
+      return std::abs(other.timestamp - pose.timestamp);
+    };
+    const auto nearest = std::min_element(longer.begin(), longer.end(),
+                                          [&](const auto& a, const auto& b) { return apart(a) < apart(b); });
+    if (apart(*nearest) > max_difference_s) continue;
+    const StampedPose &e = from_truth ? *nearest : pose, &t = from_truth ? pose : *nearest;
+    matched.push_back({e.timestamp, t.timestamp, e.world_from_camera, t.world_from_camera});
+  }
+  return matched;
+}
+
+std::vector<MatchedPose> match_interpolated(const Trajectory& truth, const Trajectory& estimate,
+                                            double max_gap_s) {
+  std::vector<MatchedPose> matched;
+  for (const StampedPose& e : estimate)
+    if (const auto there = interpolate(truth, e.timestamp, max_gap_s))
+      matched.push_back({e.timestamp, e.timestamp, e.world_from_camera, *there});
+  return matched;
+}
+
+AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched, AlignBy by, int align_first) {
   std::vector<Pose> estimate, truth;
   for (const MatchedPose& pose : matched) {
     estimate.push_back(pose.estimate);
     truth.push_back(pose.truth);
   }
   AbsoluteTrajectoryError result;
-  result.alignment = align(estimate, truth);
+  const std::size_t needed = by == AlignBy::nothing || by == AlignBy::origin ? 1 : kFewestToAlign;
+  if (by == AlignBy::first) {
+    const auto first = std::min(matched.size(), static_cast<std::size_t>(std::max(align_first, 0)));
+    estimate.resize(first), truth.resize(first);
+  }
+  if (by == AlignBy::origin && !matched.empty())
+    result.alignment.truth_from_estimate = truth.front() * estimate.front().inverse();
+  else if (by != AlignBy::nothing)
+    result.alignment = align(estimate, truth);
   for (const MatchedPose& pose : matched) {
     const Pose aligned = result.alignment.truth_from_estimate * pose.estimate;
     result.errors.push_back({pose.timestamp, (aligned.translation() - pose.truth.translation()).norm(),
                              degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
   }
-  if (matched.size() < kFewestToAlign) {
-    result.why_none =
-        fmt::format("{} matched pose(s), and an alignment needs {}", matched.size(), kFewestToAlign);
+  if (estimate.size() < needed) {
+    result.why_none = fmt::format("{} matched pose(s), and an alignment needs {}", estimate.size(), needed);
     return result;
   }
-  summarise(result, result.errors);
-  if (!result.alignment.degenerate) result.similarity = similarity_fit(matched);
+  result.translation_m = statistics_of(column(result.errors, &AbsoluteError::translation_m));
+  result.rotation_deg = statistics_of(column(result.errors, &AbsoluteError::rotation_deg));
+  if (!align(estimate, truth).degenerate) result.similarity = similarity_fit(matched);
   return result;
 }
 
-RelativePoseError relative_error_over_time(const std::vector<MatchedPose>& matched, double delta_s,
-                                           double tolerance_s) {
-  RelativePoseError result;
-  result.delta = fmt::format("{} s", delta_s);
-  result.limit_s = tolerance_s;
-  for (std::size_t i = 0; i < matched.size(); ++i) {
-    const double wanted = matched[i].timestamp + delta_s;
-    auto j = std::lower_bound(matched.begin(), matched.end(), wanted,
-                              [](const MatchedPose& pose, double t) { return pose.timestamp < t; });
-    if (j == matched.end() || (j != matched.begin() && wanted - (j - 1)->timestamp <= j->timestamp - wanted))
-      --j;
-    if (j - matched.begin() <= static_cast<std::ptrdiff_t>(i) ||
-        std::abs(j->timestamp - wanted) > tolerance_s)
-      ++result.dropped;
-    else
-      result.errors.push_back(relative_error(matched[i], *j));
+namespace {
+
+RelativePoseError relative_error_over(const std::vector<MatchedPose>& matched, const RpeDelta& delta,
+                                      const EvaluationOptions& options) {
+  switch (delta.unit) {
+    case RpeDelta::Unit::frames:
+      return relative_error_over_frames(matched, static_cast<int>(delta.value));
+    case RpeDelta::Unit::metres:
+      return relative_error_over_distance(matched, delta.value);
+    case RpeDelta::Unit::seconds:
+      break;
   }
-  summarise(result, result.errors);
-  if (result.errors.empty()) result.why_none = fmt::format("no two matched poses are {} apart", result.delta);
-  return result;
+  return relative_error_over_time(matched, delta.value, options.delta_tolerance_s);
 }
 
-RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched, double neighbour_gap) {
-  RelativePoseError result;
-  result.delta = "1 frame";
-  std::vector<double> gaps;
-  for (std::size_t i = 0; i + 1 < matched.size(); ++i)
-    gaps.push_back(matched[i + 1].timestamp - matched[i].timestamp);
-  result.limit_s = neighbour_gap * statistics_of(gaps).median;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    if (gaps[i] > result.limit_s)
-      ++result.dropped;
-    else
-      result.errors.push_back(relative_error(matched[i], matched[i + 1]));
-  }
-  summarise(result, result.errors);
-  if (result.errors.empty()) result.why_none = "no two matched poses follow one another";
-  return result;
-}
+}  // namespace
 
 TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajectory& estimate,
                                          const EvaluationOptions& options) {
@@ -160,68 +168,32 @@ TrajectoryEvaluation evaluate_trajectory(const Trajectory& truth, const Trajecto
   result.expected_frames = options.expected_frames;
   if (options.expected_frames > 0)
     result.coverage = std::min(1.0, static_cast<double>(estimate.size()) / options.expected_frames);
-  result.matched = match_trajectories(truth, estimate, options.max_difference_s);
+  result.matched = options.interpolate_truth
+                       ? match_interpolated(truth, estimate, options.interpolation_gap_s)
+                   : options.nearest ? match_nearest(truth, estimate, options.max_difference_s)
+                                     : match_trajectories(truth, estimate, options.max_difference_s);
   if (!truth.empty()) result.truth_span_s = truth.back().timestamp - truth.front().timestamp;
   if (!result.matched.empty())
     result.matched_span_s = result.matched.back().timestamp - result.matched.front().timestamp;
-  if (options.with_scale && result.matched.size() >= kFewestToAlign)
+  if (options.align == AlignBy::similarity && result.matched.size() >= kFewestToAlign)
     if (const auto fit = similarity_fit(result.matched)) {
       result.applied_scale = fit->scale;
       for (MatchedPose& pose : result.matched) pose.estimate.translation() *= fit->scale;
     }
-  result.ate = absolute_error(result.matched);
+  result.ate = absolute_error(result.matched, options.align, options.align_first);
   result.rpe_time = relative_error_over_time(result.matched, options.delta_s, options.delta_tolerance_s);
   result.rpe_frame = relative_error_per_frame(result.matched, options.neighbour_gap);
+  if (options.protocol == Protocol::tum)
+    result.rpe_more.push_back(relative_error_of_random_pairs(truth, estimate));
+  for (const RpeDelta& delta : options.deltas)
+    result.rpe_more.push_back(relative_error_over(result.matched, delta, options));
+  for (const double length : options.lengths_m)
+    result.by_length.push_back(relative_error_over_distance(result.matched, length));
   return result;
 }
 
 std::string figure_text(const ErrorStatistics& statistics, int digits) {
   return statistics.count > 0 ? fmt::format("{:.{}f}", statistics.rmse, digits) : "–";
-}
-
-std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& options) {
-  std::string text =
-      fmt::format("Matched   {} of {} estimated poses, to {} of ground truth: one to one, closer than {} s\n",
-                  e.matched.size(), e.estimated_poses, e.truth_poses, options.max_difference_s);
-  text += e.coverage ? fmt::format("Coverage  {:.1f} %: {} poses for {} frames\n", 100.0 * *e.coverage,
-                                   e.estimated_poses, e.expected_frames)
-                     : "Coverage  not known without the number of frames (--frames, --sequence)\n";
-  if (e.truth_span_s > 0)
-    text += fmt::format("Time      matched poses span {:.3f} s of the truth's {:.3f} s ({:.1f} %)\n",
-                        e.matched_span_s, e.truth_span_s, 100.0 * e.matched_span_s / e.truth_span_s);
-  const char* how = options.with_scale ? "with scale (Sim(3))" : "rigidly, without scale";
-  text += fmt::format(
-      "Aligned   {}{}\n", how,
-      e.ate.alignment.degenerate ? "; positions on a line or too few, so by orientations too" : "");
-  if (options.with_scale)
-    text += fmt::format("Scale     the estimate's lengths were multiplied by {:.4f}\n", e.applied_scale);
-  else if (e.ate.similarity)
-    text += fmt::format(
-        "Scale     {:.4f} would fit best, and leave an ATE of {:.5f} m (--scale aligns with it)\n",
-        e.ate.similarity->scale, e.ate.similarity->rmse_m);
-  text += fmt::format("\n{:<24}{:<5}{:>7}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "", "unit", "pairs", "RMSE",
-                      "mean", "median", "std", "min", "max");
-  const auto row = [&](const std::string& name, const char* unit, const ErrorStatistics& s,
-                       const std::string& why) {
-    if (s.count == 0) {
-      text += fmt::format("{:<24}{:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
-      return;
-    }
-    text += fmt::format("{:<24}{:<5}{:>7}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}\n", name,
-                        unit, s.count, s.rmse, s.mean, s.median, s.stddev, s.min, s.max);
-  };
-  row("ATE translation", "m", e.ate.translation_m, e.ate.why_none);
-  row("ATE rotation", "deg", e.ate.rotation_deg, e.ate.why_none);
-  for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame}) {
-    row(fmt::format("RPE {} translation", rpe->delta), "m", rpe->translation_m, rpe->why_none);
-    row(fmt::format("RPE {} rotation", rpe->delta), "deg", rpe->rotation_deg, rpe->why_none);
-  }
-  text += fmt::format(
-      "\nRPE {}: each matched pose with the one nearest {} later; {} without one within {} s dropped\n"
-      "RPE {}: each matched pose with the next; {} gaps above {:.3f} s ({} times the median) dropped\n",
-      e.rpe_time.delta, e.rpe_time.delta, e.rpe_time.dropped, e.rpe_time.limit_s, e.rpe_frame.delta,
-      e.rpe_frame.dropped, e.rpe_frame.limit_s, options.neighbour_gap);
-  return text;
 }
 
 }  // namespace stillpoint

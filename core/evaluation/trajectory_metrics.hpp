@@ -18,7 +18,8 @@ struct ErrorStatistics {
   double stddev = 0.0;  ///< of the population: divided by count
   double min = 0.0;
   double max = 0.0;
-  int count = 0;  ///< errors in the sample
+  double lower_quartile = 0.0, upper_quartile = 0.0;  ///< between neighbours by their distance, as NumPy does
+  int count = 0;                                      ///< errors in the sample
 };
 
 [[nodiscard]] ErrorStatistics statistics_of(std::vector<double> errors);
@@ -44,11 +45,34 @@ struct SimilarityFit {
   double rmse_m = 0.0;  ///< ATE that is left
 };
 
-/// Absolute trajectory error: what is left of the positions after a rigid alignment without scale.
+/// How the estimate's world is laid over the truth's before absolute errors are taken.
+enum class AlignBy {
+  nothing,     ///< as they are: both are in one world already
+  origin,      ///< the first matched pose on the truth's
+  first,       ///< a rigid motion by the first EvaluationOptions::align_first poses
+  rigid,       ///< SE(3): a rigid motion by all positions
+  similarity,  ///< Sim(3): the same with scale
+};
+
+/// How far apart the poses of a relative error are.
+struct RpeDelta {
+  enum class Unit { seconds, frames, metres };
+  double value = 1.0;
+  Unit unit = Unit::seconds;
+
+  [[nodiscard]] std::string text() const;  ///< "1 s", "10 frames", "5 m"
+};
+
+/// "1s", "10f" or "5m".
+/// @throws InputError for another text
+[[nodiscard]] RpeDelta rpe_delta_of(const std::string& text);
+
+/// Absolute trajectory error: what is left of the positions after the alignment that was asked for, which is
+/// rigid and without scale where nothing else is.
 struct AbsoluteTrajectoryError {
   Alignment alignment;
   std::vector<AbsoluteError> errors;  ///< one a matched pose, by time
-  ErrorStatistics translation_m;      ///< its rmse is the ATE; empty where fewer than 3 poses are matched
+  ErrorStatistics translation_m;      ///< its rmse is the ATE; empty where too few poses are matched to align
   ErrorStatistics rotation_deg;       ///< of the same aligned poses
   std::optional<SimilarityFit> similarity;  ///< nothing where positions do not fix one
   std::string why_none;                     ///< why there are no statistics; empty where there are
@@ -73,8 +97,16 @@ struct RelativePoseError {
   std::string why_none;  ///< why there are no statistics; empty where there are
 };
 
+/// Whose habits figures follow (README.md).
+enum class Protocol {
+  stillpoint,  ///< one-to-one association, ATE after rigid alignment, RPE over 1 s and over neighbours
+  evo,         ///< evo_ape and evo_rpe without options
+  tum,         ///< the TUM benchmark's scripts without options: RPE over 10,000 random pairs
+};
+
 /// How trajectories are compared. The defaults are the ones all figures of this project are given in.
 struct EvaluationOptions {
+  Protocol protocol = Protocol::stillpoint;         ///< set by use_protocol(); to_text shows what it measures
   double max_difference_s = kAssociationTolerance;  ///< poses belong together when strictly closer than this
   double delta_s = 1.0;                             ///< of the RPE over time
   double delta_tolerance_s = 0.05;                  ///< pairs off the delta by more than this are dropped
@@ -83,7 +115,14 @@ struct EvaluationOptions {
                                ///< dropped is bridged, a stretch that was lost is not. The golden figures
                                ///< bridge all gaps, the largest being 2.2 times the median.
   int expected_frames = 0;     ///< frames that should have a pose; 0 = not known
-  bool with_scale = false;     ///< multiply the estimate's lengths by what fits best (Sim(3)) before all else
+  AlignBy align = AlignBy::rigid;  ///< similarity also multiplies the lengths that relative errors are of
+  int align_first = 0;             ///< poses, for AlignBy::first
+  bool nearest = false;  ///< each pose of the shorter trajectory with the nearest of the other, at most
+                         ///< max_difference_s apart and not one to one: evo's association
+  bool interpolate_truth = false;    ///< truth at the estimate's own stamps, between neighbours
+  double interpolation_gap_s = 0.1;  ///< … that are at most so far apart
+  std::vector<RpeDelta> deltas{};    ///< more relative errors
+  std::vector<double> lengths_m{};   ///< errors of all parts of the path of these lengths
 };
 
 /// All that is said about an estimate.
@@ -97,8 +136,10 @@ struct TrajectoryEvaluation {
   double applied_scale = 1.0;      ///< by which the estimate's lengths were multiplied
   std::vector<MatchedPose> matched;
   AbsoluteTrajectoryError ate;
-  RelativePoseError rpe_time;   ///< over EvaluationOptions::delta_s
-  RelativePoseError rpe_frame;  ///< from each matched pose to the next
+  RelativePoseError rpe_time;                ///< over EvaluationOptions::delta_s
+  RelativePoseError rpe_frame;               ///< from each matched pose to the next
+  std::vector<RelativePoseError> rpe_more;   ///< over EvaluationOptions::deltas, and what a protocol adds
+  std::vector<RelativePoseError> by_length;  ///< over EvaluationOptions::lengths_m
 
   /// Whether there is any figure at all.
   [[nodiscard]] bool has_figures() const {
@@ -111,7 +152,18 @@ struct TrajectoryEvaluation {
 [[nodiscard]] std::vector<MatchedPose> match_trajectories(const Trajectory& truth, const Trajectory& estimate,
                                                           double max_difference_s = kAssociationTolerance);
 
-[[nodiscard]] AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched);
+/// Each pose of the shorter trajectory with the nearest of the longer, at most `max_difference_s` apart; a
+/// pose may be taken twice.
+[[nodiscard]] std::vector<MatchedPose> match_nearest(const Trajectory& truth, const Trajectory& estimate,
+                                                     double max_difference_s);
+
+/// Each estimated pose with the truth at its own stamp, between neighbours at most `max_gap_s` apart.
+[[nodiscard]] std::vector<MatchedPose> match_interpolated(const Trajectory& truth, const Trajectory& estimate,
+                                                          double max_gap_s);
+
+/// @param align similarity is rigid here: the caller has applied the scale
+[[nodiscard]] AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched,
+                                                     AlignBy align = AlignBy::rigid, int align_first = 0);
 
 /// For each matched pose the one nearest to `delta_s` later, as the TUM benchmark's script does with a fixed
 /// delta in seconds.
@@ -121,6 +173,28 @@ struct TrajectoryEvaluation {
 /// From each matched pose to the next, where they are at most `neighbour_gap` times the median gap apart.
 [[nodiscard]] RelativePoseError relative_error_per_frame(const std::vector<MatchedPose>& matched,
                                                          double neighbour_gap);
+
+/// From each matched pose to the one `frames` matched poses on.
+[[nodiscard]] RelativePoseError relative_error_over_frames(const std::vector<MatchedPose>& matched,
+                                                           int frames);
+
+/// From each matched pose to the first that lies `metres` or more farther along the truth's path: the error
+/// of every part of the path of that length, after Zhang & Scaramuzza (IROS 2018), who align each at its
+/// start.
+[[nodiscard]] RelativePoseError relative_error_over_distance(const std::vector<MatchedPose>& matched,
+                                                             double metres);
+
+/// The pairs of the TUM benchmark's evaluate_rpe.py without --fixed_delta: all of fewer than 100 poses, else
+/// 10,000 that Python 2's random module draws from seed 0.
+/// @param truth its median step says how far off a pose's truth may be: two steps
+[[nodiscard]] RelativePoseError relative_error_of_random_pairs(const Trajectory& truth,
+                                                               const Trajectory& estimate);
+
+/// The options under which figures follow a protocol.
+void use_protocol(Protocol protocol, EvaluationOptions& options);
+
+/// A tenth to a half of the truth's path as far as it is matched, as Zhang & Scaramuzza take them.
+[[nodiscard]] std::vector<double> usual_lengths_m(const std::vector<MatchedPose>& matched);
 
 /// A statistic as people read it, or a dash where there is nothing to measure.
 [[nodiscard]] std::string figure_text(const ErrorStatistics& statistics, int digits);

@@ -9,7 +9,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kRowsLookedAt = 64;
-constexpr int kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17;
+constexpr int kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17, kReplicaColumns = 16;
 
 /// A header's cell in small letters, without its unit in brackets and blanks about it.
 std::string plain(std::string_view cell) {
@@ -96,7 +96,8 @@ void count_columns(const std::vector<TextLine>& lines, std::size_t from, Traject
   };
   if (parted.empty()) return;
   const auto is_known = [](int columns) {
-    return columns == kTumColumns || columns == kKittiColumns || columns == kEurocColumns;
+    return columns == kTumColumns || columns == kKittiColumns || columns == kEurocColumns ||
+           columns == kReplicaColumns;
   };
   const int plain_count = most(parted)->first, comma_count = most(with_commas)->first;
   layout.decimal_commas = is_known(comma_count) && !is_known(plain_count);
@@ -148,7 +149,8 @@ std::vector<int> TrajectoryLayout::wanted() const {
 }
 
 std::string TrajectoryLayout::expected() const {
-  if (is_matrix) return "the 12 numbers of a 3x4 matrix";
+  if (is_matrix)
+    return columns == kReplicaColumns ? "the 16 numbers of a 4x4 matrix" : "the 12 numbers of a 3x4 matrix";
   const bool w_first = order == QuaternionOrder::wxyz;
   const std::string tum = w_first ? "timestamp tx ty tz qw qx qy qz" : "timestamp tx ty tz qx qy qz qw";
   return columns == kTumColumns ? "the 8 numbers " + tum
@@ -173,7 +175,7 @@ TrajectoryLayout find_layout(const std::vector<TextLine>& lines, const std::vect
   if (layout.columns == kEurocColumns) {
     layout.order_is_named = true;
     layout.set_order(QuaternionOrder::wxyz);
-  } else if (layout.columns == kKittiColumns) {
+  } else if (layout.columns == kKittiColumns || layout.columns == kReplicaColumns) {
     layout.is_matrix = true;
   } else {
     layout.columns = kTumColumns;

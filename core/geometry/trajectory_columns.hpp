@@ -19,7 +19,7 @@ struct TrajectoryLayout {
   std::array<int, 4> quaternion = {4, 5, 6, 7};  ///< columns of x, y, z, w
   QuaternionOrder order = QuaternionOrder::xyzw;
   bool order_is_named = false;  ///< by a header, or by the format
-  bool is_matrix = false;       ///< 12 columns: a 3x4 matrix, row by row; no stamps
+  bool is_matrix = false;       ///< 12 or 16 columns: a 3x4 or 4x4 matrix, row by row; no stamps
   bool decimal_commas = false;
   int header_rows = 0;  ///< 1 where the first line that is no comment names the columns
 

@@ -129,7 +129,8 @@ class Reader {
     rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
     if (!((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 10 * kLengthTolerance) ||
         rotation.determinant() < 0) {
-      fault(line, "found 12 numbers that are no rotation and translation, expected the rows of a 3x4 matrix");
+      fault(line, fmt::format("found numbers that are no rotation and translation, expected {}",
+                              layout_.expected()));
       return Fault::quaternion;
     }
     pose.timestamp = row;

@@ -29,7 +29,7 @@ struct TrajectoryFile {
 /// - EuRoC's and TUM-VI's csv: a stamp, a position, a quaternion with w first, then whatever follows;
 /// - any table of 8 or more columns whose header names them (`timestamp, x, y, z, qw, qx, qy, qz`, …), in any
 ///   order;
-/// - KITTI: the 12 numbers of a 3x4 matrix, no stamps.
+/// - KITTI: the 12 numbers of a 3x4 matrix, no stamps; Replica: the 16 of a 4x4 matrix.
 /// Columns are parted by blanks, tabs, commas or semicolons; decimal commas are read where blanks, tabs or
 /// semicolons part columns.
 ///

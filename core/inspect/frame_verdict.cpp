@@ -69,7 +69,7 @@ std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
                        recall ? fmt::format("; the mask holds {} of these", percent(*recall)) : "");
   }
   if (removal_hurt) return "solved without removal, the step is better";
-  if (!record.note.empty()) return record.note;
+  if (std::string remarks = remarks_on(record); !remarks.empty()) return remarks;
   const auto inliers = standing_of(run.measured(), frame_figure("inliers"), row);
   if (inliers && inliers->bad)
     return fmt::format("the pose rests on {:.0f} inliers, usually {:.0f}", inliers->value, inliers->median);

@@ -1,6 +1,7 @@
 // The part of ReplayableRun that has a finished run: all that its records hold at once, and what they do not
 // hold once odometry has seen the frames again.
 #include "core/inspect/replayable_run.hpp"
+#include "core/odometry/engines.hpp"
 
 namespace stillpoint {
 
@@ -20,7 +21,10 @@ ReplayableRun::ReplayableRun(const FrameSource& source, std::shared_ptr<const Re
     records_.push_back(record);
     records_.back().features = {};
   }
+  if (!recorded_->outside.empty()) seen_ = processed();
 }
+
+std::string ReplayableRun::name() const { return recorded_ ? run_name(*recorded_) : run_label(config()); }
 
 void ReplayableRun::catch_up_one(const ReadFrame& read) {
   if (seen_ % options_.checkpoint_every == 0) keep_checkpoint();

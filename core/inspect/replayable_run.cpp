@@ -37,7 +37,7 @@ void ReplayableRun::keep_motion_state() {
 
 bool ReplayableRun::can_repeat_motion(int index) const {
   const MotionNeeds& needs = odometry_.motion().info().needs;
-  if (needs.matches || index > processed()) return false;
+  if (needs.matches || index > processed() || !outside().empty()) return false;
   if (!needs.keeps_state) return !needs.first_pose || index < processed();
   return index < seen_ && motion_states_.upper_bound(index) != motion_states_.begin();
 }
@@ -155,7 +155,7 @@ std::vector<PastFrame> ReplayableRun::frames_before(int index, int count, const 
 
 ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFrame& read) const {
   ReplayableRun other(*source_, config, options_);
-  if (from <= begins_at_ || from >= processed()) return other;
+  if (from <= begins_at_ || from >= processed() || !outside().empty()) return other;
   const Odometry here = before(from, read);
   std::optional<Odometry> odometry =
       here.continued_with(config, frames_before(from, here.frames_wanted(config), read));
@@ -172,7 +172,7 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
 
 RunView ReplayableRun::view() const {
   RunView view;
-  view.name = run_label(config());
+  view.name = name();
   view.records = records_;
   view.scores = scores_;
   view.trajectory = is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);

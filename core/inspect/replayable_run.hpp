@@ -101,6 +101,10 @@ class ReplayableRun {
   /// Of the map, and after them those that left it because they moved.
   [[nodiscard]] std::vector<SavedPoint> points() const;
 
+  /// What another program's run is called, of which nothing can be computed again here; empty = it is ours.
+  [[nodiscard]] std::string outside() const { return recorded_ ? recorded_->outside : std::string(); }
+  /// What it is called.
+  [[nodiscard]] std::string name() const;
   /// Frames that odometry has seen here: all that are processed, but for a recorded run.
   [[nodiscard]] int seen() const { return seen_; }
   /// Shows odometry the next of a recorded run's frames that it has not seen.

@@ -1,5 +1,7 @@
 #include "core/inspect/shown_run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.hpp"
@@ -74,6 +76,11 @@ ShownRun::Extras ShownRun::extras_of(int index) {
       std::find_if(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
   if (kept != extras_.end()) return *kept;
   Extras extras{.index = index};
+  if (const std::string name = track_.outside(); !name.empty()) {
+    extras.mask = track_.recorded_mask(index);
+    extras.note = fmt::format("{} was run by another program, and its stages are not known here", name);
+    return extras;
+  }
   // An engine's own stages are in no record: the frame is processed again.
   const bool again_whole = engine_of(track_.config()).has_stages && is_own(index) && index < track_.seen();
   if (!again_whole && track_.can_repeat_motion(index)) {
@@ -125,7 +132,7 @@ bool ShownRun::set_out_for(int index) {
 }
 
 bool ShownRun::prepare_preview(int index) {
-  if (!is_own(index)) return true;
+  if (!is_own(index) || !track_.outside().empty()) return true;
   if ((!before_ || before_->index != index) && !set_out_for(index)) return false;
   ReplayableRun::Rewound& way = before_->way;
   if (way.next < index) {
@@ -147,6 +154,7 @@ const MotionReplay& ShownRun::motion_before(int index) {
 std::optional<MotionAgain> ShownRun::motion_again(int index, const Config& config) {
   const MotionNeeds& needs = method_of(config).needs;
   if (needs.matches || (needs.first_pose && !is_own(index))) return std::nullopt;
+  if (needs.keeps_state && !track_.outside().empty()) return std::nullopt;
   const bool processed = index < track_.processed();
   const FrameRecord* record = processed ? &track_.records()[static_cast<std::size_t>(index)] : nullptr;
   const auto repeat = [&](MotionReplay motion) {
@@ -165,6 +173,9 @@ std::optional<MotionAgain> ShownRun::motion_again(int index, const Config& confi
 }
 
 FrameResult ShownRun::process_again(int index, const Config& config) {
+  if (!track_.outside().empty())
+    throw InputError(
+        fmt::format("{} was run by another program: only that can process a frame again", track_.outside()));
   while (!prepare_preview(index)) {
   }
   const Odometry& here = before_->way.odometry;
@@ -189,7 +200,7 @@ FrameView ShownRun::images_of(int index, const Config& config, Extras extras) {
   StageLog log;
   if (view.frame.readable() && extras.note.empty())
     log = MotionStage(source_->camera(), config).describe(view.frame, extras.motion);
-  if (log.method.empty()) log.method = config.run.method;
+  if (log.method.empty()) log.method = track_.outside().empty() ? config.run.method : track_.outside();
   if (log.note.empty()) log.note = extras.note;
   view.reference.index = log.reference >= 0 ? log.reference : index - 1;
   if (view.reference.index >= 0) view.reference = frames_->read(view.reference.index);

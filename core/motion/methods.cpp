@@ -17,7 +17,8 @@
   METHOD(yi2013)                   \
   METHOD(alcantarilla2012)         \
   METHOD(gao2019)                  \
-  METHOD(lin2017)
+  METHOD(lin2017)                  \
+  METHOD(masks)
 
 namespace stillpoint {
 
@@ -64,6 +65,11 @@ const MethodInfo& baseline_method() {
   return *std::find_if(methods().begin(), methods().end(), [](const MethodInfo& m) { return m.baseline; });
 }
 
+const MethodInfo& outside_masks_method() {
+  return *std::find_if(methods().begin(), methods().end(),
+                       [](const MethodInfo& m) { return m.needs.outside_masks; });
+}
+
 void register_method(MethodInfo method) {
   const std::vector<std::string> names = method_names();
   if (std::find(names.begin(), names.end(), method.name) != names.end())
@@ -72,8 +78,8 @@ void register_method(MethodInfo method) {
     for (const FigureInfo& theirs : other.figures)
       for (const FigureInfo& figure : method.figures)
         if (figure.name == theirs.name)
-          throw InputError(fmt::format("methods {} and {} both have a figure '{}'", method.name, other.name,
-                                       figure.name));
+          throw InputError(
+              fmt::format("methods {} and {} both have a figure '{}'", method.name, other.name, figure.name));
   registry().push_back(std::move(method));
 }
 

@@ -78,6 +78,9 @@ struct MethodInfo {
 /// The one that removes nothing.
 [[nodiscard]] const MethodInfo& baseline_method();
 
+/// The one that removes by masks made elsewhere and nothing of its own.
+[[nodiscard]] const MethodInfo& outside_masks_method();
+
 /// Adds a method to those there are: for programs that bring their own. Before the first Config is made.
 /// @throws InputError when its name, or that of one of its figures, is taken
 void register_method(MethodInfo method);

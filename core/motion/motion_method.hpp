@@ -24,12 +24,13 @@ struct Config;
 
 /// What a method asks for. What it does not ask for it is not given.
 struct MotionNeeds {
-  bool depth = false;        ///< frames without depth go to MethodInfo::without_depth instead
-  bool first_pose = false;   ///< detect() wants the frame's pose: it runs after a first pose was estimated
-  bool matches = false;      ///< detect() wants the frame's features and their map points; implies first_pose
-  bool true_mask = false;    ///< detect() wants the ground-truth mask: a reference, not a method
-  bool keeps_state = false;  ///< what it finds in a frame depends on more than frames_back() frames
-  int checkpoint_every = 25;  ///< frames between copies of that state: few where a copy is light
+  bool depth = false;       ///< frames without depth go to MethodInfo::without_depth instead
+  bool first_pose = false;  ///< detect() wants the frame's pose: it runs after a first pose was estimated
+  bool matches = false;     ///< detect() wants the frame's features and their map points; implies first_pose
+  bool true_mask = false;   ///< detect() wants the ground-truth mask: a reference, not a method
+  bool outside_masks = false;  ///< it is nothing without masks made elsewhere (config section `masks`)
+  bool keeps_state = false;    ///< what it finds in a frame depends on more than frames_back() frames
+  int checkpoint_every = 25;   ///< frames between copies of that state: few where a copy is light
 };
 
 /// What a method makes of a frame before its turn, when no pose is known: its own type.
@@ -52,6 +53,17 @@ struct MotionFeature {
   Eigen::Vector3d world = Eigen::Vector3d::Zero();  ///< m: that point, where there is one
 };
 
+/// A frame's mask that was made elsewhere.
+struct OutsideMask {
+  struct Source {
+    std::string name;  ///< of its folder or list
+    cv::Mat mask;      ///< as `mask`; empty where it has none for the frame
+  };
+  cv::Mat mask;  ///< CV_8UC1, 255 = dynamic, the frame's size: of all sources; empty where none has one
+  std::vector<Source> sources;
+  std::string problem;  ///< why one is missing or not used; empty when all is well
+};
+
 /// A frame and what is known of it when it is judged.
 struct MotionInput {
   const Frame& frame;
@@ -59,7 +71,8 @@ struct MotionInput {
   std::optional<Pose> camera_from_world{};              ///< a first pose, or for prior_mask() a predicted one
   std::span<const MotionFeature> features{};            ///< needs.matches: all features of the frame
   cv::Mat true_mask{};  ///< needs.true_mask: CV_8UC1, 255 = moving; empty where it is not known
-  int threads = 1;      ///< any number gives the same bytes
+  std::shared_ptr<const OutsideMask> outside{};  ///< null where the config names no outside masks
+  int threads = 1;                               ///< any number gives the same bytes
 };
 
 /// A method's judgement of one frame.
@@ -73,7 +86,9 @@ struct MotionResult {
   int rounds = 0;               ///< of an iterative method; 0 for others
   std::vector<double> figures;  ///< one for each of MethodInfo::figures; empty where there are none
   std::shared_ptr<const MotionTrace> trace;
-  std::string note;  ///< why there is no mask, or why it is to be doubted; empty when all is well
+  std::string note;          ///< why there is no mask, or why it is to be doubted; empty when all is well
+  std::string mask_problem;  ///< why a mask that was to be given, true or outside, was not; empty otherwise
+  std::shared_ptr<const OutsideMask> outside;  ///< what MotionStage added to the method's own
 };
 
 /// How a judged frame ended, for a method's own state.

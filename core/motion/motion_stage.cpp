@@ -13,6 +13,18 @@ const MethodInfo* stand_in_of(const MethodInfo& info) {
   return info.without_depth.empty() ? nullptr : &method_named(info.without_depth);
 }
 
+/// What a method made of a frame, and the masks made elsewhere that belong to it.
+struct WithOutside final : MotionPreparation {
+  std::shared_ptr<const MotionPreparation> own;
+  std::shared_ptr<const OutsideMask> outside;
+};
+
+/// What the method itself prepared.
+std::shared_ptr<const MotionPreparation> own_of(const std::shared_ptr<const MotionPreparation>& preparation) {
+  const auto* both = dynamic_cast<const WithOutside*>(preparation.get());
+  return both == nullptr ? preparation : both->own;
+}
+
 std::unique_ptr<MotionMethod> made(const MethodInfo* info, const Camera& camera, const Config& config) {
   return info == nullptr ? nullptr : info->make(camera, config);
 }
@@ -21,10 +33,14 @@ std::unique_ptr<MotionMethod> made(const MethodInfo* info, const Camera& camera,
 
 MotionPreparer::MotionPreparer(const Camera& camera, const Config& config)
     : method_(made(&method_of(config), camera, config)),
-      stand_in_(made(stand_in_of(method_of(config)), camera, config)) {}
+      stand_in_(made(stand_in_of(method_of(config)), camera, config)),
+      outside_(config) {}
 
 MotionPreparer::MotionPreparer(const MotionPreparer& other)
-    : method_(cloned(other.method_)), stand_in_(cloned(other.stand_in_)), past_(other.past_) {}
+    : method_(cloned(other.method_)),
+      stand_in_(cloned(other.stand_in_)),
+      outside_(other.outside_),
+      past_(other.past_) {}
 
 MotionPreparer& MotionPreparer::operator=(const MotionPreparer& other) {
   if (this != &other) *this = MotionPreparer(other);
@@ -36,10 +52,15 @@ std::shared_ptr<const MotionPreparation> MotionPreparer::prepare(const Frame& fr
   const std::vector<std::shared_ptr<const MotionPreparation>> past(past_.begin(), past_.end());
   auto preparation = method.prepare(frame, past, threads);
   pass(preparation);
-  return preparation;
+  if (!outside_.any()) return preparation;
+  auto both = std::make_shared<WithOutside>();
+  both->own = std::move(preparation);
+  both->outside = outside_.read(frame);
+  return both;
 }
 
-void MotionPreparer::pass(const std::shared_ptr<const MotionPreparation>& preparation) {
+void MotionPreparer::pass(const std::shared_ptr<const MotionPreparation>& prepared) {
+  const std::shared_ptr<const MotionPreparation> preparation = own_of(prepared);
   if (!preparation || frames_back() == 0) return;
   const auto kept = preparation->for_later();
   past_.push_back(kept ? kept : preparation);
@@ -58,7 +79,8 @@ MotionStage::MotionStage(const Camera& camera, const Config& config)
       info_(&method_of(config)),
       stand_in_info_(stand_in_of(*info_)),
       method_(made(info_, camera, config)),
-      stand_in_(made(stand_in_info_, camera, config)) {}
+      stand_in_(made(stand_in_info_, camera, config)),
+      outside_(config) {}
 
 MotionStage::MotionStage(const MotionStage& other)
     : camera_(other.camera_),
@@ -67,6 +89,7 @@ MotionStage::MotionStage(const MotionStage& other)
       stand_in_info_(other.stand_in_info_),
       method_(cloned(other.method_)),
       stand_in_(cloned(other.stand_in_)),
+      outside_(other.outside_),
       stand_in_used_(other.stand_in_used_) {}
 
 MotionStage& MotionStage::operator=(const MotionStage& other) {
@@ -82,29 +105,49 @@ const MotionMethod& MotionStage::method_for(const Frame& frame) const {
   return by_stand_in(frame) ? *stand_in_ : *method_;
 }
 
+/// What the method is given of a frame: its own preparation, and the outside mask beside it.
+MotionInput MotionStage::for_method(const MotionInput& input) const {
+  MotionInput given = input;
+  given.prepared = own_of(input.prepared);
+  if (const auto* both = dynamic_cast<const WithOutside*>(input.prepared.get()))
+    given.outside = both->outside;
+  else if (outside_.any())
+    given.outside = outside_.read(input.frame);
+  return given;
+}
+
 cv::Mat MotionStage::prior_mask(const MotionInput& input) const {
-  return method_for(input.frame).prior_mask(input);
+  const MotionInput given = for_method(input);
+  MotionResult prior;
+  prior.mask = method_for(input.frame).prior_mask(given);
+  combine_with_outside(config_.of<MasksConfig>(), given, prior);
+  return prior.mask;
 }
 
 MotionResult MotionStage::detect(const MotionInput& input) const {
-  return method_for(input.frame).detect(input);
+  const MotionInput given = for_method(input);
+  MotionResult result = method_for(input.frame).detect(given);
+  combine_with_outside(config_.of<MasksConfig>(), given, result);
+  return result;
 }
 
 void MotionStage::commit(const MotionInput& input, const MotionResult& result, const MotionOutcome& outcome) {
+  const MotionInput given = for_method(input);
   if (by_stand_in(input.frame)) {
-    stand_in_->commit(input, result, outcome);
+    stand_in_->commit(given, result, outcome);
     stand_in_used_ = true;
     return;
   }
   // What the stand-in saw before frames with depth says nothing of those after them.
   if (stand_in_used_) stand_in_ = made(stand_in_info_, camera_, config_);
   stand_in_used_ = false;
-  method_->commit(input, result, outcome);
+  method_->commit(given, result, outcome);
 }
 
 StageLog MotionStage::describe(const Frame& frame, const MotionResult& result) const {
   StageLog log = method_for(frame).describe(frame, result);
   log.method = info_for(frame).name;
+  describe_outside(frame, result, log);
   return log;
 }
 

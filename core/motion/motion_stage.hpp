@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config.hpp"
+#include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
 #include "core/motion/motion_method.hpp"
 
@@ -23,7 +24,7 @@ class MotionPreparer {
 
   [[nodiscard]] std::shared_ptr<const MotionPreparation> prepare(const Frame& frame, int threads);
   /// Takes note of a frame that another preparer prepared.
-  void pass(const std::shared_ptr<const MotionPreparation>& preparation);
+  void pass(const std::shared_ptr<const MotionPreparation>& prepared);
 
   void forget() { past_.clear(); }
   /// Frames before `next` that have to be prepared once more, after forget(), as far as they can be read.
@@ -34,6 +35,7 @@ class MotionPreparer {
  private:
   std::unique_ptr<MotionMethod> method_;
   std::unique_ptr<MotionMethod> stand_in_;  // for frames without depth; null where the method takes them
+  OutsideMasks outside_;
   std::deque<std::shared_ptr<const MotionPreparation>> past_;  // newest last
 };
 
@@ -44,7 +46,8 @@ struct PastFrame {
   bool estimated = false;  ///< the pose was measured, not predicted
 };
 
-/// The run's motion method, and the one that judges frames without depth where the method cannot. A value: a
+/// The run's motion method, the one that judges frames without depth where the method cannot, and the masks
+/// made elsewhere that the config adds to either. A value: a
 /// copy goes on from where the original stood, and gives the same bytes from the same frames.
 class MotionStage {
  public:
@@ -79,6 +82,7 @@ class MotionStage {
   [[nodiscard]] MotionStage continued_with(const Config& config, const std::vector<PastFrame>& before) const;
 
  private:
+  [[nodiscard]] MotionInput for_method(const MotionInput& input) const;
   [[nodiscard]] bool by_stand_in(const Frame& frame) const { return stand_in_ && !frame.has_depth(); }
   [[nodiscard]] std::unique_ptr<MotionMethod> kept_under(const Config& config) const;
 
@@ -87,6 +91,7 @@ class MotionStage {
   const MethodInfo* info_;
   const MethodInfo* stand_in_info_ = nullptr;
   std::unique_ptr<MotionMethod> method_, stand_in_;
+  OutsideMasks outside_;
   bool stand_in_used_ = false;  // since the last frame with depth
 };
 

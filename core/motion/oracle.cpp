@@ -13,7 +13,8 @@ class Oracle final : public MotionMethod {
   [[nodiscard]] MotionResult detect(const MotionInput& input) const override {
     MotionResult result;
     if (input.true_mask.size() != input.frame.gray.size()) {
-      result.note = "there is no ground-truth mask for this frame";
+      result.mask_problem = "there is no ground-truth mask for this frame";
+      result.note = result.mask_problem;
       return result;
     }
     result.mask = input.true_mask;

@@ -11,6 +11,7 @@ void judge(const MotionStage& motion, const MotionInput& input, FrameResult& res
   FrameRecord& record = result.record;
   record.mask_share = result.motion.mask_share;
   record.motion_rounds = result.motion.rounds;
+  record.mask_problem = result.motion.mask_problem;
   const std::vector<FigureInfo>& infos = motion.info_for(input.frame).figures;
   record.motion_figures.clear();
   for (std::size_t i = 0; i < result.motion.figures.size() && i < infos.size(); ++i)

@@ -49,4 +49,8 @@ std::string reprojection_text(const FrameRecord& record) {
   return std::isnan(record.rms_px) ? "–" : fmt::format("{:.3f} px", record.rms_px);
 }
 
+std::string remarks_on(const FrameRecord& record) {
+  return record.note + (record.note.empty() || record.mask_problem.empty() ? "" : "; ") + record.mask_problem;
+}
+
 }  // namespace stillpoint

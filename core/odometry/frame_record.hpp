@@ -118,8 +118,9 @@ struct FrameRecord {
   PoseStart pose_start = PoseStart::none;
 
   int features_found = 0, features_removed = 0, features_kept = 0;
-  double mask_share = 0.0;                   ///< of the frame's pixels, 0 to 1
-  int motion_rounds = 0;                     ///< of an iterative motion method; 0 for others
+  double mask_share = 0.0;   ///< of the frame's pixels, 0 to 1
+  std::string mask_problem;  ///< why a mask that was to be given, true or outside, was not; empty otherwise
+  int motion_rounds = 0;     ///< of an iterative motion method; 0 for others
   std::vector<MotionFigure> motion_figures;  ///< what method and engine measured (MethodInfo::figures, then
                                              ///< EngineInfo::figures)
 
@@ -145,5 +146,8 @@ struct FrameRecord {
 
 /// "0.412 px"; a dash by an engine that measures no reprojection.
 [[nodiscard]] std::string reprojection_text(const FrameRecord& record);
+
+/// What there is to say of the frame: its note, and why a mask was missing.
+[[nodiscard]] std::string remarks_on(const FrameRecord& record);
 
 }  // namespace stillpoint

@@ -84,6 +84,7 @@ void transfer_fields(Archive& archive, Record& r) {
   archive(r.timestamp);
   archive(r.status);
   archive(r.note);
+  archive(r.mask_problem);
   transfer_pose(archive, r.world_from_camera);
   archive(r.estimated);
   archive(r.reference_keyframe);
@@ -142,6 +143,7 @@ void transfer_point(Archive& archive, SavedPointType& point) {
   for (int i = 0; i < 3; ++i) archive(point.position[i]);
   archive(point.observations);
   archive(point.moved);
+  for (int i = 0; i < 3; ++i) archive(point.colour[i]);
 }
 
 constexpr std::size_t kFeatureBytes = 26;

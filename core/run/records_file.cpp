@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/run/run_report.hpp"
 
 namespace stillpoint {
@@ -84,6 +85,7 @@ void read_header(const std::vector<std::uint8_t>& content, RecordedRun& recorded
   const auto json = nlohmann::json::parse(content.begin(), content.end());
   recorded.origin = origin_from_json(json.at("sequence"));
   json.at("frames_in_sequence").get_to(recorded.run.frames_in_sequence);
+  recorded.outside = json.value("outside", "");
   recorded.run.config = config_from_toml(json.at("config").get<std::string>(), "its config");
 }
 
@@ -123,7 +125,7 @@ void do_without_tail(RecordedRun& recorded, const std::string& cut_short) {
 }  // namespace
 
 RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin,
-                             const Config& config)
+                             const Config& config, const std::string& outside)
     : path_(run_folder / kRecordsName), file_(path_, std::ios::binary) {
   if (!file_)
     throw InputError(fmt::format("{}: cannot be written ({})", path_.string(), std::strerror(errno)));
@@ -133,6 +135,7 @@ RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const Sequ
   json["sequence"] = to_json(origin, run_folder);
   json["frames_in_sequence"] = origin.frames;
   json["config"] = to_toml(config);
+  if (!outside.empty()) json["outside"] = outside;
   const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   for (const char letter : text) content_(letter);
   put_chunk(kHeader);
@@ -172,6 +175,10 @@ void RecordsWriter::put_chunk(char kind) {
   file_.write(reinterpret_cast<const char*>(packed_.data()), static_cast<std::streamsize>(length));
   file_.flush();
   if (!file_) error_ = errno != 0 ? errno : EIO;
+}
+
+std::string run_name(const RecordedRun& recorded) {
+  return recorded.outside.empty() ? run_label(recorded.run.config) : recorded.outside;
 }
 
 RecordedRun read_records(const std::filesystem::path& run_folder) {

@@ -28,7 +28,7 @@ namespace stillpoint {
 // run's hash. Each chunk is handed to the system at once: a run that is killed leaves its frames, and is read
 // without what the end would have told.
 
-inline constexpr std::uint32_t kRecordsVersion = 6;
+inline constexpr std::uint32_t kRecordsVersion = 7;
 inline constexpr const char* kRecordsName = "records.bin";
 
 /// Writes records.bin while a run goes on. A frame that cannot be written, because the disk is full, does not
@@ -36,7 +36,9 @@ inline constexpr const char* kRecordsName = "records.bin";
 class RecordsWriter {
  public:
   /// @throws InputError when the file cannot be made
-  RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin, const Config& config);
+  /// @param outside RecordedRun::outside
+  RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin, const Config& config,
+                const std::string& outside = {});
 
   void add(const FrameResult& frame);
 
@@ -61,9 +63,13 @@ struct RecordedRun {
   std::vector<PackedMask> masks;  ///< one a record: what was removed
   Trajectory ground_truth;        ///< the sequence's, as it was
   std::string hash;               ///< run_hash of the records
+  std::string outside;            ///< what another program's run is called (outside_run.hpp); empty = ours
   std::string cut_short;  ///< one sentence where the file ends early: what it holds is there without map,
                           ///< scores and adjusted poses; empty when it is whole
 };
+
+/// What a run is called: by the program that made it, else by method and odometry.
+[[nodiscard]] std::string run_name(const RecordedRun& recorded);
 
 /// @throws InputError in one sentence for a file that is missing, no records file, of another version,
 /// damaged, or cut short before its first frame

@@ -46,13 +46,13 @@ std::string frames_csv(const RunResult& run, const RunReport& report) {
                           ? std::string()
                           : fmt::format("{:.{}f}", value, infos[static_cast<std::size_t>(column)].digits));
     }
-    cells.push_back(record.note);
+    cells.push_back(remarks_on(record));
     table.rows.push_back(std::move(cells));
   }
   return to_csv(table);
 }
 
-/// Map points in white, keyframe centres in orange: any mesh viewer opens it.
+/// Map points in the colours they were seen in, keyframe centres in orange: any mesh viewer opens it.
 std::string map_ply(const RunResult& run) {
   std::string text = fmt::format(
       "ply\nformat ascii 1.0\ncomment world coordinates in metres: the first tracked frame's camera\n"
@@ -62,7 +62,9 @@ std::string map_ply(const RunResult& run) {
   const auto vertex = [&text](const Eigen::Vector3d& p, const char* colour) {
     text += fmt::format("{:.5f} {:.5f} {:.5f} {}\n", p.x(), p.y(), p.z(), colour);
   };
-  for (const SavedPoint& point : run.points) vertex(point.position, "255 255 255");
+  for (const SavedPoint& point : run.points)
+    vertex(point.position,
+           fmt::format("{} {} {}", point.colour[2], point.colour[1], point.colour[0]).c_str());
   for (const SavedKeyframe& keyframe : run.keyframes)
     vertex(keyframe.pose.world_from_camera.translation(), "230 159 0");
   return text;

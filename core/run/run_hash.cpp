@@ -1,5 +1,7 @@
 #include "core/run/run_hash.hpp"
 
+#include <cmath>
+
 namespace stillpoint {
 
 void RunHash::add(const FrameRecord& r) {
@@ -17,6 +19,18 @@ bool computed_alike(const FrameRecord& a, const FrameRecord& b) {
   first.add(a);
   second.add(b);
   return first.hex() == second.hex();
+}
+
+bool part_ways(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b, std::size_t frame) {
+  constexpr double kMostApart = 0.02;           // m a frame
+  constexpr double kMostTurned = M_PI / 180.0;  // rad a frame
+  if (a[frame].estimated != b[frame].estimated) return true;
+  if (frame == 0 || !a[frame].estimated || !a[frame - 1].estimated || !b[frame - 1].estimated) return false;
+  const auto motion = [frame](const std::vector<FrameRecord>& run) -> Pose {
+    return run[frame - 1].world_from_camera.inverse() * run[frame].world_from_camera;
+  };
+  const Pose off = motion(a).inverse() * motion(b);
+  return off.translation().norm() > kMostApart || Eigen::AngleAxisd(off.linear()).angle() > kMostTurned;
 }
 
 }  // namespace stillpoint

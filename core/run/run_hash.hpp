@@ -21,4 +21,9 @@ class RunHash {
 /// Whether two frames were computed alike, as far as a run's hash can tell.
 [[nodiscard]] bool computed_alike(const FrameRecord& a, const FrameRecord& b);
 
+/// Whether two runs of different programs part at a frame: one has its pose and the other has not, or the
+/// camera's motion since the frame before differs by more than 2 cm or 1 degree. Worlds need not be aligned.
+[[nodiscard]] bool part_ways(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b,
+                             std::size_t frame);
+
 }  // namespace stillpoint

@@ -93,6 +93,16 @@ std::string depth_gaps(const RunResult& run) {
                      ranges(run.records, lacks), first.why, reasons > 0 ? ", …" : "");
 }
 
+/// Which frames lacked the mask that was to be given, with the first one's reason.
+std::string mask_gaps(const RunResult& run) {
+  const auto lacks = [](const FrameRecord& r) { return !r.mask_problem.empty(); };
+  const auto first = std::find_if(run.records.begin(), run.records.end(), lacks);
+  if (first == run.records.end()) return {};
+  const auto count = std::count_if(run.records.begin(), run.records.end(), lacks);
+  return fmt::format("{} of {} frames: {} ({}{})", count, run.records.size(), ranges(run.records, lacks),
+                     first->mask_problem, count > 1 ? ", …" : "");
+}
+
 /// What lets truth and estimate fit far better.
 std::string doubt_of(const TrajectoryEvaluation& evaluation) {
   if (const auto suspicion = suspect_convention(evaluation.matched, false)) return suspicion->sentence();
@@ -126,6 +136,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   }
   report.truth_why_not = source.why_not(FramePart::truth);
   report.without_depth = depth_gaps(run);
+  report.without_mask = mask_gaps(run);
   if (report.evaluation) report.doubt = doubt_of(*report.evaluation);
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.speed = speed_of(run);
@@ -156,6 +167,7 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["unreadable_frames"] =
       ranges(run.records, [](const FrameRecord& r) { return r.status == FrameStatus::unreadable; });
   json["frames_without_depth"] = report.without_depth;
+  json["frames_without_mask"] = report.without_mask;
   json["ground_truth_unusable"] =
       report.truth_why_not.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.truth_why_not);
   json["doubt"] = report.doubt.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.doubt);
@@ -204,6 +216,7 @@ std::string to_text(const RunReport& report) {
   } else {
     text += "  no ground truth: no errors\n";
   }
+  if (!report.without_mask.empty()) text += fmt::format("  no mask       {}\n", report.without_mask);
   if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
   if (report.scores.known && !method_named(report.method).baseline)
     text += fmt::format(

@@ -5,6 +5,7 @@
 #include <memory>
 #include <opencv2/features2d.hpp>
 #include <optional>
+#include <unordered_map>
 
 #include "core/median.hpp"
 #include "core/sequence/prefetch.hpp"
@@ -96,6 +97,28 @@ std::vector<SavedPoint> saved_points(const LocalMap& map) {
   return saved;
 }
 
+/// The colours that map points are seen in, by id.
+class PointColours {
+ public:
+  void see(const Frame& frame, const std::vector<FeatureRecord>& features) {
+    const cv::Mat& image = frame.colour.empty() ? frame.gray : frame.colour;
+    for (const FeatureRecord& feature : features) {
+      if (feature.map_point == kNone || feature.fate != FeatureFate::inlier) continue;
+      const cv::Point at(cvRound(feature.pixel.x), cvRound(feature.pixel.y));
+      if (!cv::Rect(cv::Point(), image.size()).contains(at)) continue;
+      colours_[feature.map_point] =
+          image.channels() == 3 ? image.at<cv::Vec3b>(at) : cv::Vec3b::all(image.at<std::uint8_t>(at));
+    }
+  }
+  void give(std::vector<SavedPoint>& points) const {
+    for (SavedPoint& point : points)
+      if (const auto seen = colours_.find(point.id); seen != colours_.end()) point.colour = seen->second;
+  }
+
+ private:
+  std::unordered_map<int, cv::Vec3b> colours_;
+};
+
 std::vector<SavedPoint> moved_points(const LocalMap& map) {
   std::vector<SavedPoint> points;
   for (const MovedPoint& point : map.moved_points())
@@ -135,6 +158,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.records.reserve(static_cast<std::size_t>(std::max(0, end - options.first)));
   result.scores.reserve(result.records.capacity());
   std::vector<double> units;
+  PointColours colours;
   std::optional<PreparedNext> next;
   if (options.first < end) next.emplace(begin(options.first));
   for (int index = options.first; index < end; ++index) {
@@ -162,6 +186,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       if (next) next->wait();  // nothing may run beside, and what the wait takes is the next frame's
       units.push_back(orb_unit_ms(frame.gray));
     }
+    colours.see(frame, processed.record.features);
     if (options.on_frame) options.on_frame(processed);
     if (!options.keep_features) processed.record.features = {};
     result.records.push_back(std::move(processed.record));
@@ -173,6 +198,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   result.trajectory = trajectory_so_far(odometry, result.records);
   result.keyframes = saved_keyframes(odometry.map());
   result.points = saved_points(odometry.map());
+  colours.give(result.points);
   result.moved = moved_points(odometry.map());
   return result;
 }

@@ -19,6 +19,7 @@ struct SavedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, world
   int observations = 0;                                ///< keyframes that see it
   bool moved = false;                                  ///< it left the map because it was found to move
+  cv::Vec3b colour{128, 128, 128};  ///< BGR, as it was last seen as an inlier; grey where that is not known
 };
 
 /// A keyframe as a run leaves it.

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/sequence/association.hpp"
+#include "core/sequence/image_file.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -31,14 +32,6 @@ std::optional<std::string> first_there(const FileStore& folder, Names names) {
   for (const char* name : names)
     if (folder.is_there(name)) return name;
   return std::nullopt;
-}
-
-bool is_image_name(const fs::path& path) {
-  static const std::set<std::string> kinds = {".png",  ".jpg", ".jpeg", ".bmp", ".tif",
-                                              ".tiff", ".ppm", ".pgm",  ".webp"};
-  std::string kind = path.extension().string();
-  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
-  return kinds.count(kind) > 0;
 }
 
 /// The number a file's name is, or ends in ("frame-000012.color").

@@ -11,6 +11,7 @@ namespace stillpoint {
 /// One frame as the camera gave it: all a method may see.
 struct Frame {
   int index = 0;           ///< place in the sequence, from 0
+  std::string name{};      ///< of the colour image's file, without its end; empty where it comes from none
   double timestamp = 0.0;  ///< s, of the colour image
   double depth_timestamp =
       0.0;         ///< s, of the depth image, which sensors take some milliseconds before or after

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <vector>
 
 namespace stillpoint {
@@ -97,6 +99,14 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   }
   if (bytes.empty()) return "is empty (0 bytes)";
   return {};
+}
+
+bool is_image_name(const std::string& file) {
+  static const std::set<std::string> kinds = {".png",  ".jpg", ".jpeg", ".bmp", ".tif",
+                                              ".tiff", ".ppm", ".pgm",  ".webp"};
+  std::string kind = std::filesystem::path(file).extension().string();
+  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return std::tolower(c); });
+  return kinds.count(kind) > 0;
 }
 
 ImageRead read_image(const std::string& path) {

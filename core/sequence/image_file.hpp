@@ -15,6 +15,9 @@ struct ImageRead {
   bool in_metres = false;  ///< depth as CV_32FC1 in metres, 0 = no measurement, as bags have it
 };
 
+/// Whether a file's name ends as those of images do.
+[[nodiscard]] bool is_image_name(const std::string& file);
+
 /// Reads a PNG, JPEG or other image that OpenCV decodes. A PNG is checked chunk by chunk and a JPEG for its
 /// end before a decoder sees it, so that a truncated or damaged file gives a problem rather than half an
 /// image, and decoders have nothing to print. Never throws.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "core/error.hpp"
@@ -229,6 +230,7 @@ Frame ListedSequence::read(int index) const {
   const Entry& listed = entry(index);
   Frame frame;
   frame.index = index;
+  frame.name = std::filesystem::path(listed.colour.file).stem().string();
   frame.timestamp = listed.colour.timestamp;
   const ImageRead image = input_->image(listed.colour.file);
   frame.problem = image.problem;

@@ -5,8 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <thread>
 
+#include "core/text_file.hpp"
 #include "tests/cli/csv_rows.hpp"
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -33,6 +36,14 @@ TEST(Run, LeavesWhatItSays) {
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory_live.txt")), 10U);
   EXPECT_GE(line_count(sequence.folder.read("out/keyframes.txt")), 1U);
   EXPECT_THAT(sequence.folder.read("out/map.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
+  // Points have the colours of the images: greys of the wall, and many of them.
+  std::istringstream map(sequence.folder.read("out/map.ply"));
+  std::set<std::string> colours;
+  for (std::string line; std::getline(map, line);) {
+    const auto words = split_columns(line);
+    if (words.size() == 6 && words[3] == words[4]) colours.emplace(words[5]);
+  }
+  EXPECT_GT(colours.size(), 20U);
   EXPECT_THAT(sequence.folder.read("out/config.toml"), HasSubstr("method = \"paper\""));
   const auto rows = csv_rows(sequence.folder.read("out/frames.csv"));
   ASSERT_EQ(rows.size(), 10U);

@@ -134,7 +134,7 @@ TEST(Scale, IsToldWhereItExplainsTheError) {
   EXPECT_GT(evaluation.ate.translation_m.rmse, 0.1);
   EXPECT_THAT(scale_sentence(evaluation), HasSubstr("multiplied by 2.5"));
   EvaluationOptions options;
-  options.with_scale = true;
+  options.align = AlignBy::similarity;
   evaluation = evaluate_trajectory(truth, estimate, options);
   EXPECT_NEAR(evaluation.applied_scale, 2.5, 0.01);
   EXPECT_LT(evaluation.ate.translation_m.rmse, 0.004);

@@ -33,7 +33,7 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
       {"Time", fmt::format("{:.3f} s", r.timestamp - series_start(session))},
       {"Stamp", fmt::format("{:.4f} s", r.timestamp)},
       {"Status", std::string(to_string(r.status))},
-      {"Note", r.note.empty() ? "–" : r.note},
+      {"Note", remarks_on(r).empty() ? "–" : remarks_on(r)},
       {"Position", position_text(r.world_from_camera)},
       {"Turned",
        fmt::format("{:.2f} °", rotation_angle(r.world_from_camera.linear()) * 180.0 / 3.14159265358979)},

@@ -24,7 +24,8 @@ std::string clock_text(double seconds) {
 
 /// What is worth a line in a record; empty for a frame like any other.
 std::string note_of(const FrameRecord& record) {
-  if (!record.note.empty()) return fmt::format("{}: {}", to_string(record.status), record.note);
+  if (const std::string remarks = remarks_on(record); !remarks.empty())
+    return fmt::format("{}: {}", to_string(record.status), remarks);
   if (record.status == FrameStatus::tracked) return "";
   return std::string(to_string(record.status));
 }

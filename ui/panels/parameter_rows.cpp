@@ -49,6 +49,7 @@ bool is_switch(const Parameter& parameter) { return std::holds_alternative<bool*
 std::string range_text(const Parameter& parameter) {
   if (!parameter.choices.empty()) return fmt::format("one of {}", parameter.choices.size());
   if (is_switch(parameter)) return "off or on";
+  if (std::holds_alternative<std::string*>(parameter.value)) return "a text";
   return fmt::format("{}{}{:g} to {:g}", parameter.unit, parameter.unit.empty() ? "" : ", ", parameter.min,
                      parameter.max);
 }

@@ -275,12 +275,20 @@ class ParametersPanel final : public NamedPanel {
   static void help(const Parameter& parameter, const Parameter& usual) {
     if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
     ImGui::SetTooltip("%s\n%s\ndefault %s%s%s; %s\nCtrl and click to type a value", parameter.key.c_str(),
-                      parameter.help.c_str(), value_text(usual).c_str(), parameter.unit.empty() ? "" : " ",
-                      parameter.unit.c_str(), range_text(parameter).c_str());
+                      parameter.help.c_str(), value_text(usual).empty() ? "none" : value_text(usual).c_str(),
+                      parameter.unit.empty() ? "" : " ", parameter.unit.c_str(),
+                      range_text(parameter).c_str());
   }
 
   static void edit(const UiFrame& frame, const Parameter& parameter) {
     if (auto* const* text = std::get_if<std::string*>(&parameter.value)) {
+      if (parameter.choices.empty()) {
+        std::array<char, 2048> field{};
+        std::strncpy(field.data(), (*text)->c_str(), field.size() - 1);
+        ImGui::InputText("##value", field.data(), field.size());
+        if (ImGui::IsItemDeactivatedAfterEdit()) **text = field.data();
+        return;
+      }
       if (!ImGui::BeginCombo("##value", (*text)->c_str())) return;
       for (const std::string& choice : parameter.choices)
         if (ImGui::Selectable(choice.c_str(), choice == **text)) **text = choice;

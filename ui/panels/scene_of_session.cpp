@@ -61,12 +61,21 @@ void add_run(const SessionView& session, const RunView& run, const Pose& world_f
   scene.frames_of_path.push_back(std::move(frames));
 }
 
+/// Another program's world over the one shown: by the truth, or where there is none by the session's own run.
+Pose world_of_outside(const SessionView& session, const RunView& run, const Pose& world_from_estimate) {
+  if (!session.run->evaluation.matched.empty()) return run.evaluation.ate.alignment.truth_from_estimate;
+  const auto matched = match_trajectories(session.run->trajectory, run.trajectory);
+  return world_from_estimate * absolute_error(matched).alignment.truth_from_estimate;
+}
+
 /// Ghosts lie in the run's own world, by its alignment: up to where one parts both ways are the same.
 void add_ghosts(const SessionView& session, const Pose& world_from_estimate, SessionScene& scene) {
   for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
     const GhostView& ghost = session.debug.ghosts[i];
     // In either theme the looks differ in colour alone, and dashes are all that is wanted here.
-    add_run(session, *ghost.run, world_from_estimate,
+    const Pose world =
+        ghost.outside ? world_of_outside(session, *ghost.run, world_from_estimate) : world_from_estimate;
+    add_run(session, *ghost.run, world,
             {.name = "ghost: " + shortened(ghost.name), .width_px = 2.2F, .pickable = true}, scene);
     ScenePath& path = scene.data.paths.back();
     SceneData alone;

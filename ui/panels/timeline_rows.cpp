@@ -86,7 +86,7 @@ std::string frame_report(const SessionView& session, const TimelineModel& model,
   std::string text = fmt::format("frame {}, {:.3f} s\n{}", index, record.timestamp - series_start(session),
                                  to_string(record.status));
   if (record.keyframe) text += ", keyframe";
-  if (!record.note.empty()) text += "\n" + record.note;
+  if (const std::string remarks = remarks_on(record); !remarks.empty()) text += "\n" + remarks;
   for (const TimelineLane& lane : model.lanes) {
     const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
     if (!std::isfinite(lane.values[*at])) continue;

@@ -181,7 +181,10 @@ class TrajectoryPanel final : public NamedPanel {
       text += fmt::format(", {} {:.1f} mm", session.baseline->name,
                           1000.0 * session.baseline->evaluation.ate.translation_m.rmse);
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
-    if (!session.debug.ghosts.empty()) text += "; ghosts are laid by the same motion";
+    const auto& ghosts = session.debug.ghosts;
+    const auto outside = std::count_if(ghosts.begin(), ghosts.end(), [](const auto& g) { return g.outside; });
+    if (outside < static_cast<std::ptrdiff_t>(ghosts.size())) text += "; ghosts are laid by the same motion";
+    if (outside > 0) text += "; other programs' runs are laid each by its own";
     return text + ".";
   }
 

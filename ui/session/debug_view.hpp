@@ -26,7 +26,9 @@ struct GhostView {
   bool busy = false;                   ///< still processing
   std::shared_ptr<const RunView> run;  ///< never null
   std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null while not processed
-  std::optional<int> diverged;               ///< first frame whose record differs from the session's own run
+  std::optional<int> diverged;  ///< first frame whose record, or of another program's run whose motion,
+                                ///< differs from the session's own run
+  bool outside = false;         ///< another program's, in a world of its own
 };
 
 /// Something being written.

@@ -24,6 +24,15 @@ void Session::open_recorded() {
   message_ = options_.no_images;
 }
 
+void Session::open_beside() {
+  for (const auto& recorded : options_.beside) {
+    Ghost ghost{.name = run_name(*recorded),
+                .run = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, recorded))};
+    compare(ghost);
+    ghosts_.push_back(std::move(ghost));
+  }
+}
+
 bool Session::stages_are_missing() const {
   const int index = current_->index;
   return options_.no_images.empty() && index < run_->track().processed() && index >= run_->track().seen() &&

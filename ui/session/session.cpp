@@ -12,6 +12,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
   if (options_.recorded) open_recorded();
+  open_beside();
   show(0);
   sidecar_due_ = options_.sidecar.has_value();
 }
@@ -110,7 +111,8 @@ DebugView Session::debug_view() {
                             .busy = ghost.run->track().processed() < run_->track().processed(),
                             .run = ghost.run->run_view(),
                             .current = ghost.current,
-                            .diverged = ghost.diverged});
+                            .diverged = ghost.diverged,
+                            .outside = !ghost.run->track().outside().empty()});
   return debug;
 }
 

@@ -25,8 +25,9 @@ namespace stillpoint {
 struct SessionOptions {
   bool baseline = true;    ///< the baseline method runs beside any other
   bool keep_times = true;  ///< false: stage times stay 0, so that images repeat byte for byte
-  std::shared_ptr<const RecordedRun> recorded{};           ///< a finished run to begin with
-  std::shared_ptr<const RecordedRun> recorded_baseline{};  ///< … and one to stand beside it
+  std::shared_ptr<const RecordedRun> recorded{};             ///< a finished run to begin with
+  std::shared_ptr<const RecordedRun> recorded_baseline{};    ///< … and one to stand beside it
+  std::vector<std::shared_ptr<const RecordedRun>> beside{};  ///< finished runs that stand beside as ghosts
   std::string no_images{};  ///< why the source has no images, one sentence: nothing can be processed then
   bool catch_up = false;    ///< go_to() lets odometry see a recorded run's frames as far as the one shown
   std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
@@ -140,6 +141,7 @@ class Session {
   void preview_step();
   void advance(Ghost& ghost);
   void compare(Ghost& ghost);
+  void open_beside();
   void update_breakpoints();
   void open_sidecar();
   [[nodiscard]] Marks marks() const;

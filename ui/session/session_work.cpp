@@ -95,10 +95,12 @@ void Session::advance(Ghost& ghost) {
 
 void Session::compare(Ghost& ghost) {
   const auto &own = run_->track().records(), &other = ghost.run->track().records();
+  const bool outside = !ghost.run->track().outside().empty() || !run_->track().outside().empty();
   for (; !ghost.diverged && ghost.compared < static_cast<int>(std::min(own.size(), other.size()));
        ++ghost.compared) {
     const auto i = static_cast<std::size_t>(ghost.compared);
-    if (!computed_alike(own[i], other[i])) ghost.diverged = ghost.compared;
+    if (outside ? part_ways(own, other, i) : !computed_alike(own[i], other[i]))
+      ghost.diverged = ghost.compared;
   }
 }
 

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/tables.hpp"
+
+namespace stillpoint {
+
+// A figure that was measured several times: one number says nothing about two that lie close.
+
+/// What several runs of the same thing reached.
+struct Spread {
+  std::vector<double> values;       ///< of the runs that gave one, in order of the runs
+  int failed = 0;                   ///< runs that gave none: lost, or nothing to measure
+  double median = 0.0;              ///< of values; 0 where there are none
+  double lower = 0.0, upper = 0.0;  ///< quartiles
+};
+
+/// @param values one a run, nothing where a run gave none
+[[nodiscard]] Spread spread_of(const std::vector<std::optional<double>>& values);
+
+/// Which of several is the best, and which the second: smaller is better. Only where that survives the
+/// spread: its upper quartile lies below the lower one of all that come after it, and not a run of it failed.
+struct Ranking {
+  std::optional<std::size_t> best, second;
+};
+[[nodiscard]] Ranking rank(const std::vector<Spread>& spreads);
+
+/// What several methods reached on one sequence.
+struct SpreadRow {
+  std::string sequence;
+  std::vector<Spread> cells;  ///< one a method
+};
+
+/// How a table is written down.
+enum class TableMarkup { markdown, latex, csv };
+
+/// The rows in that markup: median and half the distance of the quartiles, best bold and second underlined
+/// where Ranking names them; a failed run is counted beside. CSV has a row a sequence and method, with
+/// quartiles and all values. LaTeX needs the package booktabs.
+/// @param what the figure, for the head: "RPE 1 s, RMSE [m]"
+[[nodiscard]] std::string spread_text(const std::vector<SpreadRow>& rows,
+                                      const std::vector<std::string>& methods, const std::string& what,
+                                      TableMarkup markup);
+
+/// A list of {sequence, method, median, lower_quartile, upper_quartile, failed, values}.
+[[nodiscard]] nlohmann::ordered_json spread_json(const std::vector<SpreadRow>& rows,
+                                                 const std::vector<std::string>& methods);
+
+}  // namespace stillpoint

@@ -1,0 +1,82 @@
+// `import` and `--run`: a trajectory of ours, given as another program's, is measured and shown as our own
+// run is.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/csv_rows.hpp"
+#include "tests/cli/run_cli.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace stillpoint {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kFrames = 40;  // over a second, so that there is an RPE over one
+
+class OutsideRunCli : public testing::Test {
+ protected:
+  OutsideRunCli() {
+    EXPECT_EQ(run_cli({"run", sequence.path(), "--method", "none", "--out", sequence.path("own")}).exit_code,
+              0);
+  }
+  [[nodiscard]] nlohmann::json evaluation(const std::string& run) const {
+    return nlohmann::json::parse(sequence.folder.read(run + "/summary.json"))["evaluation"];
+  }
+  SmallSequence sequence{kFrames};
+};
+
+TEST_F(OutsideRunCli, AsOurOwnRunIs) {
+  const CliResult imported =
+      run_cli({"import", sequence.path(), "theirs=" + sequence.path("own/trajectory.txt"), "--out",
+               sequence.path("theirs")});
+  ASSERT_EQ(imported.exit_code, 0) << imported.err;
+  EXPECT_THAT(imported.out, HasSubstr("method theirs"));
+  const auto own = evaluation("own"), theirs = evaluation("theirs");
+  for (const char* error : {"ate", "rpe_time", "rpe_frame"}) {
+    EXPECT_GT(own[error]["translation_m"]["count"], 0) << error;
+    EXPECT_EQ(theirs[error]["translation_m"]["count"], own[error]["translation_m"]["count"]) << error;
+    EXPECT_NEAR(theirs[error]["translation_m"]["rmse"], own[error]["translation_m"]["rmse"].get<double>(),
+                1e-6)
+        << error;
+  }
+  const auto a = csv_rows(sequence.folder.read("own/frames.csv")),
+             b = csv_rows(sequence.folder.read("theirs/frames.csv"));
+  ASSERT_EQ(a.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(b.size(), a.size());
+  for (std::size_t i = 1; i < a.size(); ++i)
+    EXPECT_NEAR(std::stod(b[i].at("rpe_frame_m")), std::stod(a[i].at("rpe_frame_m")), 2e-6) << i;
+  // A report takes both, each by its name.
+  const CliResult report = run_cli(
+      {"report", sequence.path("own"), sequence.path("theirs"), "--out", sequence.path("report.html")});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_THAT(sequence.folder.read("report.html"), HasSubstr("theirs"));
+}
+
+TEST_F(OutsideRunCli, IsDrawnBesideOrByItself) {
+  const std::string beside = "theirs=" + sequence.path("own/trajectory.txt");
+  const CliResult snapshot =
+      run_cli({"snapshot", sequence.path(), "--method", "none", "--run", beside, "--frames", "20", "--panels",
+               "trajectory,errors", "--out", sequence.path("pictures")});
+  EXPECT_EQ(snapshot.exit_code, 0) << snapshot.err;
+  EXPECT_TRUE(std::filesystem::exists(sequence.path("pictures/000020_errors.png")));
+  ASSERT_EQ(run_cli({"import", sequence.path(), beside, "--out", sequence.path("theirs")}).exit_code, 0);
+  const CliResult alone = run_cli({"snapshot", sequence.path("theirs"), "--frames", "20", "--panels",
+                                   "workbench", "--out", sequence.path("alone")});
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;
+}
+
+TEST_F(OutsideRunCli, WhatCannotBeMeantIsRefused) {
+  expect_one_sentence(run_cli({"snapshot", sequence.path(), "--run", "a=" + sequence.path("nowhere.txt"),
+                               "--out", sequence.path("pictures")}),
+                      "nowhere.txt: there is no such file or folder");
+  expect_one_sentence(
+      run_cli({"import", sequence.path(), sequence.path("rgb.txt"), "--out", sequence.path("x")}), "rgb.txt");
+}
+
+}  // namespace
+}  // namespace stillpoint
