@@ -43,7 +43,7 @@ std::optional<TimeOffset> estimate_time_offset(const Trajectory& truth, const Tr
   TimeOffset result{0.5 * (low + high), error(0.0), 0.0};
   result.rmse_after_m = error(result.offset_s);
   const double beside = std::min(error(result.offset_s - kProbe), error(result.offset_s + kProbe));
-  if (!std::isfinite(result.rmse_before_m) || beside < kTelling * result.rmse_after_m) return std::nullopt;
+  if (!std::isfinite(result.rmse_before_m) || beside <= kTelling * result.rmse_after_m) return std::nullopt;
   return result;
 }
 

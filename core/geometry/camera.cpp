@@ -28,9 +28,12 @@ Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2
 }
 
 /// The first Kinect's and the Xtion's colour sensor, which TUM's and Bonn's sequences were filmed with, takes
-/// nearly the whole time between frames to read an image.
-Camera with_kinect_readout(Camera camera) {
-  camera.readout_s = 0.030;
+/// most of the time between frames to read an image. Of freiburg1's it was measured (assets/cameras has how);
+/// of the others it is assumed.
+constexpr double kFreiburg1Readout = 0.023, kAssumedReadout = 0.030;  // s
+
+Camera with_readout(Camera camera, double readout_s = kAssumedReadout) {
+  camera.readout_s = readout_s;
   return camera;
 }
 
@@ -128,15 +131,15 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
 const std::vector<Camera>& known_cameras() {
   // freiburg2's depth reads about 4 % short at 5000 per metre; 5208 is what ORB-SLAM2 uses.
   static const std::vector<Camera> cameras = {
-      with_kinect_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989),
-                                          0.262383, -0.953104, -0.005358, 0.002628, 1.163314)),
-      with_kinect_readout(
-          with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0), 0.231222,
-                          -0.784899, -0.003257, -0.000105, 0.917205)),
-      with_kinect_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6)),
+      with_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989),
+                                   0.262383, -0.953104, -0.005358, 0.002628, 1.163314),
+                   kFreiburg1Readout),
+      with_readout(with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0),
+                                   0.231222, -0.784899, -0.003257, -0.000105, 0.917205)),
+      with_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6)),
       make("icl_nuim", 481.20, 480.00, 319.50, 239.50),
-      with_kinect_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098),
-                                          0.039903, -0.099343, -0.000730, -0.000144, 0.0)),
+      with_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903,
+                                   -0.099343, -0.000730, -0.000144, 0.0)),
       make("generated", 535.4, 539.2, 320.1, 247.6),
       make("ros_default", 525.0, 525.0, 319.5, 239.5),
   };

@@ -100,7 +100,9 @@ void count_columns(const std::vector<TextLine>& lines, std::size_t from, Traject
            columns == kReplicaColumns;
   };
   const int plain_count = most(parted)->first, comma_count = most(with_commas)->first;
-  layout.decimal_commas = is_known(comma_count) && !is_known(plain_count);
+  // Eight numbers with decimal commas are sixteen where commas part them.
+  const bool doubled = comma_count == kTumColumns && plain_count == 2 * kTumColumns;
+  layout.decimal_commas = is_known(comma_count) && (!is_known(plain_count) || doubled);
   layout.columns = layout.decimal_commas ? comma_count : plain_count;
 }
 
