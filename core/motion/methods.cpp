@@ -17,7 +17,8 @@
   METHOD(yi2013)                   \
   METHOD(alcantarilla2012)         \
   METHOD(gao2019)                  \
-  METHOD(lin2017)
+  METHOD(lin2017)                  \
+  METHOD(dai2020)
 
 namespace stillpoint {
 
