@@ -18,7 +18,8 @@
   METHOD(alcantarilla2012)         \
   METHOD(gao2019)                  \
   METHOD(lin2017)                  \
-  METHOD(dai2020)
+  METHOD(dai2020)                  \
+  METHOD(peng2017)
 
 namespace stillpoint {
 
