@@ -19,7 +19,8 @@
   METHOD(gao2019)                  \
   METHOD(lin2017)                  \
   METHOD(dai2020)                  \
-  METHOD(peng2017)
+  METHOD(peng2017)                 \
+  METHOD(wang2014)
 
 namespace stillpoint {
 

@@ -65,7 +65,8 @@ TEST_P(Literature, GoesOnPastBrokenFramesAndBackToAnyFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Literature,
-                         testing::Values("alcantarilla2012", "gao2019", "lin2017", "dai2020", "peng2017"),
+                         testing::Values("alcantarilla2012", "gao2019", "lin2017", "dai2020", "peng2017",
+                                         "wang2014"),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace
