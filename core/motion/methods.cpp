@@ -18,6 +18,9 @@
   METHOD(alcantarilla2012)         \
   METHOD(gao2019)                  \
   METHOD(lin2017)                  \
+  METHOD(dai2020)                  \
+  METHOD(peng2017)                 \
+  METHOD(wang2014)                 \
   METHOD(masks)
 
 namespace stillpoint {

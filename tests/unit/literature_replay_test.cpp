@@ -64,7 +64,9 @@ TEST_P(Literature, GoesOnPastBrokenFramesAndBackToAnyFrame) {
   EXPECT_GE(judged, 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Literature, testing::Values("alcantarilla2012", "gao2019", "lin2017"),
+INSTANTIATE_TEST_SUITE_P(Methods, Literature,
+                         testing::Values("alcantarilla2012", "gao2019", "lin2017", "dai2020", "peng2017",
+                                         "wang2014"),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace

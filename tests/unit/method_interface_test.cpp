@@ -151,7 +151,7 @@ TEST(MotionMethods, AreKnownByNameInCoreMotionAlone) {
   // "none" and "stillpoint" are words of their own: the program's name, and that there is nothing. They count
   // where a method is compared with them.
   const std::regex name(
-      R"re("(paper|oracle|epipolar|yi2013|alcantarilla2012|gao2019|lin2017)"|method\s*[!=]=\s*")re");
+      R"re("(paper|oracle|epipolar|yi2013|alcantarilla2012|gao2019|lin2017|dai2020|peng2017|wang2014)"|method\s*[!=]=\s*")re");
   const fs::path root = places::source();
   int files = 0;
   std::vector<std::string> found;
