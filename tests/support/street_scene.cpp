@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 #include <opencv2/imgproc.hpp>
 
 #include "core/sequence/generated/furniture.hpp"
@@ -132,8 +134,8 @@ class Street final : public FrameSource {
     Pose pose = Pose::Identity();
     pose.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     pose.linear() = pose.linear() * so3_exp({nod, turn, 0.002 * std::sin(7.0 * s)});
-    pose.translation() = {0.04 * kSpeed / 0.5 * (1.0 - std::cos(0.5 * s)), kSpeed * s,
-                          kEyes + 0.01 * std::sin(11.0 * s)};
+    pose.translation() << 0.04 * kSpeed / 0.5 * (1.0 - std::cos(0.5 * s)), kSpeed * s,
+        kEyes + 0.01 * std::sin(11.0 * s);
     return pose;
   }
   [[nodiscard]] Instant instant(int index, double aside) const {

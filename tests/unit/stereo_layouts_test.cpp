@@ -1,16 +1,19 @@
 // Stereo recordings as they are published: miniatures with exact truth, and each way they can be wrong.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "core/sequence/image_file.hpp"
 #include "core/sequence/stereo/stereo_matcher.hpp"
 #include "core/sequence/stereo/stereo_rectification.hpp"
 #include "core/sequence/write_sequence.hpp"

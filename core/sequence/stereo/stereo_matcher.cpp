@@ -20,7 +20,7 @@ constexpr int kSpecklePixels = 100, kSpeckleRange = 2;  // px: of full-size imag
 constexpr float kLeastDisparity = 1.0F;  // px: farther, the noise of depth is a large part of depth
 
 /// Standard deviation (px) of a disparity, measured on generated rigs against exact truth.
-constexpr double kFullSigma = 0.3, kHalfSigma = 0.4;
+constexpr double kFullSigma = 0.35, kHalfSigma = 0.55;
 
 int rounded_up(double disparities) {
   return kStep * std::max(1, static_cast<int>(std::ceil(disparities / kStep)));

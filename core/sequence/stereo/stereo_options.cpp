@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 
@@ -31,7 +33,10 @@ bool one_of(const std::string& key, const std::string& value, const char* yes, c
 
 std::string to_text(const StereoOptions& options) {
   std::string text;
-  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ",") + part; };
+  const auto add = [&text](const std::string& part) {
+    if (!text.empty()) text += ',';
+    text += part;
+  };
   if (options.half) add("size=half");
   if (options.disparities > 0) add(fmt::format("disparities={}", options.disparities));
   if (!options.left_right_check) add("check=off");
