@@ -130,8 +130,10 @@ TEST(StereoLayouts, LeftAndRightGiveTheSameRunToTheLastBit) {
 }
 
 TEST(StereoLayouts, HalfSizeIsAnOption) {
+  OpenOptions options;
+  options.stereo.half = true;
   const auto full = open_sequence(miniature(SequenceLayout::left_right).string()),
-             half = open_sequence(miniature(SequenceLayout::left_right).string(), {.stereo = {.half = true}});
+             half = open_sequence(miniature(SequenceLayout::left_right).string(), options);
   EXPECT_FALSE(same(full->read(0).depth, half->read(0).depth));
   EXPECT_GT(half->camera().depth_sigma_per_m2, full->camera().depth_sigma_per_m2);
 }
@@ -241,7 +243,7 @@ TEST(StereoLayouts, TimesOfFewerFramesAreSaid) {
   spoilt.folder.write("times.txt", "0.0\n0.1\n0.2\n");
   EXPECT_THAT(spoilt.error(), HasSubstr("has 3 times for 5 left images, whose last one is number 4"));
   spoilt.folder.write("times.txt", "0.0\n0.1\nlate\n0.3\n0.4\n");
-  EXPECT_THAT(spoilt.error(), HasSubstr("times.txt:3: \"late\" is no time"));
+  EXPECT_THAT(spoilt.error(), HasSubstr("times.txt:3: 'late' is no time"));
   spoilt.folder.write("times.txt", "0.0\n0.1\n0.1\n0.3\n0.4\n");
   EXPECT_THAT(spoilt.error(), HasSubstr("times.txt:3: 0.1 is no later than the line before"));
 }
@@ -301,7 +303,8 @@ TEST(StereoLayouts, RowsThatDoNotCorrespondAreSaid) {
   for (const auto& entry : fs::directory_iterator(spoilt.folder.path("right"))) {
     const cv::Mat image = cv::imread(entry.path().string());
     cv::Mat lower;
-    cv::warpAffine(image, lower, (cv::Mat_<double>(2, 3) << 1, 0, 0, 0, 1, 4), image.size());
+    const cv::Mat by_four = (cv::Mat_<double>(2, 3) << 1, 0, 0, 0, 1, 4);
+    cv::warpAffine(image, lower, by_four, image.size());
     cv::imwrite(entry.path().string(), lower);
   }
   const auto source = spoilt.open();
