@@ -94,11 +94,14 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
       "--topics", topics,
       "Of a bag: colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC, any of them, none but colour "
       "where it is `none`; `stillpoint check` lists what it holds");
+  command.add_option("--stereo", stereo,
+                     "Of stereo pairs, how they are matched: size=full|half, disparities=N (px, a multiple of 16), "
+                     "check=on|off (left-right), parted by commas");
 }
 
 bool SequenceArguments::given() const {
   return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
-         depth_offset_s != 0 || !truth.empty() || inverted_masks || !topics.empty();
+         depth_offset_s != 0 || !truth.empty() || inverted_masks || !topics.empty() || !stereo.empty();
 }
 
 namespace {
@@ -115,6 +118,7 @@ void visit_reading(Arguments& arguments, Visit visit) {
   visit("truth", arguments.truth);
   visit("invert_masks", arguments.inverted_masks);
   visit("topics", arguments.topics);
+  visit("stereo", arguments.stereo);
 }
 
 void read_word(const std::string& word, std::string& value) { value = word; }
@@ -165,6 +169,7 @@ OpenOptions SequenceArguments::options(const Config& config) const {
   options.truth = convention_argument("--truth", truth);
   options.inverted_masks = inverted_masks;
   options.topics = topics;
+  options.stereo = stereo_options_from(stereo, "--stereo");
   options.progress = opening_progress();
   return options;
 }

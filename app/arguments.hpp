@@ -39,15 +39,15 @@ struct SequenceNeeds {
 
 /// What SEQUENCE may be, for the help of commands that take one, several, or also a finished run.
 inline constexpr const char* kSequenceHelp =
-    "A TUM RGB-D folder, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, .mcap, .db3), or "
-    "generated:KIND";
+    "A folder (TUM RGB-D; stereo as KITTI odometry, EuRoC or left/ and right/), an archive of one (.tgz, .tar, "
+    ".zip, …), a bag (.bag, .mcap, .db3), generated:KIND, or generated:KIND:stereo";
 inline constexpr const char* kSequencesHelp =
-    "TUM RGB-D folders, archives of them (.tgz, .tar, .zip, …), bags (.bag, .mcap, .db3), generated:KIND, or "
-    "generated:all";
+    "Folders (TUM RGB-D; stereo as KITTI odometry, EuRoC or left/ and right/), archives of them (.tgz, .tar, "
+    ".zip, …), bags (.bag, .mcap, .db3), generated:KIND, generated:KIND:stereo, or generated:all";
 inline constexpr const char* kSequenceOrRunHelp =
-    "A TUM RGB-D folder, a folder of colour frames, an archive of one (.tgz, .tar, .zip, …), a bag (.bag, "
-    ".mcap, "
-    ".db3), generated:KIND, or a finished run's folder";
+    "A folder (TUM RGB-D; stereo as KITTI odometry, EuRoC or left/ and right/; colour frames), an archive of one "
+    "(.tgz, .tar, .zip, …), a bag (.bag, .mcap, .db3), generated:KIND, generated:KIND:stereo, or a finished run's "
+    "folder";
 
 /// The options that say which frames, and how they are to be read.
 struct SequenceArguments {
@@ -60,6 +60,7 @@ struct SequenceArguments {
   std::string truth;  ///< a PoseConvention's name; empty = as written
   bool inverted_masks = false;
   std::string topics;  ///< of a bag, as OpenOptions has them; empty = as they are found
+  std::string stereo;  ///< of stereo pairs, as stereo_options_from reads it; empty = as a rule
 
   /// @param frames_option what sets `frames`, where --frames means something else
   void add_to(CLI::App& command, const char* frames_option = "--frames");

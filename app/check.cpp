@@ -66,6 +66,7 @@ void check(const CheckArguments& arguments) {
     json["frames"] = source->size();
     json["camera"] = camera.name;
     json["depth_scale"] = camera.depth_scale;
+    if (camera.is_stereo()) json["baseline_m"] = camera.baseline_m;
     if (!source->contents().empty()) json["topics"] = source->contents();
     json["findings"] = nlohmann::json(findings);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -74,7 +75,9 @@ void check(const CheckArguments& arguments) {
         "{}: {} frames, {:.3f} s, camera {} ({}x{} px), depth {}, masks {}, ground truth {}\n",
         source->name(), source->size(), source->timestamp(source->size() - 1) - source->timestamp(0),
         camera.name, camera.width, camera.height,
-        source->has_depth() ? fmt::format("at {:g} a metre", camera.depth_scale) : "none",
+        !source->has_depth()  ? "none"
+        : camera.is_stereo() ? fmt::format("by stereo, {:.4g} m apart", camera.baseline_m)
+                             : fmt::format("at {:g} a metre", camera.depth_scale),
         source->has_masks() ? "yes" : "none",
         source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
     for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);

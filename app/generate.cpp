@@ -8,6 +8,7 @@
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "core/error.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/write_sequence.hpp"
 
@@ -19,8 +20,18 @@ struct GenerateOptions {
   int frames = 0;
   unsigned seed = 1;
   int threads = 2;
-  bool force = false;
+  bool force = false, stereo = false;
+  std::string layout;
 };
+
+/// @throws InputError naming the layouts there are
+SequenceLayout layout_by_name(const std::string& name) {
+  if (name.empty()) return SequenceLayout::own;
+  if (name == "left-right") return SequenceLayout::left_right;
+  if (name == "kitti") return SequenceLayout::kitti;
+  if (name == "euroc") return SequenceLayout::euroc;
+  throw InputError(fmt::format("--layout {}: expected left-right, kitti or euroc", name));
+}
 
 /// Frames done and the rate: one line that is rewritten on a terminal, a line every 50 frames elsewhere.
 class ProgressLine {
@@ -43,8 +54,12 @@ class ProgressLine {
 };
 
 void generate(const GenerateOptions& options) {
-  const auto sequence = make_generated_sequence(options.kind, options.frames, options.seed);
   WriteOptions write;
+  write.layout = layout_by_name(options.layout);
+  if (!options.layout.empty() && !options.stereo) throw InputError("--layout goes with --stereo");
+  std::string kind = options.kind;
+  if (options.stereo) kind += kStereoEnding;
+  const auto sequence = make_generated_sequence(kind, options.frames, options.seed);
   write.force = options.force;
   write.threads = options.threads;
   write.progress = ProgressLine();
@@ -62,7 +77,7 @@ void generate(const GenerateOptions& options) {
 void add_generate_command(CLI::App& app) {
   auto options = std::make_shared<GenerateOptions>();
   CLI::App* command =
-      app.add_subcommand("generate", "Film a generated room and write it as a TUM RGB-D folder");
+      app.add_subcommand("generate", "Film a generated room and write it as a TUM RGB-D folder, or as stereo pairs");
   command
       ->add_option("kind", options->kind,
                    fmt::format("one of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
@@ -76,6 +91,10 @@ void add_generate_command(CLI::App& app) {
       ->add_option("--threads", options->threads, "threads that make frames; any number gives the same files")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command->add_flag("--stereo", options->stereo,
+                    "film it by a stereo pair of 0.12 m: left/ and right/ in place of rgb/ and depth/");
+  command->add_option("--layout", options->layout,
+                      "of a stereo pair: left-right (otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)");
   command->add_flag("--force", options->force, "replace the sequence that the folder holds");
   command->callback([options] { generate(*options); });
 }

@@ -26,7 +26,7 @@ Painter::Painter(const PainterOptions& options)
       workbench_(make_panels()) {
   choose(options.panels);
   if (options.layout.empty()) {
-    workbench_.set_layout(default_layout(options.method));
+    workbench_.set_layout(default_layout(options.method, options.stereo));
     return;
   }
   const LayoutNode layout = read_layout(options.layout, workbench_.panel_names());
@@ -48,6 +48,7 @@ void Painter::choose(const std::string& names) {
     for (const auto& panel : panels_) {
       if (name != "all" && name != panel->name()) continue;
       found = true;
+      if (name != "all") named_.insert(panel.get());
       if (std::find(panels_chosen_.begin(), panels_chosen_.end(), panel.get()) == panels_chosen_.end())
         panels_chosen_.push_back(panel.get());
     }
@@ -105,11 +106,13 @@ std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
   if (workbench_chosen_)
     pictures.push_back({kWorkbench, paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); },
                                                 options_.workbench_size)});
-  for (Panel* chosen : panels_chosen_)
+  for (Panel* chosen : panels_chosen_) {
+    if (!chosen->is_for(view) && !named_.contains(chosen)) continue;
     pictures.push_back(
         {chosen->name(),
          paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
                      options_.panel_size)});
+  }
   return pictures;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ struct PainterOptions {
   std::string layout{};  ///< the workbench's tiles and what is chosen in each panel, a JSON file; empty = the
                          ///< method's default tiles, and panels as they are by themselves
   std::string method{};  ///< chooses the default layout
+  bool stereo = false;   ///< … for stereo pairs
 };
 
 /// Draws panels and the workbench as images, in one GL context for all of them.
@@ -73,6 +75,7 @@ class Painter {
   Workbench workbench_;
   bool workbench_chosen_ = false;
   std::vector<Panel*> panels_chosen_;
+  std::set<const Panel*> named_;  // of these, those that were not chosen as one of all
   std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 

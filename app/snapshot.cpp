@@ -31,8 +31,9 @@ struct SnapshotArguments {
   bool force = false, no_baseline = false, timings = false;
 };
 
-PainterOptions painter_options(const SnapshotArguments& arguments, const std::string& method) {
+PainterOptions painter_options(const SnapshotArguments& arguments, const std::string& method, bool stereo) {
   PainterOptions options;
+  options.stereo = stereo;
   options.panels = arguments.panels;
   if (options.panels.empty()) options.panels = arguments.out.empty() ? "workbench" : "all";
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
@@ -120,7 +121,7 @@ void snapshot(const SnapshotArguments& arguments) {
   const std::string& method = place.config.run.method;
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
-  Painter painter(painter_options(arguments, method));
+  Painter painter(painter_options(arguments, method, place.source->camera().is_stereo()));
   Pictures pictures(arguments, painter);
 
   place.options.keep_times = arguments.timings || finished_run;

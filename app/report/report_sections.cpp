@@ -185,7 +185,12 @@ std::string stage_timings(const ReportGroup& group) {
       html += fmt::format("<td class=\"number\">{:.2f}</td>", ms.*stage.ms);
     html += fmt::format("<td class=\"number\">{:.2f}</td></tr>\n", ms.total);
   }
-  return html + "</tbody></table></div>\n";
+  html += "</tbody></table></div>\n";
+  for (const ReportRun& run : group.runs)
+    if (const double stereo = run.report.speed.mean.stereo; stereo > 0)
+      html += fmt::format("<p class=\"dim\">{}: matching left to right took {:.2f} ms a frame beside that.</p>\n",
+                          escaped(run.label), stereo);
+  return html;
 }
 
 std::string configurations(const std::vector<ReportGroup>& groups) {

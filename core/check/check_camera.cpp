@@ -94,7 +94,8 @@ std::vector<Camera> others_than(const Camera& used) {
 }  // namespace
 
 std::vector<Finding> check_camera(const FrameSource& source, int frames) {
-  if (!source.has_depth()) return {};
+  // A stereo pair is matched under its own calibration, and under another it has other depth.
+  if (!source.has_depth() || source.camera().is_stereo()) return {};
   std::vector<Frame> at_hand;
   for (int i = 0; i < std::min(frames, source.size()); ++i) at_hand.push_back(source.read(i));
   std::vector<Camera> cameras = others_than(source.camera());

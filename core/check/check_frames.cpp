@@ -19,7 +19,9 @@ std::string subject_of(const std::string& sentence) {
   const auto speaks_of = [&](const char* word) { return sentence.find(word) != std::string::npos; };
   if (speaks_of("groundtruth") || speaks_of("ground truth") || speaks_of(".gt.freiburg")) return "truth";
   if (speaks_of("mask")) return "masks";
-  if (speaks_of("units a metre") || speaks_of("depth image")) return "depth";
+  if (speaks_of("units a metre") || speaks_of("depth image") || speaks_of("right image") ||
+      speaks_of("matched corners"))
+    return "depth";
   if (speaks_of("camera")) return "camera";
   if (speaks_of("stamp")) return "stamps";
   return "images";

@@ -179,6 +179,8 @@ std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
 
 namespace {
 
+constexpr double kLongestBaseline = 100.0;  // m
+
 /// The camera of a TOML file. @param parse gives its table
 Camera camera_from_toml(const std::string& path, const std::function<toml::table()>& parse) {
   toml::table table;
@@ -200,7 +202,8 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
                                                    {"p2", &camera.p2},
                                                    {"k3", &camera.k3},
                                                    {"depth_scale", &camera.depth_scale},
-                                                   {"readout_s", &camera.readout_s}};
+                                                   {"readout_s", &camera.readout_s},
+                                                   {"baseline_m", &camera.baseline_m}};
   const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
   for (auto&& [key, node] : table) {
     const std::string where = fmt::format("{}:{}: {}", path, node.source().begin.line, key.str());
@@ -236,6 +239,8 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
   if (std::abs(camera.readout_s) > 0.2)
     throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
+  if (camera.baseline_m < 0 || camera.baseline_m > kLongestBaseline)
+    throw InputError(fmt::format("{}: baseline_m is given in metres, from 0 to {:g}", path, kLongestBaseline));
   return camera;
 }
 

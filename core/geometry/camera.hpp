@@ -7,11 +7,14 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/depth_noise.hpp"
+
 namespace stillpoint {
 
 /// A pinhole camera with Brown-Conrady distortion, and the scale of its depth images.
 ///
-/// Images are shown as they are; geometry uses undistorted pixels (Camera::undistort).
+/// Images are shown as they are; geometry uses undistorted pixels (Camera::undistort). The left camera of a
+/// rectified stereo pair has no distortion, and a baseline to the right one: its depth comes of matching both.
 struct Camera {
   std::string name = "ros_default";
   int width = 640;                                        ///< px
@@ -21,8 +24,31 @@ struct Camera {
   double depth_scale = 5000.0;                            ///< depth image units a metre
   double readout_s = 0.0;  ///< s from the first row's exposure to the last one's; 0 = global shutter. Stamps
                            ///< are the middle row's
+  double baseline_m = 0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
+  double depth_sigma_per_m2 = 0.0;  ///< 1/m, of a stereo pair: its depths z have standard deviation this z²
 
   [[nodiscard]] bool has_distortion() const;
+
+  /// Whether depth comes of a stereo pair.
+  [[nodiscard]] bool is_stereo() const { return baseline_m > 0; }
+
+  /// The noise of depth: a stereo pair's own, otherwise what is known of the sensor that `sensor` speaks of.
+  [[nodiscard]] DepthNoise depth_noise(const DepthNoise& sensor) const {
+    return is_stereo() ? stereo_depth_noise(depth_sigma_per_m2) : sensor;
+  }
+
+  /// Standard deviation (m) of a stereo pair's depth z (m); 0 where depth is a sensor's own. Tolerances that
+  /// were chosen for a sensor hold its noise already, and grow by this.
+  [[nodiscard]] double stereo_sigma(double z) const { return is_stereo() ? depth_sigma_per_m2 * z * z : 0.0; }
+
+  /// A limit of depth (m) that was chosen for a Kinect: as many baselines away for a stereo pair, because the
+  /// noise of either in px is the same there.
+  [[nodiscard]] double depth_limit(double kinect_m) const {
+    return is_stereo() ? kinect_m * baseline_m / kKinectBaseline : kinect_m;
+  }
+
+  /// The baseline (m) whose disparity stands for depth in px: a stereo pair's own, otherwise `sensor`.
+  [[nodiscard]] double baseline_or(double sensor) const { return is_stereo() ? baseline_m : sensor; }
 
   /// 3x3 intrinsic matrix, CV_64F.
   [[nodiscard]] cv::Matx33d matrix() const;
@@ -64,7 +90,7 @@ struct Camera {
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
 /// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
-/// readout_s; or, by the file's ending, from YAML (camera_yaml.hpp).
+/// readout_s, baseline_m; or, by the file's ending, from YAML (camera_yaml.hpp).
 /// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);

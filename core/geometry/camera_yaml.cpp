@@ -58,6 +58,19 @@ class Reader {
     return camera_;
   }
 
+  [[nodiscard]] Pose body_from_sensor() const {
+    if (!root_["T_BS"]) throw InputError(fmt::format("{}: has no T_BS, where the sensor sits on its body", path_));
+    const auto values = numbers(root_["T_BS"], "T_BS", 16);
+    Pose pose;
+    for (int i = 0; i < 16; ++i) pose.matrix()(i / 4, i % 4) = values[static_cast<std::size_t>(i)];
+    constexpr double kRounding = 1e-3;
+    const Eigen::Matrix3d turn = pose.linear();
+    if (!(turn * turn.transpose()).isIdentity(kRounding) || turn.determinant() < 0 ||
+        !pose.matrix().row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), kRounding))
+      throw InputError(fmt::format("{}: T_BS is no rigid motion", path_));
+    return normalised(pose);
+  }
+
  private:
   /// A value by its dotted key: written so, or as a map in a map.
   [[nodiscard]] YAML::Node at(const std::string& key) const {
@@ -131,6 +144,11 @@ class Reader {
       set_size(number(at(width), width), number(at(height), height));
     else
       check_unsaid_size();
+    // ORB-SLAM has the baseline in px at one metre, or as it is. Files of depth cameras have one, too.
+    double baseline_px = 0.0;
+    take(has("Camera.bf") ? "Camera.bf" : "bf", baseline_px);
+    camera_.baseline_m = std::max(0.0, baseline_px / camera_.fx);
+    take("Stereo.b", camera_.baseline_m);
     for (const char* key :
          {"DepthMapFactor", "RGBD.DepthMapFactor", "depthmap_factor", "Preprocessing.depthmap_factor"})
       take(key, camera_.depth_scale);
@@ -212,6 +230,15 @@ Camera read_yaml_camera(const std::string& path) {
 Camera read_yaml_camera_text(const std::string& path, std::string text) {
   try {
     return Reader(path, std::move(text)).read();
+  } catch (const YAML::Exception& error) {
+    throw InputError(
+        fmt::format("{}:{}: not a readable camera file: {}", path, error.mark.line + 1, error.msg));
+  }
+}
+
+Pose read_yaml_body_from_sensor(const std::string& path, std::string text) {
+  try {
+    return Reader(path, std::move(text)).body_from_sensor();
   } catch (const YAML::Exception& error) {
     throw InputError(
         fmt::format("{}:{}: not a readable camera file: {}", path, error.mark.line + 1, error.msg));

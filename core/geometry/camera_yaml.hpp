@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/se3.hpp"
 
 namespace stillpoint {
 
@@ -17,5 +18,9 @@ namespace stillpoint {
 
 /// The same of a text that is at hand; `path` names it in messages.
 [[nodiscard]] Camera read_yaml_camera_text(const std::string& path, std::string text);
+
+/// Where a sensor of EuRoC sits on its body: T_BS of its `sensor.yaml`.
+/// @throws InputError where it is missing or no rigid motion
+[[nodiscard]] Pose read_yaml_body_from_sensor(const std::string& path, std::string text);
 
 }  // namespace stillpoint

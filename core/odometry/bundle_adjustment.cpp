@@ -95,7 +95,7 @@ class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
         by_camera_point.row(0) << weight * camera_.fx * iz, 0, -weight * camera_.fx * p.x() * iz * iz;
         by_camera_point.row(1) << 0, weight * camera_.fy * iz, -weight * camera_.fy * p.y() * iz * iz;
       } else {
-        const double bf = weight * depth_weight_ * kDepthBaseline * camera_.fx;
+        const double bf = weight * depth_weight_ * camera_.baseline_or(kDepthBaseline) * camera_.fx;
         residual << bf * (1.0 / edge_.depth - iz), 0.0;
         by_camera_point(0, 2) = bf * iz * iz;
       }
@@ -156,7 +156,7 @@ EdgeError edge_error(const BundleProblem& problem, const BundleProblem::Edge& ed
   EdgeError error;
   error.squared_px = (camera.project(p) - edge.pixel).squaredNorm();
   const double depth_px =
-      edge.depth > 0 ? depth_weight * kDepthBaseline * camera.fx * (1.0 / edge.depth - 1.0 / p.z()) : 0.0;
+      edge.depth > 0 ? depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx * (1.0 / edge.depth - 1.0 / p.z()) : 0.0;
   error.chi2 = (error.squared_px + depth_px * depth_px) / (edge.sigma_px * edge.sigma_px);
   return error;
 }

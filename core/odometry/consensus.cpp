@@ -18,6 +18,7 @@ constexpr double kBoundPx = 1.5;       // at octave 0: beyond it an observation 
 constexpr double kRigidTolerance =
     0.01;  // m, and this share of the distance: three points of one rigid scene
 constexpr double kRigidShare = 0.02;
+constexpr double kRigidSigmas = 2.0;  // … and of a stereo pair's depths, standard deviations
 
 /// The depth (m) on either side of which lies half of the votes, which the parts of the image share: most
 /// observations may well be on one thing.
@@ -96,11 +97,13 @@ Pose align_three(const std::array<Eigen::Vector3d, 3>& from, const std::array<Ei
 
 /// Three points keep their distances only if they move together: mixed samples are refused before they cost
 /// anything.
-bool rigid(const std::array<Eigen::Vector3d, 3>& world, const std::array<Eigen::Vector3d, 3>& camera) {
+bool rigid(const Camera& camera, const std::array<Eigen::Vector3d, 3>& world,
+           const std::array<Eigen::Vector3d, 3>& seen) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    const double a = (world[i] - world[j]).norm(), b = (camera[i] - camera[j]).norm();
-    if (a < 0.05 || std::abs(a - b) > kRigidTolerance + kRigidShare * a) return false;
+    const double a = (world[i] - world[j]).norm(), b = (seen[i] - seen[j]).norm();
+    const double noise = kRigidSigmas * (camera.stereo_sigma(seen[i].z()) + camera.stereo_sigma(seen[j].z()));
+    if (a < 0.05 || std::abs(a - b) > kRigidTolerance + kRigidShare * a + noise) return false;
   }
   return true;
 }
@@ -157,7 +160,7 @@ Consensus consensus_pose(const Camera& camera, const std::vector<PoseObservation
       world[k] = o.point_in_world;
       in_camera[k] = camera.back_project(o.pixel, o.depth);
     }
-    if (!rigid(world, in_camera)) continue;
+    if (!rigid(camera, world, in_camera)) continue;
     const Pose rough = align_three(world, in_camera);
     if (cost_of(camera, observations, weights, rough, kPromising * best.cost) >= kPromising * best.cost)
       continue;

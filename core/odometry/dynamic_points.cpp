@@ -19,7 +19,7 @@ int remove_dynamic_points(LocalMap& map, const cv::Mat& depth, const cv::Mat& ma
     const int x = cvRound(pixel.x()), y = cvRound(pixel.y());
     if (x < 0 || y < 0 || x >= mask.cols || y >= mask.rows || mask.at<uchar>(y, x) == 0) continue;
     const float z = depth.at<float>(y, x);
-    if (z > 0 && p.z() < z + kLikeDepth) {
+    if (z > 0 && p.z() < z + kLikeDepth + camera.stereo_sigma(static_cast<double>(z))) {
       map.remove_moving_point(id);
       ++removed;
     }

@@ -50,6 +50,7 @@ FrameResult FeatureOdometry::run_frame(const Frame& frame, const PreparedFrame& 
   } else {
     record.ms.features = prepared.features_ms;
     record.ms.motion = prepared.motion_ms;
+    if (frame.stereo) record.ms.stereo = frame.stereo->ms;
     MotionInput input{frame, prepared.motion};
     input.threads = config_.run.threads;
     const MotionNeeds& needs = motion_.info_for(frame).needs;

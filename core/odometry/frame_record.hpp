@@ -89,6 +89,8 @@ struct StageTimes {
   double consensus = 0.0;  ///< the pose most of the image agrees on
   double refine = 0.0;     ///< eq. (5)
   double direct = 0.0;     ///< direct alignment
+  /// Matching a stereo pair, which is reading, and no part of total; 0 for other frames.
+  double stereo = 0.0;
 };
 
 /// A figure of the motion method, by its name in MethodInfo::figures.

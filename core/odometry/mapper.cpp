@@ -21,7 +21,7 @@ void Mapper::end_bundle(FrameRecord& record) {
   record.bundle_iterations = solution.iterations;
   if (map_.has_keyframe(pending_->keyframe)) {
     update_points(map_.keyframe(pending_->keyframe).points);
-    record.culled_keyframes += cull_keyframes(map_, pending_->keyframe, config_);
+    record.culled_keyframes += cull_keyframes(map_, pending_->keyframe, camera_, config_);
   }
   pending_.reset();
   record.ms.bundle += watch.milliseconds();
@@ -42,9 +42,10 @@ bool Mapper::wants_keyframe(const Frame& image, const TrackedFrame& frame, int i
   // One adjustment at a time: a keyframe before the last one's is done would have to wait for it.
   if (!image.has_depth() || pending_) return false;
   const FeatureSet& features = *frame.features;
+  const double far = camera_.depth_limit(config_.map.far_depth_m);
   int near_tracked = 0, near_new = 0;
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
-    if (features.depth[i] <= 0 || features.depth[i] > config_.map.far_depth_m) continue;
+    if (features.depth[i] <= 0 || features.depth[i] > far) continue;
     ++(frame.points[i] != kNone ? near_tracked : near_new);
   }
   const bool near_wanted =

@@ -102,11 +102,12 @@ int create_points(LocalMap& map, int keyframe_id, const Camera& camera, const Co
 
   const Pose world_from_camera = keyframe.camera_from_world.inverse();
   PointsByPlace by_place(camera, keyframe);
+  const double far = camera.depth_limit(config.map.far_depth_m);
   int near = 0, created = 0;
   for (const auto& [depth, i] : by_depth) {
     // Far points are less exact, but where there are no others they alone tell the room from what stands
     // before it.
-    const bool wanted = depth <= config.map.far_depth_m || near < config.map.min_new_points;
+    const bool wanted = depth <= far || near < config.map.min_new_points;
     if (!wanted && by_place.at(i) >= config.map.min_cell_points) continue;
     ++near;
     if (keyframe.points[static_cast<std::size_t>(i)] != kNone) continue;
@@ -159,15 +160,16 @@ int cull_points(LocalMap& map, int newest_keyframe, const Config& config) {
   return culled;
 }
 
-int cull_keyframes(LocalMap& map, int newest_keyframe, const Config& config) {
+int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, const Config& config) {
   constexpr int kSeenByOthers = 3;
+  const double far = camera.depth_limit(config.map.far_depth_m);
   int culled = 0;
   for (const auto& [id, shared] : map.covisible(newest_keyframe)) {
     if (id == map.keyframes().begin()->first) continue;  // the first keyframe holds the map in place
     const Keyframe& keyframe = map.keyframe(id);
     int points = 0, redundant = 0;
     for (std::size_t f = 0; f < keyframe.points.size(); ++f) {
-      if (keyframe.points[f] == kNone || keyframe.features->depth[f] > config.map.far_depth_m) continue;
+      if (keyframe.points[f] == kNone || keyframe.features->depth[f] > far) continue;
       ++points;
       const int octave = keyframe.features->keypoints[f].octave;
       int others = 0;

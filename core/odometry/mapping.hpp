@@ -22,7 +22,7 @@ int cull_points(LocalMap& map, int newest_keyframe, const Config& config);
 
 /// Retires keyframes most of whose points three others see at least as finely; and the oldest beyond
 /// map.max_keyframes.
-int cull_keyframes(LocalMap& map, int newest_keyframe, const Config& config);
+int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, const Config& config);
 
 /// At any frame: takes out the points about a keyframe that lie on what is dynamic, or before it where
 /// nothing is now. Each is remembered among LocalMap::moved_points().

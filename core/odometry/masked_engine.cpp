@@ -60,7 +60,8 @@ bool TrackerFrame::is_dynamic(const Eigen::Vector2d& pixel, double z) const {
   const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
   if (x < 0 || y < 0 || x >= weight.cols || y >= weight.rows || weight.at<float>(y, x) > 0.0F) return false;
   const float sensed = depth.at<float>(y, x);
-  return sensed > 0.0F && z < static_cast<double>(sensed) + kLikeDepth;
+  const double there = static_cast<double>(sensed);
+  return sensed > 0.0F && z < there + kLikeDepth + stereo_per_m2 * there * there;
 }
 
 MaskedEngine::MaskedEngine(const Camera& camera, const Config& config, std::unique_ptr<FrameTracker> tracker)
@@ -112,6 +113,7 @@ FrameResult MaskedEngine::run_frame(const Frame& frame, const PreparedFrame& pre
     lose(frame, FrameStatus::unreadable, "the image could not be read", std::nullopt, record);
   } else {
     record.ms.motion = prepared.motion_ms;
+    if (frame.stereo) record.ms.stereo = frame.stereo->ms;
     const Stopwatch preparing;
     Rectified rectified{rectifier_.smooth(frame.gray), rectifier_.nearest(frame.depth), nullptr};
     rectified.prepared = tracker_->prepare(rectified.gray, rectified.depth);
@@ -166,6 +168,7 @@ TrackerFrame MaskedEngine::looked_at(const Frame& frame, const Rectified& rectif
   looked.prepared = rectified.prepared;
   looked.cull_dynamic = config_.map.cull_dynamic && !mask.empty();
   looked.velocity = path_.velocity();
+  looked.stereo_per_m2 = camera_.depth_sigma_per_m2;
   if (path_.begun() && !path_.lost())
     looked.velocity_to = [this, now = frame.timestamp](const Pose& camera_from_world) {
       return path_.velocity_to(camera_from_world, tracker_->map(), now);

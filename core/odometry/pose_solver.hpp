@@ -21,7 +21,7 @@ struct PoseObservation {
 
 /// Depth enters beside pixels as what a stereo rig of this baseline (m) would measure in px: b fx / z. It is
 /// the distance between the projector and the camera of a Kinect, whose depth errors grow the same way.
-inline constexpr double kDepthBaseline = 0.075;
+inline constexpr double kDepthBaseline = kKinectBaseline;
 
 /// 95 % bounds of χ² with 2 (pixel) and 3 (pixel and depth) degrees of freedom: beyond them, an outlier.
 inline constexpr double kChi2Pixel = 5.991, kChi2PixelDepth = 7.815;

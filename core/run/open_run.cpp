@@ -37,6 +37,7 @@ std::unique_ptr<FrameSource> open_as_it_was(const SequenceOrigin& origin, const 
   options.inverted_masks = origin.inverted_masks;
   options.depth_scale = origin.depth_scale;
   options.topics = origin.topics;
+  options.stereo = origin.stereo;
   auto source = open_sequence(where, options);
   if (sequence_fingerprint(*source) != origin.fingerprint)
     throw InputError(fmt::format("{}: is not, or no longer, the sequence that the run in {} was made of",

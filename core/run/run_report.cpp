@@ -33,10 +33,11 @@ SpeedFigures speed_of(const RunResult& run) {
     speed.mean.mapping += r.ms.mapping;
     speed.mean.bundle += r.ms.bundle;
     speed.mean.total += r.ms.total;
+    speed.mean.stereo += r.ms.stereo;
   }
   if (totals.empty()) return speed;
   for (double* sum : {&speed.mean.motion, &speed.mean.features, &speed.mean.matching, &speed.mean.pose,
-                      &speed.mean.mapping, &speed.mean.bundle, &speed.mean.total})
+                      &speed.mean.mapping, &speed.mean.bundle, &speed.mean.total, &speed.mean.stereo})
     *sum /= static_cast<double>(totals.size());
   speed.median_ms = quantile(totals, 0.5);
   speed.p99_ms = quantile(totals, 0.99);
@@ -61,6 +62,7 @@ nlohmann::ordered_json speed_json(const SpeedFigures& speed) {
                      {"matching", speed.mean.matching}, {"pose", speed.mean.pose},
                      {"mapping", speed.mean.mapping},   {"bundle", speed.mean.bundle},
                      {"total", speed.mean.total}};
+  if (speed.mean.stereo > 0) json["mean_ms"]["stereo"] = speed.mean.stereo;
   return json;
 }
 
@@ -227,6 +229,8 @@ std::string to_text(const RunReport& report) {
   text += fmt::format("  time a frame  median {:.1f} ms, 99th percentile {:.1f} ms", report.speed.median_ms,
                       report.speed.p99_ms);
   if (report.speed.units > 0) text += fmt::format(" ({:.2f} ORB units)", report.speed.units);
+  if (report.speed.mean.stereo > 0)
+    text += fmt::format("; matching left to right apart, mean {:.1f} ms", report.speed.mean.stereo);
   return text + fmt::format("\n  run hash      {}\n", report.hash);
 }
 

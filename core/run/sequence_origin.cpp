@@ -45,6 +45,7 @@ SequenceOrigin origin_of(const FrameSource& source, const std::string& where, co
   origin.inverted_masks = options.inverted_masks;
   origin.depth_scale = options.depth_scale;
   origin.topics = options.topics;
+  origin.stereo = options.stereo;
   origin.camera = source.camera();
   origin.has_depth = source.has_depth();
   origin.fingerprint = sequence_fingerprint(source);
@@ -70,8 +71,13 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
   if (origin.inverted_masks) json["inverted_masks"] = true;
   if (origin.depth_scale) json["depth_scale"] = *origin.depth_scale;
   if (!origin.topics.empty()) json["topics"] = origin.topics;
+  if (const std::string stereo = to_text(origin.stereo); !stereo.empty()) json["stereo"] = stereo;
   json["fingerprint"] = origin.fingerprint;
   visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
+  if (origin.camera.is_stereo()) {
+    json["camera"]["baseline_m"] = origin.camera.baseline_m;
+    json["camera"]["depth_sigma_per_m2"] = origin.camera.depth_sigma_per_m2;
+  }
   return json;
 }
 
@@ -90,9 +96,12 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   origin.inverted_masks = json.value("inverted_masks", false);
   if (json.contains("depth_scale")) origin.depth_scale = json.at("depth_scale").get<double>();
   origin.topics = json.value("topics", std::string());
+  origin.stereo = stereo_options_from(json.value("stereo", std::string()), "stereo");
   json.at("fingerprint").get_to(origin.fingerprint);
   const nlohmann::json& camera = json.at("camera");
   visit_camera(origin.camera, [&camera](const char* name, auto& value) { camera.at(name).get_to(value); });
+  origin.camera.baseline_m = camera.value("baseline_m", 0.0);
+  origin.camera.depth_sigma_per_m2 = camera.value("depth_sigma_per_m2", 0.0);
   return origin;
 }
 

@@ -19,12 +19,13 @@ struct SequenceOrigin {
   int frames_asked = 0;                  ///< OpenOptions::frames
   unsigned seed = 1;                     ///< of a generated sequence
   Camera camera;                         ///< as used
-  double frame_rate = kFrameNumberRate;  ///< these six as in OpenOptions
+  double frame_rate = kFrameNumberRate;  ///< these seven as in OpenOptions
   double depth_offset_s = 0.0;
   PoseConvention truth = PoseConvention::as_written;
   bool inverted_masks = false;
   std::optional<double> depth_scale;
   std::string topics;
+  StereoOptions stereo;
   bool has_depth = true;
   std::string fingerprint;  ///< sequence_fingerprint
 

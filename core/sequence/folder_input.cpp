@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/sequence_input.hpp"
+#include "core/sequence/stereo/stereo_input.hpp"
 
 namespace stillpoint {
 namespace {
@@ -52,6 +53,8 @@ class FolderInput final : public SequenceInput {
 
 std::unique_ptr<SequenceInput> make_folder_input(std::unique_ptr<FileStore> files,
                                                  const OpenOptions& options) {
+  if (!has_image_lists(*files))
+    if (auto stereo = make_stereo_input(files, options)) return stereo;
   return std::make_unique<FolderInput>(std::move(files), options);
 }
 

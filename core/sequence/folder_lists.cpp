@@ -44,31 +44,6 @@ std::optional<double> number_in(const fs::path& file) {
   return parse_number(std::string(before.base(), last.base()));
 }
 
-/// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have
-/// one and no two the same, otherwise by their order.
-ImageList images_of(const FileStore& store, const std::string& folder) {
-  ImageList list{store.path_of(folder), {}};
-  const std::string prefix = folder.empty() ? "" : folder + "/";
-  std::vector<fs::path> files;
-  for (const std::string& name : store.entries(folder))
-    if (is_image_name(name)) files.emplace_back(name);
-  std::set<double> stamps;
-  bool numbered = true;
-  for (const fs::path& file : files) {
-    const auto number = number_in(file);
-    numbered = numbered && number && stamps.insert(*number).second;
-    list.entries.push_back({number.value_or(0.0), prefix + file.string(), 0});
-  }
-  if (numbered)
-    std::sort(list.entries.begin(), list.entries.end(),
-              [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
-  for (std::size_t i = 0; i < list.entries.size(); ++i) {
-    list.entries[i].line = static_cast<int>(i) + 1;
-    if (!numbered) list.entries[i].timestamp = static_cast<double>(i);
-  }
-  return list;
-}
-
 std::vector<double> stamps_of(const ImageList& list) {
   std::vector<double> stamps;
   stamps.reserve(list.entries.size());
@@ -185,6 +160,40 @@ bool read_images_alone(const FileStore& folder, FolderLists& lists) {
   return true;
 }
 
+}  // namespace
+
+bool has_image_lists(const FileStore& folder) {
+  return first_there(folder, kAssociations).has_value() || first_there(folder, kColourLists).has_value();
+}
+
+ImageList images_of(const FileStore& store, const std::string& folder) {
+  ImageList list{store.path_of(folder), {}};
+  const std::string prefix = folder.empty() ? "" : folder + "/";
+  std::vector<fs::path> files;
+  for (const std::string& name : store.entries(folder))
+    if (is_image_name(name)) files.emplace_back(name);
+  std::set<double> stamps;
+  bool numbered = true;
+  for (const fs::path& file : files) {
+    const auto number = number_in(file);
+    numbered = numbered && number && stamps.insert(*number).second;
+    list.entries.push_back({number.value_or(0.0), prefix + file.string(), 0});
+  }
+  if (numbered)
+    std::sort(list.entries.begin(), list.entries.end(),
+              [](const ListEntry& a, const ListEntry& b) { return a.timestamp < b.timestamp; });
+  for (std::size_t i = 0; i < list.entries.size(); ++i) {
+    list.entries[i].line = static_cast<int>(i) + 1;
+    if (!numbered) list.entries[i].timestamp = static_cast<double>(i);
+  }
+  return list;
+}
+
+void read_mask_list(const FileStore& folder, FolderLists& lists) {
+  if (const auto masks = first_there(folder, kMaskLists))
+    lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);
+}
+
 void settle_stamps(FolderLists& lists, double frame_rate) {
   const auto colour_stamps = stamps_of(lists.colours);
   lists.unit = unit_of(colour_stamps);
@@ -208,8 +217,6 @@ void settle_stamps(FolderLists& lists, double frame_rate) {
   }
 }
 
-}  // namespace
-
 FolderLists read_folder_lists(const FileStore& folder, double frame_rate) {
   FolderLists lists;
   const auto explain_unusual = [&](const std::string& name, const char* usual) {
@@ -232,8 +239,7 @@ FolderLists read_folder_lists(const FileStore& folder, double frame_rate) {
                     "RGB-D layout{}",
                     folder.place(), what_else(folder)));
   }
-  if (const auto masks = first_there(folder, kMaskLists))
-    lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);
+  read_mask_list(folder, lists);
   settle_stamps(lists, frame_rate);
   return lists;
 }

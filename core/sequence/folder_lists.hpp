@@ -20,6 +20,7 @@ struct ImageList {
 struct FolderLists {
   ImageList colours;
   std::optional<ImageList> depths, masks;
+  bool stereo = false;                  ///< `depths` names the right images of a stereo pair
   bool paired = false;                  ///< depth i belongs to colour image i, whatever the stamps say
   StampUnit unit = StampUnit::seconds;  ///< the colour stamps were written in
   std::vector<std::string> warnings;
@@ -37,5 +38,18 @@ struct FolderLists {
 /// @param frame_rate Hz, of stamps that are frame numbers
 /// @throws InputError in one sentence where no images are named, with what was found instead
 [[nodiscard]] FolderLists read_folder_lists(const FileStore& folder, double frame_rate);
+
+/// Whether a folder has one of the lists above that name images.
+[[nodiscard]] bool has_image_lists(const FileStore& folder);
+
+/// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have one
+/// and no two the same, otherwise by their order. Without entries where there are none.
+[[nodiscard]] ImageList images_of(const FileStore& store, const std::string& folder);
+
+/// Reads the list of masks, where there is one. @throws InputError for one that cannot be read
+void read_mask_list(const FileStore& folder, FolderLists& lists);
+
+/// Converts the stamps of all lists to seconds. @param frame_rate Hz, of stamps that are frame numbers
+void settle_stamps(FolderLists& lists, double frame_rate);
 
 }  // namespace stillpoint

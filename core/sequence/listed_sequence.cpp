@@ -33,7 +33,12 @@ ListedSequence::ListedSequence(std::unique_ptr<SequenceInput> input, const OpenO
   if (!truth.why_not.empty()) why_not_[FramePart::truth] = truth.why_not;
   warnings_.insert(warnings_.end(), truth.warnings.begin(), truth.warnings.end());
   const cv::Size size = choose_camera();
-  if (has_depth_) survey_depth_images(size);
+  if (is_stereo_) {
+    begin_stereo();
+    survey_stereo();
+  } else if (has_depth_) {
+    survey_depth_images(size);
+  }
   if (has_masks_) survey_mask_images(size);
   question_convention();
   for (const auto& [part, sentence] : why_not_) warnings_.push_back(sentence);
@@ -63,7 +68,11 @@ void ListedSequence::read_lists() {
   colour_list_ = lists.colours.path;
   unit_ = lists.unit;
   for (ListEntry& colour : lists.colours.entries) frames_.push_back({std::move(colour), {}, {}});
-  if (lists.depths) join_depth(lists);
+  is_stereo_ = lists.stereo;
+  if (is_stereo_)
+    join_right(lists);
+  else if (lists.depths)
+    join_depth(lists);
   if (lists.masks) join_masks(*lists.masks);
 }
 
@@ -129,6 +138,8 @@ int ListedSequence::join(const ImageList& list, Part part) {
 
 cv::Size ListedSequence::choose_camera() {
   camera_ = input_->camera(warnings_);
+  // A camera file may have a baseline though depth is a sensor's own.
+  if (!is_stereo_) camera_.baseline_m = camera_.depth_sigma_per_m2 = 0.0;
   if (options_.depth_scale) camera_.depth_scale = *options_.depth_scale;
   std::string first_problem;
   for (const Entry& frame : frames_) {
@@ -244,7 +255,7 @@ Frame ListedSequence::read(int index) const {
   const cv::Mat colour = to_8bit(image.image);
   frame.gray = to_gray(colour);
   if (colour.channels() == 3) frame.colour = colour;
-  if (has_depth_) read_depth(listed, frame);
+  if (has_depth_) is_stereo_ ? read_right(listed, frame) : read_depth(listed, frame);
   return frame;
 }
 

@@ -10,19 +10,22 @@
 #include "core/sequence/image_survey.hpp"
 #include "core/sequence/sequence_input.hpp"
 #include "core/sequence/source.hpp"
+#include "core/sequence/stereo/stereo_matcher.hpp"
 
 namespace stillpoint {
 
 /// A recorded sequence: the images that an input names, a folder in the TUM RGB-D layout or near it, an
-/// archive of one, or a bag of messages. What a folder may hold is said in folder_lists.hpp, folder_truth.hpp
-/// and folder_camera.hpp; what a bag may, in bag/bag_input.hpp. Bonn and ICL-NUIM folders share the layout.
+/// archive of one, a bag of messages, or stereo pairs. What a folder may hold is said in folder_lists.hpp,
+/// folder_truth.hpp and folder_camera.hpp; what a bag may, in bag/bag_input.hpp; what stereo may, in
+/// stereo/stereo_recording.hpp. Bonn and ICL-NUIM folders share the layout.
 ///
 /// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, or as
 /// `associations.txt` pairs them where that is given. Whatever can be known before the first frame is told
 /// then, in warnings() and why_not(): a few images of each kind are looked at on opening.
 class ListedSequence final : public FrameSource {
  public:
-  /// @param options camera, frame_rate, depth_scale, truth, inverted_masks and depth_offset_s are used
+  /// @param options camera, frame_rate, depth_scale, truth, inverted_masks, depth_offset_s and
+  /// stereo are used
   /// @throws InputError in one sentence when its lists or its camera cannot be used, or when
   /// not one of
   ///         its colour images can be read.
@@ -44,21 +47,25 @@ class ListedSequence final : public FrameSource {
  private:
   struct Entry {
     ListEntry colour;
-    std::optional<ListEntry> depth, mask;
+    std::optional<ListEntry> depth, mask;  // depth: of a stereo pair, the right image
   };
   using Part = std::optional<ListEntry> Entry::*;
 
   void read_lists();
   void join_depth(FolderLists& lists);
+  void join_right(const FolderLists& lists);
   void join_masks(const ImageList& masks);
   int join(const ImageList& list, Part part);
   [[nodiscard]] cv::Size choose_camera();
+  void begin_stereo();
+  void survey_stereo();
   void survey_depth_images(cv::Size colour);
   void question_scale(const DepthSurvey& survey);
   void survey_mask_images(cv::Size colour);
   void question_convention();
   [[nodiscard]] ImagePaths sample(Part part, std::size_t count) const;
   void read_depth(const Entry& entry, Frame& frame) const;
+  void read_right(const Entry& entry, Frame& frame) const;
   [[nodiscard]] ImageReader reader() const;
   [[nodiscard]] std::string path_of(const std::string& file) const { return input_->path_of(file); }
   [[nodiscard]] const Entry& entry(int index) const { return frames_.at(static_cast<std::size_t>(index)); }
@@ -71,7 +78,8 @@ class ListedSequence final : public FrameSource {
   StampUnit unit_ = StampUnit::seconds;
   Camera camera_;
   Trajectory ground_truth_;
-  bool has_depth_ = false, has_masks_ = false;
+  bool is_stereo_ = false, has_depth_ = false, has_masks_ = false;
+  std::optional<StereoMatcher> matcher_;  // of stereo pairs
   MaskCoding mask_coding_ = MaskCoding::bright;
   std::map<FramePart, std::string> why_not_;
   std::vector<std::string> warnings_;

@@ -11,6 +11,7 @@
 #include "core/geometry/trajectory.hpp"
 #include "core/sequence/frame.hpp"
 #include "core/sequence/stamps.hpp"
+#include "core/sequence/stereo/stereo_options.hpp"
 
 namespace stillpoint {
 
@@ -57,6 +58,7 @@ struct OpenOptions {
   bool inverted_masks = false;                        ///< white is what is static
   double depth_offset_s = 0.0;                        ///< added to the depth images' stamps
   std::string topics{};  ///< of a bag: `colour=/TOPIC,depth=…,info=…,truth=…`; empty = as they are found
+  StereoOptions stereo{};  ///< how stereo pairs are matched
   /// Told how far what takes long on opening is (unpacking into the cache), from 0 to 1. What it throws ends
   /// that.
   std::function<void(const std::string& what, double share)> progress{};

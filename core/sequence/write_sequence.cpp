@@ -16,15 +16,26 @@
 
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
+#include "core/sequence/image_file.hpp"
+#include "core/sequence/stereo/write_stereo.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kImageFolders[] = {"rgb", "depth", "mask"};
-constexpr const char* kTextFiles[] = {"rgb.txt",         "depth.txt",        "mask.txt",
-                                      "groundtruth.txt", "associations.txt", "camera.toml"};
+/// All that may be written, whatever the layout.
+std::vector<std::string> image_folders() {
+  std::vector<std::string> folders = stereo_image_folders();
+  folders.insert(folders.end(), {"rgb", "depth", "mask"});
+  return folders;
+}
+std::vector<std::string> text_files() {
+  std::vector<std::string> files = stereo_text_files();
+  files.insert(files.end(),
+               {"rgb.txt", "depth.txt", "mask.txt", "groundtruth.txt", "associations.txt", "camera.toml"});
+  return files;
+}
 
 void write_bytes(const fs::path& path, const void* bytes, std::size_t size) {
   errno = 0;
@@ -45,18 +56,18 @@ void write_png(const fs::path& path, const cv::Mat& image) {
 }
 
 bool holds_sequence(const fs::path& folder) {
-  const auto there = [&](const char* name) {
+  const auto there = [&](const std::string& name) {
     std::error_code error;
     return fs::exists(folder / name, error);
   };
-  return std::any_of(std::begin(kTextFiles), std::end(kTextFiles), there) ||
-         std::any_of(std::begin(kImageFolders), std::end(kImageFolders), there);
+  const auto texts = text_files(), images = image_folders();
+  return std::any_of(texts.begin(), texts.end(), there) || std::any_of(images.begin(), images.end(), there);
 }
 
 /// Removes what write_sequence writes and nothing else.
 void clear_sequence(const fs::path& folder) {
-  for (const char* name : kTextFiles) fs::remove(folder / name);
-  for (const char* name : kImageFolders) {
+  for (const std::string& name : text_files()) fs::remove(folder / name);
+  for (const std::string& name : image_folders()) {
     if (!fs::is_directory(folder / name)) continue;
     std::vector<fs::path> images;
     for (const auto& entry : fs::directory_iterator(folder / name))
@@ -65,7 +76,7 @@ void clear_sequence(const fs::path& folder) {
   }
 }
 
-void prepare(const FrameSource& source, const fs::path& folder, bool force) {
+void prepare(const FrameSource& source, const fs::path& folder, bool force, SequenceLayout layout) {
   try {
     if (fs::exists(folder) && !fs::is_directory(folder))
       throw InputError(
@@ -76,8 +87,13 @@ void prepare(const FrameSource& source, const fs::path& folder, bool force) {
             fmt::format("{} holds a sequence already; give --force to replace it", folder.string()));
       clear_sequence(folder);
     }
-    fs::create_directories(folder / "rgb");
-    if (source.has_depth()) fs::create_directories(folder / "depth");
+    if (layout == SequenceLayout::tum) {
+      fs::create_directories(folder / "rgb");
+      if (source.has_depth()) fs::create_directories(folder / "depth");
+    } else {
+      const StereoNames names = stereo_names(source, 0, layout);
+      for (const fs::path& image : {names.left, names.right}) fs::create_directories(folder / image.parent_path());
+    }
     if (source.has_masks()) fs::create_directories(folder / "mask");
   } catch (const fs::filesystem_error& error) {
     throw InputError(fmt::format("{} cannot be written to: {}", folder.string(), error.code().message()));
@@ -91,14 +107,25 @@ struct WrittenFrame {
   std::optional<double> depth_stamp;  // s, when the depth image was taken; nothing where there is none
 };
 
-WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder) {
+void write_pair(const FrameSource& source, const Frame& frame, const fs::path& folder, SequenceLayout layout) {
+  const StereoNames names = stereo_names(source, frame.index, layout);
+  const bool gray = frame.colour.empty() || layout == SequenceLayout::euroc;
+  if (frame.readable()) write_png(folder / names.left, gray ? frame.gray : frame.colour);
+  if (frame.stereo) write_png(folder / names.right, gray ? to_gray(frame.stereo->right) : frame.stereo->right);
+}
+
+WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder, SequenceLayout layout) {
   const Frame frame = source.read(index);
   WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}};
   const std::string name = image_name(source.timestamp(index));
-  if (frame.readable()) write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
   if (source.has_masks())
     if (const FrameTruth truth = source.truth(index); !truth.moving.empty())
       write_png(folder / "mask" / name, truth.moving);
+  if (layout != SequenceLayout::tum) {
+    write_pair(source, frame, folder, layout);
+    return written;
+  }
+  if (frame.readable()) write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
   if (!frame.has_depth()) return written;
   cv::Mat stored;
   frame.depth.convertTo(stored, CV_16U, source.camera().depth_scale);  // rounds to nearest
@@ -110,7 +137,7 @@ WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& f
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
 /// @returns those that were written: from the first one on
 std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path& folder,
-                                       const WriteOptions& options) {
+                                       const WriteOptions& options, SequenceLayout layout) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
@@ -123,7 +150,7 @@ std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path
       const int i = next++;
       if (i >= source.size()) break;
       try {
-        written[static_cast<std::size_t>(i)] = write_frame(source, i, folder);
+        written[static_cast<std::size_t>(i)] = write_frame(source, i, folder, layout);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, source.size());
@@ -144,11 +171,13 @@ std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path
 }
 
 std::string camera_text(const Camera& c) {
-  return fmt::format(
+  std::string text = fmt::format(
       "name = \"{}\"\nwidth = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\n"
       "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ndepth_scale = {}\nreadout_s = {}\n",
       c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale,
       c.readout_s);
+  if (c.is_stereo()) text += fmt::format("baseline_m = {}\n", c.baseline_m);
+  return text;
 }
 
 /// Names the depth image of a frame that has none: one that is not there, and is no other frame's.
@@ -177,7 +206,7 @@ void write_pairs(const FrameSource& source, const fs::path& folder,
 }
 
 void write_lists(const FrameSource& source, const fs::path& folder,
-                 const std::vector<WrittenFrame>& written) {
+                 const std::vector<WrittenFrame>& written, SequenceLayout layout) {
   std::vector<std::optional<double>> colours, depths, masks;
   for (std::size_t i = 0; i < written.size(); ++i) {
     const double stamp = source.timestamp(static_cast<int>(i));
@@ -185,10 +214,16 @@ void write_lists(const FrameSource& source, const fs::path& folder,
     depths.push_back(written[i].depth_stamp);
     masks.push_back(fs::exists(folder / "mask" / image_name(stamp)) ? std::optional(stamp) : std::nullopt);
   }
-  write_text_file(folder / "camera.toml", camera_text(source.camera()));
-  if (!source.ground_truth().empty())
-    write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
+  if (layout == SequenceLayout::tum || layout == SequenceLayout::left_right) {
+    write_text_file(folder / "camera.toml", camera_text(source.camera()));
+    if (!source.ground_truth().empty())
+      write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
+  }
   if (source.has_masks()) write_list(source, folder, "mask", masks);
+  if (layout != SequenceLayout::tum) {
+    write_stereo_texts(source, folder, static_cast<int>(written.size()), layout);
+    return;
+  }
   if (source.has_depth()) {
     write_list(source, folder, "depth", depths);
     write_pairs(source, folder, written);
@@ -196,20 +231,33 @@ void write_lists(const FrameSource& source, const fs::path& folder,
   write_list(source, folder, "rgb", colours);
 }
 
+/// The layout asked for, or the source's own.
+SequenceLayout layout_of(const FrameSource& source, SequenceLayout asked) {
+  const bool is_stereo = source.camera().is_stereo();
+  if (asked == SequenceLayout::own) return is_stereo ? SequenceLayout::left_right : SequenceLayout::tum;
+  if (is_stereo == (asked == SequenceLayout::tum))
+    throw InputError(fmt::format("{}: is {}, and cannot be written in a layout of {}", source.name(),
+                                 is_stereo ? "stereo" : "RGB-D", is_stereo ? "RGB-D" : "stereo pairs"));
+  return asked;
+}
+
 }  // namespace
 
 void remove_sequence(const fs::path& folder) {
   std::error_code ignored;  // what others put there meanwhile stays, and the folder with it
   clear_sequence(folder);
-  for (const char* name : kImageFolders) fs::remove(folder / name, ignored);
+  for (const std::string& name : image_folders()) fs::remove(folder / name, ignored);
+  for (const char* name : {"mav0/cam0", "mav0/cam1", "mav0/state_groundtruth_estimate0", "mav0"})
+    fs::remove(folder / name, ignored);
   fs::remove(folder, ignored);
 }
 
 WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder,
                                const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
-  prepare(source, folder, options.force);
-  const std::vector<WrittenFrame> frames = write_frames(source, folder, options);
+  const SequenceLayout layout = layout_of(source, options.layout);
+  prepare(source, folder, options.force, layout);
+  const std::vector<WrittenFrame> frames = write_frames(source, folder, options, layout);
   WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
   for (int i = 0; i < written.frames; ++i)
     if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
@@ -218,7 +266,7 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
     throw InputError(
         fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
   }
-  if (!frames.empty()) write_lists(source, folder, frames);
+  if (!frames.empty()) write_lists(source, folder, frames, layout);
   return written;
 }
 

@@ -9,6 +9,8 @@ namespace stillpoint {
 using Shared = std::shared_ptr<PanelsShared>;
 
 [[nodiscard]] std::unique_ptr<Panel> make_input_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_disparity_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_stereo_holes_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_compensated_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_difference_panel(Shared shared);
 

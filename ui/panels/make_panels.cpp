@@ -6,6 +6,8 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   const auto shared = std::make_shared<PanelsShared>();
   std::vector<std::unique_ptr<Panel>> panels;
   panels.push_back(make_input_panel(shared));
+  panels.push_back(make_disparity_panel(shared));
+  panels.push_back(make_stereo_holes_panel(shared));
   panels.push_back(make_compensated_panel(shared));
   panels.push_back(make_difference_panel(shared));
   panels.push_back(make_mask_panel({"forward_mask", "Forward mask", Role::kForward, false, "forward_mask",

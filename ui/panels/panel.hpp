@@ -54,6 +54,11 @@ class Panel {
   virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
+  /// Whether there may be anything to show of this sequence: where not, the panel is none of all.
+  [[nodiscard]] virtual bool is_for(const SessionView& session) const {
+    (void)session;
+    return true;
+  }
   /// Valid as long as the panel.
   [[nodiscard]] virtual std::vector<PanelCommand> commands() { return {}; }
 };

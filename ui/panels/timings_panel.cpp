@@ -93,6 +93,9 @@ class TimingsPanel final : public NamedPanel {
     footer.caption =
         "Wall time. Motion and features run beside each other where threads allow, so stages may add up to "
         "more than the whole.";
+    if (stereo_ms_ > 0.0)
+      footer.caption +=
+          fmt::format(" Matching left to right took {:.1f} ms a frame, median, while reading.", stereo_ms_);
     if (frame.pace != nullptr && frame.pace->busy_frames > 0)
       footer.caption += fmt::format(
           " The interface: {:.0f} ms a frame; beside work at the longest {:.0f} ms, {} of {} frames over "
@@ -122,7 +125,9 @@ class TimingsPanel final : public NamedPanel {
     total_.clear();
     for (auto& one : tops_) one.clear();
     std::array<std::vector<double>, kStages.size()> values;
+    std::vector<double> stereo;
     for (const FrameRecord& record : session.run->records) {
+      stereo.push_back(record.ms.stereo);
       index_.push_back(record.index);
       total_.push_back(record.ms.total);
       double sum = 0.0;
@@ -135,6 +140,7 @@ class TimingsPanel final : public NamedPanel {
     }
     for (std::size_t i = 0; i < kStages.size(); ++i) figures_[i] = figures_of(values[i]);
     whole_ = figures_of(total_);
+    stereo_ms_ = figures_of(std::move(stereo)).median;
   }
 
   void collect_ghosts(const SessionView& session) {
@@ -216,6 +222,7 @@ class TimingsPanel final : public NamedPanel {
   }
 
   std::vector<double> index_, total_;
+  double stereo_ms_ = 0.0;
   std::array<std::vector<double>, kStages.size()> tops_;  // ms, each stage added to those before
   std::array<Figures, kStages.size()> figures_;
   Figures whole_;

@@ -209,6 +209,7 @@ void AppController::take_opened() {
     remember(options_.settings.recent, open_);
     tell_recent();
     const FrameSource& source = *opened.place->source;
+    fit_layout(source.camera().is_stereo());
     workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
     if (const auto& recorded = opened.place->options.recorded; recorded && !recorded->cut_short.empty())
@@ -220,6 +221,12 @@ void AppController::take_opened() {
     retiring_.push_back(
         std::async(std::launch::async,
                    [last = std::shared_ptr<Session>(std::move(opened.session))]() mutable { last.reset(); }));
+}
+
+void AppController::fit_layout(bool stereo) {
+  const std::string& method = options_.config.run.method;
+  if (panels_of(workbench_.layout()) == panels_of(default_layout(method, !stereo)))
+    workbench_.set_layout(default_layout(method, stereo));
 }
 
 void AppController::draw(UiFrame& frame) {

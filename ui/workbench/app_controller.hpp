@@ -88,6 +88,8 @@ class AppController {
   /// The config a sequence was left with; nothing where it was never open.
   [[nodiscard]] std::optional<Config> config_of(const RecentSequence& sequence);
   void take_opened();
+  /// Gives the tiles that nobody has moved those of a sequence of this kind.
+  void fit_layout(bool stereo);
   void tell_recent();
   /// The sequence shown, with its constants and frame as they are now.
   [[nodiscard]] RecentSequence as_left() const;

@@ -156,7 +156,7 @@ std::vector<std::string> stage_panels(std::string_view method) {
   return {"motion"};
 }
 
-LayoutNode default_layout(std::string_view method) {
+LayoutNode default_layout(std::string_view method, bool stereo) {
   using enum Division;
   // Above, what is classified as dynamic and which features that takes, by what the method itself goes by; in
   // the middle what comes of it; below, the whole run to go about in.
@@ -165,6 +165,11 @@ LayoutNode default_layout(std::string_view method) {
   for (std::size_t i = 0; i < std::min<std::size_t>(3, stages.size()); ++i)
     tiles.push_back(tile(stages.size() > 1 ? 0.25 : 0.42, stages[i]));
   if (stages.size() == 1) tiles.push_back(tile(0.29, "features_after"));
+  if (stereo) {
+    constexpr double kDisparity = 0.22;
+    for (LayoutNode& other : tiles) other.share *= 1.0 - kDisparity;
+    tiles.push_back(tile(kDisparity, "disparity"));
+  }
   const LayoutNode found = divide(0.42, kColumns, tiles);
   return divide(
       1.0, kRows,
@@ -220,14 +225,25 @@ LayoutNode stages_layout(std::string_view) {
        divide(0.24, kRows, {tile(0.72, "inspector"), tile(0.28, "timeline")})});
 }
 
+/// What a stereo pair's depth is made of, and what becomes of it.
+LayoutNode stereo_layout(std::string_view) {
+  return divide(1.0, kRows,
+                {divide(0.48, kColumns, {tile(0.5, "disparity"), tile(0.5, "stereo_holes")}),
+                 divide(0.34, kColumns,
+                        {tile(0.3, "input"), tile(0.3, "features_after"), tile(0.25, "trajectory"),
+                         tile(0.15, "inspector")}),
+                 tile(0.18, "timeline")});
+}
+
 }  // namespace
 
 std::vector<NamedLayout> named_layouts() {
-  return {{"inspect", "Inspect", default_layout},
+  return {{"inspect", "Inspect", [](std::string_view method) { return default_layout(method); }},
           {"motion", "Motion", motion_layout},
           {"compare", "Compare", compare_layout},
           {"failures", "Failures", failures_layout},
-          {"stages", "Stages", stages_layout}};
+          {"stages", "Stages", stages_layout},
+          {"stereo", "Stereo", stereo_layout}};
 }
 
 }  // namespace stillpoint

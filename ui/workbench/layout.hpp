@@ -71,7 +71,8 @@ void replace_panel(LayoutNode& root, std::string_view panel, const std::string& 
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
 
 /// What a newcomer sees of a run by this method.
-[[nodiscard]] LayoutNode default_layout(std::string_view method = kDefaultMethod);
+/// @param stereo of a sequence of stereo pairs: disparity has a tile, too
+[[nodiscard]] LayoutNode default_layout(std::string_view method = kDefaultMethod, bool stereo = false);
 
 /// A layout for one kind of work.
 struct NamedLayout {

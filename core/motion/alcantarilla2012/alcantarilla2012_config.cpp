@@ -28,4 +28,11 @@ void Alcantarilla2012Config::list(ParameterTable& table) {
                "rounds of testing; before the second the pose is solved again without what moves");
 }
 
+Alcantarilla2012Config Alcantarilla2012Config::for_camera(const Camera& camera) const {
+  Alcantarilla2012Config fitted = *this;
+  if (camera.is_stereo()) fitted.depth_sigma_per_m2 = camera.depth_sigma_per_m2;
+  fitted.most_depth_m = camera.depth_limit(most_depth_m);
+  return fitted;
+}
+
 }  // namespace stillpoint

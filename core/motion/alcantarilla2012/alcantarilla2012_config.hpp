@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/camera.hpp"
 #include "core/parameter.hpp"
 
 namespace stillpoint {
@@ -11,6 +12,8 @@ struct Alcantarilla2012Config {
   Alcantarilla2012Config() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const Alcantarilla2012Config&) const = default;
+  /// The same, with noise and limits of depth as a stereo pair has them.
+  [[nodiscard]] Alcantarilla2012Config for_camera(const Camera& camera) const;
 
   double flow_sigma_px;
   double depth_sigma_per_m2;

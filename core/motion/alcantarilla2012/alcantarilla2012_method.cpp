@@ -33,7 +33,7 @@ const Preparation& prepared(const MotionInput& input) {
 class Alcantarilla2012Method final : public MotionMethod {
  public:
   Alcantarilla2012Method(const Camera& camera, const Alcantarilla2012Config& config)
-      : camera_(camera), config_(config), rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
+      : camera_(camera), config_(config.for_camera(camera)), rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Alcantarilla2012Method>(*this);
@@ -134,7 +134,7 @@ class Alcantarilla2012Method final : public MotionMethod {
 
   [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
     auto method = std::make_unique<Alcantarilla2012Method>(*this);
-    method->config_ = config.of<Alcantarilla2012Config>();
+    method->config_ = config.of<Alcantarilla2012Config>().for_camera(camera_);
     return method;
   }
 

@@ -37,4 +37,10 @@ void Lin2017Config::list(ParameterTable& table) {
                "before the second round the pose is solved again without what moves");
 }
 
+Lin2017Config Lin2017Config::for_camera(const Camera& camera) const {
+  Lin2017Config fitted = *this;
+  if (camera.is_stereo()) fitted.depth_sigma_per_m2 = camera.depth_sigma_per_m2;
+  return fitted;
+}
+
 }  // namespace stillpoint

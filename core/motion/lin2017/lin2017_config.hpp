@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/camera.hpp"
 #include "core/parameter.hpp"
 
 namespace stillpoint {
@@ -11,6 +12,8 @@ struct Lin2017Config {
   Lin2017Config() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const Lin2017Config&) const = default;
+  /// The same, with noise and limits of depth as a stereo pair has them.
+  [[nodiscard]] Lin2017Config for_camera(const Camera& camera) const;
 
   int window_px;
   int levels;

@@ -18,7 +18,7 @@ struct Preparation final : MotionPreparation {
 class Lin2017Method final : public MotionMethod {
  public:
   Lin2017Method(const Camera& camera, const Lin2017Config& config)
-      : camera_(camera), config_(config), rays_(camera, {camera.width, camera.height}, 1) {}
+      : camera_(camera), config_(config.for_camera(camera)), rays_(camera, {camera.width, camera.height}, 1) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Lin2017Method>(*this);
@@ -118,7 +118,7 @@ class Lin2017Method final : public MotionMethod {
   [[nodiscard]] int frames_back() const override { return std::max(1, config_.virtual_frames); }
 
   [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
-    return config.of<Lin2017Config>() == config_ ? clone() : nullptr;
+    return config.of<Lin2017Config>().for_camera(camera_) == config_ ? clone() : nullptr;
   }
 
   [[nodiscard]] StageLog describe(const Frame& frame, const MotionResult& result) const override {

@@ -65,12 +65,14 @@ cv::Point2f place_of(const Seen& p, float share) {
   return {p.u + share * (p.along_u - p.u), p.v + share * (p.along_v - p.v)};
 }
 
-float depth_tolerance(const Seen& p) { return static_cast<float>(kSameDepth) * depth_sigma(p.z); }
+float depth_tolerance(const Seen& p, const DepthNoise& noise) {
+  return static_cast<float>(kSameDepth) * noise.sigma(p.z);
+}
 
 /// The reference, padded so that every shift of a pixel within reach reads valid memory; the rim has no
 /// depth, so that what lies in it never meets a surface.
 struct Rimmed {
-  explicit Rimmed(const RgbdView& view) : size(view.gray.size()) {
+  explicit Rimmed(const RgbdView& view) : size(view.gray.size()), noise(depth_noise(view)) {
     cv::copyMakeBorder(view.gray, gray, kRim, kRim, kRim, kRim, cv::BORDER_REPLICATE);
     cv::copyMakeBorder(view.depth, depth, kRim, kRim, kRim, kRim, cv::BORDER_CONSTANT, cv::Scalar(0));
   }
@@ -87,6 +89,7 @@ struct Rimmed {
   static constexpr int kRim = kPadded + kSideways + 1;                      // px
 
   cv::Size size;  // without the rim
+  DepthNoise noise;
   cv::Mat gray, depth;
 };
 
@@ -104,7 +107,7 @@ class Shifts {
                           w01 = cv::v_setall_f32(right * (1 - down)),
                           w10 = cv::v_setall_f32((1 - right) * down), w11 = cv::v_setall_f32(right * down);
     const cv::v_float32x4 gray = cv::v_setall_f32(p.gray), depth = cv::v_setall_f32(p.z),
-                          tolerance = cv::v_setall_f32(depth_tolerance(p)), one = cv::v_setall_f32(1.0F),
+                          tolerance = cv::v_setall_f32(depth_tolerance(p, then.noise)), one = cv::v_setall_f32(1.0F),
                           none = cv::v_setzero_f32();
     constexpr int kFirst = Rimmed::kRim - kSideways;
     const int nearest_x = cvRound(at.x) + kFirst, nearest_y = cvRound(at.y) + kFirst;
@@ -162,12 +165,13 @@ struct Looks {
 
 Looks compare(const std::vector<Seen>& pixels, const RgbdView& then, float share, int du, int dv) {
   const auto right = static_cast<float>(then.gray.cols - 1), bottom = static_cast<float>(then.gray.rows - 1);
+  const DepthNoise noise = depth_noise(then);
   Looks s;
   for (const Seen& p : pixels) {
     const cv::Point2f at = place_of(p, share) + cv::Point2f(static_cast<float>(du), static_cast<float>(dv));
     if (!(at.x >= 0 && at.y >= 0 && at.x < right && at.y < bottom)) continue;
     const float z = then.depth.ptr<float>(cvRound(at.y))[cvRound(at.x)];
-    if (z <= 0 || std::abs(z - p.z) > depth_tolerance(p)) continue;
+    if (z <= 0 || std::abs(z - p.z) > depth_tolerance(p, noise)) continue;
     const double b = p.gray - bilinear(then.gray, at.x, at.y), gx = p.slope_x, gy = p.slope_y;
     s.n += 1, s.b += b, s.bb += b * b, s.gx += gx, s.gy += gy;
     s.gxx += gx * gx, s.gxy += gx * gy, s.gyy += gy * gy, s.gxb += gx * b, s.gyb += gy * b;
@@ -228,6 +232,7 @@ void measure_axial_motion(const RgbdView& current, const RgbdView& reference,
   std::vector<std::uint8_t> chosen(motions.size());
   for (std::size_t i = 0; i < superpixels.size(); ++i) chosen[i] = motions[i].log_odds == 0.0F;
   std::vector<Steps> steps(superpixels.size());
+  const DepthNoise noise = depth_noise(current);
   const auto* then = reference.depth.ptr<float>();
   for_pixels_of(chosen, current, labels, reference_from_current,
                 [&](std::size_t superpixel, int x, int, const DepthWarp& warped) {
@@ -238,7 +243,7 @@ void measure_axial_motion(const RgbdView& current, const RgbdView& reference,
                 });
   for (std::size_t i = 0; i < superpixels.size(); ++i) {
     const Steps& s = steps[i];
-    const double sigma = depth_sigma(superpixels[i].depth);
+    const double sigma = noise.sigma(superpixels[i].depth);
     chosen[i] = chosen[i] != 0 && s.n >= kMinPixels && 2 * s.n > superpixels[i].pixels &&
                 -s.mean() > kLeastSigmas * sigma && s.spread() < kShape * sigma + kLeaning * -s.mean();
   }
@@ -258,7 +263,7 @@ void measure_axial_motion(const RgbdView& current, const RgbdView& reference,
   const Rimmed rimmed(reference);
   for (std::size_t i = 0; i < superpixels.size(); ++i) {
     if (chosen[i] == 0 || !looks_the_same(seen[i], reference, rimmed)) continue;
-    const double sigma = depth_sigma(superpixels[i].depth), step = steps[i].mean();
+    const double sigma = noise.sigma(superpixels[i].depth), step = steps[i].mean();
     const double still = 9.0 * sigma * sigma / steps[i].n + noise_floor * noise_floor;
     motions[i] = {{0.0F, 0.0F},
                   static_cast<float>(step),

@@ -45,19 +45,21 @@ struct Expected {
   const float* here;   // m, as measured in the current view
   const float* slope;  // m a pixel, of its surface
   float off = 0.0F;    // px, registration_error()
+  DepthNoise noise = kKinectNoise;
 };
 
 /// Measured less expected depth, in standard deviations of both and of where on a slanted surface the pixel
 /// comes to lie; NaN where nothing was measured.
 float depth_residual(float measured, const Expected& expected, int x) {
-  const float a = depth_sigma(expected.here[x]), b = depth_sigma(measured),
+  const float a = expected.noise.sigma(expected.here[x]), b = expected.noise.sigma(measured),
               c = expected.off * expected.slope[x];
   return measured > 0 ? (measured - expected.depth[x]) / std::sqrt(a * a + b * b + c * c) : kUnknown;
 }
 
 /// The same of a row.
 void depth_residuals(const float* measured, const Expected& expected, int width, float* out) {
-  const cv::v_float32x4 base = cv::v_setall_f32(kDepthSigma), growth = cv::v_setall_f32(kDepthSigmaGrowth),
+  const cv::v_float32x4 base = cv::v_setall_f32(expected.noise.floor_m),
+                        growth = cv::v_setall_f32(expected.noise.per_m2),
                         off = cv::v_setall_f32(expected.off), unknown = cv::v_setall_f32(kUnknown),
                         zero = cv::v_setzero_f32();
   const auto sigma = [&](const cv::v_float32x4& depth) { return base + growth * depth * depth; };
@@ -81,6 +83,7 @@ float registration_error(const RgbdView& current, const ReferenceView& reference
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
   DepthWarp warped(current.camera, reference.reference_from_current);
+  const DepthNoise depth_noise = stillpoint::depth_noise(current);
   const auto* then = reference.view->depth.ptr<float>();
   std::vector<float> squares;  // px²
   for (int y = kEvery / 2; y < current.depth.rows; y += kEvery) {
@@ -91,7 +94,7 @@ float registration_error(const RgbdView& current, const ReferenceView& reference
       if (!warped.inside(x) || known[x] > static_cast<float>(config.moving_log_odds)) continue;
       const float measured = warped.at(then, x);
       if (measured <= 0) continue;
-      const float a = depth_sigma(depth[x]), b = depth_sigma(measured), noise = a * a + b * b;
+      const float a = depth_noise.sigma(depth[x]), b = depth_noise.sigma(measured), noise = a * a + b * b;
       const float step = measured - warped.z(x), steep = slope[x] * slope[x];
       if (steep < noise || std::abs(step) > kStepBackLimit) continue;
       squares.push_back((step * step / kMedianOfSquare - noise) / steep);
@@ -120,7 +123,7 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
          *differences = brightness.ptr<float>(y);
     warped.warp_row(y, depth);
     const Expected there{warped.expected_depth(), depth, current.depth_slope.ptr<float>(y),
-                         static_cast<float>(evidence.registration_error_px)};
+                         static_cast<float>(evidence.registration_error_px), depth_noise(current)};
     for (int x = 0; x < size.width; ++x)
       measured[static_cast<std::size_t>(x)] = warped.inside(x) ? warped.at(depth_then, x) : 0.0F;
     depth_residuals(measured.data(), there, size.width, residuals);
@@ -194,6 +197,7 @@ WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const
   constexpr int kReach = 3;            // downsampled px a dynamic object may have gone in a frame
   constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
   constexpr float kDepthShare = 0.02F;
+  constexpr double kLikeSigmas = 2.0;  // … and of a stereo pair's depth, standard deviations
   constexpr float kArrived = 1.5F;  // log-odds that a dynamic object's step warps at most
   const cv::Size size = current.depth.size();
   WarpedPrior result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
@@ -217,7 +221,9 @@ WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const
         if (depth[x] > 0) newly_observed[x] = 255;
         continue;
       }
-      const float expected = warped.z(x), tolerance = kLikeDepth + kDepthShare * depth[x];
+      const float expected = warped.z(x),
+                  tolerance = kLikeDepth + kDepthShare * depth[x] +
+                              static_cast<float>(kLikeSigmas * current.camera.stereo_sigma(static_cast<double>(depth[x])));
       if (std::abs(warped.at(there, x) - expected) < tolerance) {
         const float odds = warped.at(known, x);
         out[x] = odds > firm ? odds : keep * odds;

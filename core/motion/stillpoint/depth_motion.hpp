@@ -123,9 +123,9 @@ struct MotionPrior {
                                                   const MotionPrior* prior, const Pose& previous_from_current,
                                                   const StillpointConfig& config, int threads = 1);
 
-/// Standard deviation (m) of a Kinect-like sensor's depth at z metres: so much, and so much more with the
-/// square of the distance (Khoshelham & Oude Elberink 2012; Nguyen et al. 2012).
-constexpr float kDepthSigma = 0.0012F, kDepthSigmaGrowth = 0.0019F;
-[[nodiscard]] inline float depth_sigma(float z) { return kDepthSigma + kDepthSigmaGrowth * z * z; }
+/// How exact a view's depth is: a Kinect's, but for a stereo pair.
+[[nodiscard]] inline DepthNoise depth_noise(const RgbdView& view) {
+  return view.camera.depth_noise(kKinectNoise);
+}
 
 }  // namespace stillpoint

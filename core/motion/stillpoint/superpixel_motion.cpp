@@ -20,7 +20,6 @@ constexpr double kNoiseSpread = 4.0;    // variance a pixel, over what independe
 constexpr double kMinNoise = 1.0;       // grey levels: interpolation alone makes as much
 constexpr double kShiftPrior = 3.0;     // px: no superpixel is shifted farther than the step can follow
 constexpr double kRegistration = 0.09;  // px: what is static is found within this
-constexpr double kDepthSlack = 0.004;   // m at one metre, growing with the square of the distance
 constexpr double kTypicalShift = 0.8;   // px: how far slow dynamic objects go
 constexpr double kTypicalStep = 0.04;   // m
 constexpr double kDepthReach = 5.0;     // standard deviations: beyond, it is another surface
@@ -74,6 +73,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Dep
                          const cv::Mat& labels, std::size_t superpixels) {
   std::vector<Sums> sums(superpixels);
   const auto* seen = reference.surface.ptr<cv::Vec4f>();
+  const DepthNoise noise = depth_noise(current);
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* here = current.surface.ptr<cv::Vec4f>(y);
@@ -85,7 +85,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Dep
       const float expected = warped.z(x);
       const cv::Vec4f& there = warped.at(seen, x);
       const float step = there[3] - expected;
-      if (there[3] <= 0 || std::abs(step) > static_cast<float>(kDepthReach) * depth_sigma(expected)) continue;
+      if (there[3] <= 0 || std::abs(step) > static_cast<float>(kDepthReach) * noise.sigma(expected)) continue;
       if (label[x] != of) {
         if (of >= 0) run.give_to(sums[static_cast<std::size_t>(of)]);
         of = label[x];
@@ -116,6 +116,8 @@ std::vector<Measured> measure(const RgbdView& current, const std::vector<Superpi
     std::nth_element(spreads.begin(), low, spreads.end());
     noise = std::max(noise, *low);
   }
+  const DepthNoise depth_noise = stillpoint::depth_noise(current);
+  const double shared = depth_noise.shared_per_m2;  // m at one metre, or nearer
   std::vector<Measured> result(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i].n < kMinPixels) continue;
@@ -128,9 +130,9 @@ std::vector<Measured> measure(const RgbdView& current, const std::vector<Superpi
     information.diagonal().array() += 1.0 / (kShiftPrior * kShiftPrior);
     m.covariance = information.inverse();
     m.shift = m.covariance * Eigen::Vector2d(s.gxb, s.gyb) / (kNoiseSpread * noise);
-    const double z = superpixels[i].depth, sigma = depth_sigma(static_cast<float>(z));
+    const double z = superpixels[i].depth, sigma = depth_noise.sigma(static_cast<float>(z));
     m.step = s.depth_step / s.n;
-    m.step_variance = 9.0 * sigma * sigma / s.n + std::pow(kDepthSlack * std::max(1.0, z * z), 2);
+    m.step_variance = 9.0 * sigma * sigma / s.n + std::pow(shared * std::max(1.0, z * z), 2);
     m.place = reference_from_current *
               current.camera.back_project({superpixels[i].centre.x, superpixels[i].centre.y}, z);
   }

@@ -31,4 +31,10 @@ void BamvoConfig::list(ParameterTable& table) {
                "so many lost frames are aligned with the last good one; then the history begins anew");
 }
 
+BamvoConfig BamvoConfig::for_camera(const Camera& camera) const {
+  BamvoConfig fitted = *this;
+  fitted.farthest_m = camera.depth_limit(farthest_m);
+  return fitted;
+}
+
 }  // namespace stillpoint

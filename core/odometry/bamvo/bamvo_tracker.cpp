@@ -16,12 +16,12 @@ constexpr double kOutlierSigmas = 2.5;  // for counting alone: the t distributio
 }  // namespace
 
 BamvoTracker::BamvoTracker(const Camera& camera, const Config& config)
-    : rectifier_(camera), config_(config.of<BamvoConfig>()) {}
+    : rectifier_(camera), config_(config.of<BamvoConfig>().for_camera(camera)) {}
 
 bool BamvoTracker::adopt(const Config& config) {
   const auto& wanted = config.of<BamvoConfig>();
   const bool serves = wanted.image_factor == config_.image_factor;
-  if (serves) config_ = wanted;
+  if (serves) config_ = wanted.for_camera(rectifier_.pinhole());
   return serves;
 }
 

@@ -117,7 +117,8 @@ class Level {
       const int near_u = static_cast<int>(std::lround(at.x())),
                 near_v = static_cast<int>(std::lround(at.y()));
       const float met = target_.depth.at<float>(near_v, near_u);
-      if (!in_range(met) || std::abs(static_cast<double>(met) - p.z()) > config_.max_depth_difference_m)
+      if (!in_range(met) || std::abs(static_cast<double>(met) - p.z()) >
+                                config_.max_depth_difference_m + 2.0 * camera.stereo_sigma(p.z()))
         continue;
       const float theirs = target_.weight.empty() ? 1.0F : target_.weight.at<float>(near_v, near_u);
       if (theirs <= 0.0F) continue;

@@ -41,4 +41,12 @@ void DsoConfig::list(ParameterTable& table) {
   table.number("min_points", min_points, 100, 10, 10000, "points", "with fewer in view the frame is lost");
 }
 
+DsoConfig DsoConfig::for_camera(const Camera& camera) const {
+  DsoConfig fitted = *this;
+  // Of an inverse depth: sigma_z / z², the same at any depth.
+  if (camera.is_stereo()) fitted.depth_sigma = camera.depth_sigma_per_m2;
+  fitted.farthest_m = camera.depth_limit(farthest_m);
+  return fitted;
+}
+
 }  // namespace stillpoint

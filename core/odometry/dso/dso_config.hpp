@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/camera.hpp"
 #include "core/parameter.hpp"
 
 namespace stillpoint {
@@ -10,6 +11,8 @@ struct DsoConfig {
   DsoConfig() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const DsoConfig&) const = default;
+  /// The same, with noise and limits of depth as a stereo pair has them.
+  [[nodiscard]] DsoConfig for_camera(const Camera& camera) const;
 
   int levels;
   int candidates;

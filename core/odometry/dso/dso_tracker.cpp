@@ -31,12 +31,12 @@ std::vector<float> depths_of(const TrackerFrame& frame, const std::vector<cv::Po
 }  // namespace
 
 DsoTracker::DsoTracker(const Camera& camera, const Config& config)
-    : rectifier_(camera), config_(config.of<DsoConfig>()) {}
+    : rectifier_(camera), config_(config.of<DsoConfig>().for_camera(camera)) {}
 
 bool DsoTracker::adopt(const Config& config) {
   const auto& wanted = config.of<DsoConfig>();
   const bool serves = wanted.levels == config_.levels;
-  if (serves) config_ = wanted;
+  if (serves) config_ = wanted.for_camera(rectifier_.pinhole());
   return serves;
 }
 

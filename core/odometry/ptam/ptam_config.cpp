@@ -52,4 +52,10 @@ void PtamConfig::list(ParameterTable& table) {
                "a point with more, and more than inlier votes, is dropped");
 }
 
+PtamConfig PtamConfig::for_camera(const Camera& camera) const {
+  PtamConfig fitted = *this;
+  fitted.farthest_m = camera.depth_limit(farthest_m);
+  return fitted;
+}
+
 }  // namespace stillpoint

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/geometry/camera.hpp"
 #include "core/parameter.hpp"
 
 namespace stillpoint {
@@ -13,6 +14,8 @@ struct PtamConfig {
   PtamConfig() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const PtamConfig&) const = default;
+  /// The same, with noise and limits of depth as a stereo pair has them.
+  [[nodiscard]] PtamConfig for_camera(const Camera& camera) const;
 
   int fast_0, fast_1, fast_2, fast_3;
   double velocity_decay;

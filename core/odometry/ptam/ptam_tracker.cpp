@@ -26,10 +26,10 @@ std::vector<Thing> thinned(const std::vector<Thing>& all, std::size_t most) {
 }  // namespace
 
 PtamTracker::PtamTracker(const Camera& camera, const Config& config)
-    : rectifier_(camera), config_(config.of<PtamConfig>()) {}
+    : rectifier_(camera), config_(config.of<PtamConfig>().for_camera(camera)) {}
 
 bool PtamTracker::adopt(const Config& config) {
-  config_ = config.of<PtamConfig>();
+  config_ = config.of<PtamConfig>().for_camera(rectifier_.pinhole());
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include "core/sequence/generated/act.hpp"
 #include "core/sequence/generated/ray_caster.hpp"
 #include "core/sequence/generated/sensor.hpp"
+#include "core/sequence/stereo/stereo_matcher.hpp"
 
 namespace stillpoint {
 namespace {
@@ -19,6 +20,7 @@ using namespace generated;
 
 constexpr int kOwnLength = 300, kMostFrames = 100000;
 constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz
+constexpr double kBaseline = 0.12;                       // m, of the stereo pair
 constexpr double kEpoch = 1000.0;                        // s, the first frame's stamp
 
 /// Stamps are whole microseconds, so that six decimals in a file give them back exactly.
@@ -26,13 +28,20 @@ double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
 class GeneratedSequence : public FrameSource {
  public:
-  GeneratedSequence(std::string_view kind, int frames, unsigned seed)
-      : name_(fmt::format("generated:{}", kind)),
+  /// @param stereo null: depth is a sensor's own
+  GeneratedSequence(std::string_view kind, int frames, unsigned seed, const StereoOptions* stereo)
+      : name_(fmt::format("generated:{}{}", kind, stereo != nullptr ? kStereoEnding : "")),
         camera_(camera_by_name("generated")),
         frames_(frames),
         act_(make_act(kind, seed, frames / kFrameRate)),
         motion_(act_.camera, seed),
-        sensor_(seed) {
+        sensor_(seed),
+        right_sensor_(hash(seed, 0x51DEu)) {
+    if (stereo != nullptr) {
+      camera_.baseline_m = kBaseline;
+      matcher_ = std::make_unique<const StereoMatcher>(camera_, *stereo);
+      camera_ = matcher_->camera();
+    }
     const int poses = static_cast<int>(std::ceil(frames / kFrameRate * kTruthRate)) + 5;
     for (int i = -5; i < poses; ++i) {
       const double stamp = microseconds(kEpoch + i / kTruthRate);
@@ -54,7 +63,7 @@ class GeneratedSequence : public FrameSource {
   [[nodiscard]] Frame read(int index) const override {
     const double seconds = timestamp(index) - kEpoch;
     const Instant middle = instant(seconds);
-    const Rendering ideal = expose(seconds, middle);
+    const Rendering ideal = expose(seconds, middle, 0.0);
 
     Frame frame;
     frame.index = index;
@@ -62,6 +71,11 @@ class GeneratedSequence : public FrameSource {
     frame.depth_timestamp = frame.timestamp;
     frame.colour = sensor_.colour(ideal.colour, index, seconds);
     cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
+    if (matcher_) {
+      const Rendering right = expose(seconds, instant(seconds, kBaseline), kBaseline);
+      matcher_->match(frame, right_sensor_.colour(right.colour, index, seconds));
+      return frame;
+    }
     sensor_.depth(ideal, dropout(middle), camera_, index)
         .convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     return frame;
@@ -72,6 +86,7 @@ class GeneratedSequence : public FrameSource {
     const Rendering ideal = cast_depth(act_.scene, camera_, middle);
     FrameTruth truth;
     truth.world_from_camera = middle.world_from_camera;
+    truth.depth = ideal.depth;
     truth.moving.create(ideal.id.size(), CV_8UC1);
     const std::size_t fixed = act_.scene.fixed.size();
     for (int y = 0; y < ideal.id.rows; ++y)
@@ -84,10 +99,11 @@ class GeneratedSequence : public FrameSource {
 
  private:
   /// What the camera sees while it exposes. Four instants do for a little blur; more is made of whole images.
-  [[nodiscard]] Rendering expose(double seconds, const Instant& middle) const {
+  /// @param aside m, to the right of the sequence's camera
+  [[nodiscard]] Rendering expose(double seconds, const Instant& middle, double aside) const {
     constexpr double kMostBlur = 24.0, kStep = 1.5;  // px
     const auto at = [&](int k, int count) {
-      return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count);
+      return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count, aside);
     };
     const std::array<Instant, 4> few = {at(0, 4), at(1, 4), at(2, 4), at(3, 4)};
     const double blurred = blur(few.front(), few.back());
@@ -103,9 +119,10 @@ class GeneratedSequence : public FrameSource {
     return whole;
   }
 
-  [[nodiscard]] Instant instant(double seconds) const {
+  [[nodiscard]] Instant instant(double seconds, double aside = 0.0) const {
     Instant result;
     result.world_from_camera = motion_.world_from_camera(seconds);
+    if (aside != 0.0) result.world_from_camera.translate(Eigen::Vector3d(aside, 0.0, 0.0));
     act_.play(seconds, result);
     return result;
   }
@@ -138,7 +155,8 @@ class GeneratedSequence : public FrameSource {
   int frames_;
   Act act_;
   CameraMotion motion_;
-  Sensor sensor_;
+  Sensor sensor_, right_sensor_;
+  std::unique_ptr<const StereoMatcher> matcher_;  // null: depth is a sensor's own
   Trajectory ground_truth_;
   std::vector<std::string> warnings_;
 };
@@ -148,12 +166,16 @@ class GeneratedSequence : public FrameSource {
 const std::vector<std::string>& generated_kinds() { return act_kinds(); }
 const std::vector<std::string>& hard_generated_kinds() { return hard_act_kinds(); }
 
-std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed) {
+std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed,
+                                                     const StereoOptions& stereo) {
   if (frames < 0 || frames > kMostFrames)
     throw InputError(fmt::format(
         "{} frames cannot be generated: the number goes from 1 to {}, or 0 for the kind's own length", frames,
         kMostFrames));
-  return std::make_unique<GeneratedSequence>(kind, frames == 0 ? kOwnLength : frames, seed);
+  const bool is_stereo = kind.ends_with(kStereoEnding);
+  if (is_stereo) kind.remove_suffix(kStereoEnding.size());
+  return std::make_unique<GeneratedSequence>(kind, frames == 0 ? kOwnLength : frames, seed,
+                                             is_stereo ? &stereo : nullptr);
 }
 
 }  // namespace stillpoint

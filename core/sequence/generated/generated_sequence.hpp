@@ -17,6 +17,9 @@ namespace stillpoint {
 /// generated:all.
 [[nodiscard]] const std::vector<std::string>& hard_generated_kinds();
 
+/// What ends the name of a kind that is filmed by a stereo pair: "walking_xyz:stereo".
+inline constexpr std::string_view kStereoEnding = ":stereo";
+
 /// A sequence filmed in a furnished room by ray casting: 640x480 at 30 Hz through camera `generated` and a
 /// Kinect-like sensor (generated/sensor.hpp), with exact poses and masks.
 ///
@@ -28,10 +31,13 @@ namespace stillpoint {
 /// they stand or sit (they belong to what is dynamic in the sequence, and never keep quite still), the cart
 /// that is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
 /// after. Furniture, chairs and shadows are not moving.
+/// KIND:stereo is the same scene filmed by a stereo pair: the left image is that of KIND to the byte, the right
+/// one is filmed 0.12 m beside it, with noise and exposure of its own, and depth comes of matching the two.
 /// @param frames how many; 0 = the kind's own length, 300.
 /// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above
 /// 100,000.
 [[nodiscard]] std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames,
-                                                                   unsigned seed);
+                                                                   unsigned seed,
+                                                                   const StereoOptions& stereo = {});
 
 }  // namespace stillpoint
