@@ -4,6 +4,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/export_dense.hpp"
 #include "app/export_mcap.hpp"
 #include "app/progress.hpp"
 #include "core/inspect/frame_ranges.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct ExportArguments {
   std::string sequence, out, frames = "0:", to, sequence_now;
   std::vector<std::string> layers;
+  DenseExport dense;
   bool force = false;
   SequenceArguments source;
 };
@@ -43,7 +45,7 @@ void add_export_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("export",
                                          "Some frames of a sequence as a small TUM RGB-D folder that shows "
                                          "the same problem; or a finished run as "
-                                         "an MCAP file, which Foxglove, Rerun and PlotJuggler open");
+                                         "an MCAP file, a dense map, or the room without people");
   command->add_option("SEQUENCE", arguments->sequence, kSequenceOrRunHelp)->required();
   command
       ->add_option("--frames", arguments->frames,
@@ -56,6 +58,18 @@ void add_export_command(CLI::App& app) {
           "--layers", arguments->layers,
           "Ids of stages' layers that go into the file too, with commas between: difference,forward_mask")
       ->delimiter(',');
+  command->add_option("--dense", arguments->dense.map,
+                      "A finished run's depth images, fused without what moved, go to this .ply file");
+  command->add_option(
+      "--without-movers", arguments->dense.images,
+      "Its frames with the background filled in where somebody was, as other frames saw it, go to "
+      "this folder");
+  command->add_option("--voxel", arguments->dense.options.voxel_m, "Of the dense map [m]")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  command->add_option("--every", arguments->dense.every, "Every so many frames are fused")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   command->add_option("--sequence", arguments->sequence_now, "Where the run's sequence lies now");
   command->add_flag("--force", arguments->force, "Replace a sequence in that folder, or the file");
   arguments->source.add_to(*command, "--length");
@@ -63,10 +77,16 @@ void add_export_command(CLI::App& app) {
     if (!arguments->to.empty())
       export_mcap(arguments->sequence, arguments->sequence_now, arguments->to, arguments->force,
                   arguments->layers);
-    else if (arguments->out.empty())
-      throw CLI::RequiredError("--out or --to");
-    else
+    DenseExport& dense = arguments->dense;
+    if (!dense.map.empty() || !dense.images.empty()) {
+      dense.run = arguments->sequence, dense.sequence = arguments->sequence_now,
+      dense.force = arguments->force;
+      export_dense(dense);
+    } else if (!arguments->out.empty()) {
       export_sequence(*arguments);
+    } else if (arguments->to.empty()) {
+      throw CLI::RequiredError("--out, --to, --dense or --without-movers");
+    }
   });
 }
 
