@@ -1,4 +1,6 @@
 // Depth by stereo matching: its noise by hand, matching against exact truth.
+#include "core/sequence/stereo/stereo_matcher.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +13,6 @@
 #include "core/median.hpp"
 #include "core/motion/stillpoint/depth_motion.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
-#include "core/sequence/stereo/stereo_matcher.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -152,7 +153,8 @@ TEST(StereoMatcher, ReachesAsNearAsItSays) {
 TEST(StereoMatcher, TakesTheSmallestImages) {
   const Camera camera = rig().scaled_to(32, 32);
   for (const StereoOptions& options : {StereoOptions{}, StereoOptions{true, 512, true}}) {
-    const StereoMatch match = StereoMatcher(camera, options).match(texture({32, 32}, 0), texture({32, 32}, 3));
+    const StereoMatch match =
+        StereoMatcher(camera, options).match(texture({32, 32}, 0), texture({32, 32}, 3));
     EXPECT_EQ(match.disparity.size(), cv::Size(32, 32));
     EXPECT_EQ(match.holes.size(), cv::Size(32, 32));
   }
@@ -186,7 +188,8 @@ Against against_truth(const char* kind, const StereoOptions& options) {
   const auto source = make_generated_sequence(kind, 30, 1, options);
   const Camera& camera = source->camera();
   const Frame frame = source->read(20);
-  const cv::Mat truth = disparity_of(source->truth(20).depth, camera), found = disparity_of(frame.depth, camera);
+  const cv::Mat truth = disparity_of(source->truth(20).depth, camera),
+                found = disparity_of(frame.depth, camera);
   std::vector<double> errors;
   double in_view = 0, wild = 0;
   for (int y = 0; y < truth.rows; ++y)
@@ -211,8 +214,9 @@ TEST(StereoMatcher, IsRightToHalfAPixelOnAGeneratedRig) {
   for (const char* kind : {"walking_xyz:stereo", "room:stereo"})
     for (const bool half : {false, true}) {
       const Against truth = against_truth(kind, {.half = half});
-      RecordProperty(std::string(kind) + (half ? " half" : " full"),
-                     fmt::format("{:.3f} px, wild {:.4f}, holes {:.3f}", truth.median, truth.wild, truth.holes));
+      RecordProperty(
+          std::string(kind) + (half ? " half" : " full"),
+          fmt::format("{:.3f} px, wild {:.4f}, holes {:.3f}", truth.median, truth.wild, truth.holes));
       EXPECT_LT(truth.median, 0.5) << kind << half;
       EXPECT_LT(truth.wild, 0.05) << kind << half;
       EXPECT_LT(truth.holes, 0.35) << kind << half;
@@ -228,7 +232,8 @@ TEST(StereoMatcher, TheLeftRightCheckTakesOutWhatIsWrong) {
 }
 
 TEST(GeneratedStereo, LeftImagesAreThoseOfTheKind) {
-  const auto plain = make_generated_sequence("walking_xyz", 3, 5), stereo = make_generated_sequence("walking_xyz:stereo", 3, 5);
+  const auto plain = make_generated_sequence("walking_xyz", 3, 5),
+             stereo = make_generated_sequence("walking_xyz:stereo", 3, 5);
   EXPECT_EQ(stereo->name(), "generated:walking_xyz:stereo");
   EXPECT_EQ(stereo->camera().baseline_m, 0.12);
   EXPECT_FALSE(plain->camera().is_stereo());
