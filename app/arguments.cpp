@@ -94,9 +94,10 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
       "--topics", topics,
       "Of a bag: colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC, any of them, none but colour "
       "where it is `none`; `stillpoint check` lists what it holds");
-  command.add_option("--stereo", stereo,
-                     "Of stereo pairs, how they are matched: size=full|half, disparities=N (px, a multiple of 16), "
-                     "check=on|off (left-right), parted by commas");
+  command.add_option(
+      "--stereo", stereo,
+      "Of stereo pairs, how they are matched: size=full|half, disparities=N (px, a multiple of 16), "
+      "check=on|off (left-right), parted by commas");
 }
 
 bool SequenceArguments::given() const {

@@ -75,7 +75,7 @@ void check(const CheckArguments& arguments) {
         "{}: {} frames, {:.3f} s, camera {} ({}x{} px), depth {}, masks {}, ground truth {}\n",
         source->name(), source->size(), source->timestamp(source->size() - 1) - source->timestamp(0),
         camera.name, camera.width, camera.height,
-        !source->has_depth()  ? "none"
+        !source->has_depth() ? "none"
         : camera.is_stereo() ? fmt::format("by stereo, {:.4g} m apart", camera.baseline_m)
                              : fmt::format("at {:g} a metre", camera.depth_scale),
         source->has_masks() ? "yes" : "none",

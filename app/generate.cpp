@@ -76,8 +76,8 @@ void generate(const GenerateOptions& options) {
 
 void add_generate_command(CLI::App& app) {
   auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command =
-      app.add_subcommand("generate", "Film a generated room and write it as a TUM RGB-D folder, or as stereo pairs");
+  CLI::App* command = app.add_subcommand(
+      "generate", "Film a generated room and write it as a TUM RGB-D folder, or as stereo pairs");
   command
       ->add_option("kind", options->kind,
                    fmt::format("one of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
@@ -93,8 +93,9 @@ void add_generate_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--stereo", options->stereo,
                     "film it by a stereo pair of 0.12 m: left/ and right/ in place of rgb/ and depth/");
-  command->add_option("--layout", options->layout,
-                      "of a stereo pair: left-right (otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)");
+  command->add_option(
+      "--layout", options->layout,
+      "of a stereo pair: left-right (otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)");
   command->add_flag("--force", options->force, "replace the sequence that the folder holds");
   command->callback([options] { generate(*options); });
 }

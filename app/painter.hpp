@@ -75,7 +75,7 @@ class Painter {
   Workbench workbench_;
   bool workbench_chosen_ = false;
   std::vector<Panel*> panels_chosen_;
-  std::set<const Panel*> named_;  // of these, those that were not chosen as one of all
+  std::set<const Panel*> named_;                  // of these, those that were not chosen as one of all
   std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 

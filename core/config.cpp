@@ -177,9 +177,10 @@ void DirectConfig::list(ParameterTable& table) {
 }
 
 void MapConfig::list(ParameterTable& table) {
-  table.number("far_depth_m", far_depth_m, 3.0, 0.1, 50, "m",
-               "points are made from depth up to here, farther only when few are near; for a stereo pair as many "
-               "baselines away as this is of a Kinect's");
+  table.number(
+      "far_depth_m", far_depth_m, 3.0, 0.1, 50, "m",
+      "points are made from depth up to here, farther only when few are near; for a stereo pair as many "
+      "baselines away as this is of a Kinect's");
   table.number("min_new_points", min_new_points, 100, 0, 5000, "points",
                "so many nearest points are made however far");
   table.number("min_cell_points", min_cell_points, 5, 0, 1000, "points",

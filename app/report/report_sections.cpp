@@ -188,8 +188,9 @@ std::string stage_timings(const ReportGroup& group) {
   html += "</tbody></table></div>\n";
   for (const ReportRun& run : group.runs)
     if (const double stereo = run.report.speed.mean.stereo; stereo > 0)
-      html += fmt::format("<p class=\"dim\">{}: matching left to right took {:.2f} ms a frame beside that.</p>\n",
-                          escaped(run.label), stereo);
+      html +=
+          fmt::format("<p class=\"dim\">{}: matching left to right took {:.2f} ms a frame beside that.</p>\n",
+                      escaped(run.label), stereo);
   return html;
 }
 

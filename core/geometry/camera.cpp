@@ -240,7 +240,8 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
   if (std::abs(camera.readout_s) > 0.2)
     throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
   if (camera.baseline_m < 0 || camera.baseline_m > kLongestBaseline)
-    throw InputError(fmt::format("{}: baseline_m is given in metres, from 0 to {:g}", path, kLongestBaseline));
+    throw InputError(
+        fmt::format("{}: baseline_m is given in metres, from 0 to {:g}", path, kLongestBaseline));
   return camera;
 }
 

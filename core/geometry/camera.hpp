@@ -14,7 +14,8 @@ namespace stillpoint {
 /// A pinhole camera with Brown-Conrady distortion, and the scale of its depth images.
 ///
 /// Images are shown as they are; geometry uses undistorted pixels (Camera::undistort). The left camera of a
-/// rectified stereo pair has no distortion, and a baseline to the right one: its depth comes of matching both.
+/// rectified stereo pair has no distortion, and a baseline to the right one: its depth comes of matching
+/// both.
 struct Camera {
   std::string name = "ros_default";
   int width = 640;                                        ///< px
@@ -24,7 +25,8 @@ struct Camera {
   double depth_scale = 5000.0;                            ///< depth image units a metre
   double readout_s = 0.0;  ///< s from the first row's exposure to the last one's; 0 = global shutter. Stamps
                            ///< are the middle row's
-  double baseline_m = 0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
+  double baseline_m =
+      0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
   double depth_sigma_per_m2 = 0.0;  ///< 1/m, of a stereo pair: its depths z have standard deviation this z²
 
   [[nodiscard]] bool has_distortion() const;

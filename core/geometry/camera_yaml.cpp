@@ -59,7 +59,8 @@ class Reader {
   }
 
   [[nodiscard]] Pose body_from_sensor() const {
-    if (!root_["T_BS"]) throw InputError(fmt::format("{}: has no T_BS, where the sensor sits on its body", path_));
+    if (!root_["T_BS"])
+      throw InputError(fmt::format("{}: has no T_BS, where the sensor sits on its body", path_));
     const auto values = numbers(root_["T_BS"], "T_BS", 16);
     Pose pose;
     for (int i = 0; i < 16; ++i) pose.matrix()(i / 4, i % 4) = values[static_cast<std::size_t>(i)];

@@ -5,8 +5,8 @@ namespace stillpoint {
 /// m from the first Kinect's projector to its depth camera: what depth limits chosen for it are measured by.
 inline constexpr double kKinectBaseline = 0.075;
 
-/// How exact a measured depth is. Triangulation errs by a constant disparity, so that the error of depth grows
-/// with the square of depth, for structured light and for stereo alike.
+/// How exact a measured depth is. Triangulation errs by a constant disparity, so that the error of depth
+/// grows with the square of depth, for structured light and for stereo alike.
 struct DepthNoise {
   float floor_m = 0.0F;        ///< m: part of the standard deviation that is there at any depth
   float per_m2 = 0.0F;         ///< 1/m: part that grows with the square of depth

@@ -155,8 +155,9 @@ EdgeError edge_error(const BundleProblem& problem, const BundleProblem::Edge& ed
   if (p.z() <= 0) return {std::numeric_limits<double>::infinity(), 0.0};
   EdgeError error;
   error.squared_px = (camera.project(p) - edge.pixel).squaredNorm();
-  const double depth_px =
-      edge.depth > 0 ? depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx * (1.0 / edge.depth - 1.0 / p.z()) : 0.0;
+  const double depth_px = edge.depth > 0 ? depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx *
+                                               (1.0 / edge.depth - 1.0 / p.z())
+                                         : 0.0;
   error.chi2 = (error.squared_px + depth_px * depth_px) / (edge.sigma_px * edge.sigma_px);
   return error;
 }

@@ -30,7 +30,7 @@ struct TrackerFrame {
   double depth_lag = 0.0;                ///< s, of depth after colour
   Vector6d velocity = Vector6d::Zero();  ///< of the camera, a second, as far as known before the frame
   std::function<Vector6d(const Pose&)> velocity_to{};  ///< … as it is when the frame was taken from a pose
-  double stereo_per_m2 = 0.0;  ///< 1/m: Camera::depth_sigma_per_m2
+  double stereo_per_m2 = 0.0;                          ///< 1/m: Camera::depth_sigma_per_m2
   bool start_estimated = false;  ///< the pose it is tracked from was estimated from this very frame
   int threads = 1;               ///< any number gives the same bytes
   std::shared_ptr<const TrackerPreparation> prepared{};  ///< what prepare() made of its images

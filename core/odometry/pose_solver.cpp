@@ -37,7 +37,8 @@ class PoseProblem {
       block.weight[k] = 1.0 / o.sigma_px;
       const bool depth = depth_weight > 0 && o.depth > 0;
       block.inverse_depth[k] = depth ? 1.0 / o.depth : 0.0;
-      block.depth_weight[k] = depth ? depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx / o.sigma_px : 0.0;
+      block.depth_weight[k] =
+          depth ? depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx / o.sigma_px : 0.0;
       block.bound[k] = depth ? kChi2PixelDepth : kChi2Pixel;
       block.static_weight[k] = block.used[k] = o.static_weight;
     }

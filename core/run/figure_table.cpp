@@ -279,7 +279,8 @@ std::vector<FrameFigure> all_figures() {
                  [](const MeasuredFrame& r) { return time(r.record.ms.mapping); }),
       stage_time("ms.bundle", "Bundle time", "bundle_ms", "time waited for bundle adjustment",
                  [](const MeasuredFrame& r) { return time(r.record.ms.bundle); }),
-      stage_time("ms.stereo", "Stereo time", "stereo_ms", "time of matching a stereo pair, no part of the total",
+      stage_time("ms.stereo", "Stereo time", "stereo_ms",
+                 "time of matching a stereo pair, no part of the total",
                  [](const MeasuredFrame& r) { return time(r.record.ms.stereo); }),
   };
   const auto add_own = [&all](const std::vector<FigureInfo>& infos) {

@@ -94,9 +94,9 @@ void transfer_fields(Archive& archive, Record& r) {
                       &r.inliers, &r.refine_iterations, &r.new_points, &r.fused_points, &r.culled_points,
                       &r.culled_keyframes, &r.map_points, &r.map_keyframes, &r.bundle_iterations})
     archive(*count);
-  for (auto* figure : {&r.mask_share, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px, &r.ms.motion,
-                       &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total,
-                       &r.ms.stereo})
+  for (auto* figure :
+       {&r.mask_share, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px, &r.ms.motion, &r.ms.features,
+        &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total, &r.ms.stereo})
     archive(*figure);
   archive(r.keyframe);
   for (auto* pose :

@@ -42,8 +42,8 @@ struct FolderLists {
 /// Whether a folder has one of the lists above that name images.
 [[nodiscard]] bool has_image_lists(const FileStore& folder);
 
-/// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have one
-/// and no two the same, otherwise by their order. Without entries where there are none.
+/// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have
+/// one and no two the same, otherwise by their order. Without entries where there are none.
 [[nodiscard]] ImageList images_of(const FileStore& store, const std::string& folder);
 
 /// Reads the list of masks, where there is one. @throws InputError for one that cannot be read

@@ -21,12 +21,13 @@ void ListedSequence::join_right(const FolderLists& lists) {
   const std::size_t right = lists.depths->entries.size(), left = frames_.size();
   const auto joined = static_cast<std::size_t>(join(*lists.depths, &Entry::depth));
   if (joined == 0)
-    throw InputError(fmt::format("{}: none of its {} images belongs to one of the {} of {}", depth_list_, right, left,
-                                 colour_list_));
+    throw InputError(fmt::format("{}: none of its {} images belongs to one of the {} of {}", depth_list_,
+                                 right, left, colour_list_));
   if (joined < left || joined < right)
-    warnings_.push_back(fmt::format("{}: has {} images where {} has {}; {} pairs were found, and frames without a "
-                                    "right image have no depth",
-                                    depth_list_, right, colour_list_, left, joined));
+    warnings_.push_back(
+        fmt::format("{}: has {} images where {} has {}; {} pairs were found, and frames without a "
+                    "right image have no depth",
+                    depth_list_, right, colour_list_, left, joined));
 }
 
 void ListedSequence::begin_stereo() {
@@ -52,13 +53,15 @@ void ListedSequence::survey_stereo() {
   if (survey.fit == 0 && survey.pairs > 0)
     refuse(fmt::format("{}: {}", depth_list_, survey.fault));
   else if (is_exchanged(survey))
-    refuse(fmt::format("{}: {:.0f} % of {} matched corners lie farther right than in {}, which nothing before two "
-                       "cameras does: left and right are exchanged",
-                       depth_list_, 100.0 * survey.to_the_left, survey.matches, colour_list_));
+    refuse(fmt::format(
+        "{}: {:.0f} % of {} matched corners lie farther right than in {}, which nothing before two "
+        "cameras does: left and right are exchanged",
+        depth_list_, 100.0 * survey.to_the_left, survey.matches, colour_list_));
   else if (is_unrectified(survey))
-    warnings_.push_back(fmt::format("{}: matched corners lie {:.1f} px lower than in {}, give or take {:.1f} px: the "
-                                    "pair is not rectified, and its depth is of little use",
-                                    depth_list_, survey.row_offset_px, colour_list_, survey.row_spread_px));
+    warnings_.push_back(
+        fmt::format("{}: matched corners lie {:.1f} px lower than in {}, give or take {:.1f} px: the "
+                    "pair is not rectified, and its depth is of little use",
+                    depth_list_, survey.row_offset_px, colour_list_, survey.row_spread_px));
 }
 
 void ListedSequence::read_right(const Entry& listed, Frame& frame) const {

@@ -92,7 +92,8 @@ void prepare(const FrameSource& source, const fs::path& folder, bool force, Sequ
       if (source.has_depth()) fs::create_directories(folder / "depth");
     } else {
       const StereoNames names = stereo_names(source, 0, layout);
-      for (const fs::path& image : {names.left, names.right}) fs::create_directories(folder / image.parent_path());
+      for (const fs::path& image : {names.left, names.right})
+        fs::create_directories(folder / image.parent_path());
     }
     if (source.has_masks()) fs::create_directories(folder / "mask");
   } catch (const fs::filesystem_error& error) {
@@ -107,14 +108,17 @@ struct WrittenFrame {
   std::optional<double> depth_stamp;  // s, when the depth image was taken; nothing where there is none
 };
 
-void write_pair(const FrameSource& source, const Frame& frame, const fs::path& folder, SequenceLayout layout) {
+void write_pair(const FrameSource& source, const Frame& frame, const fs::path& folder,
+                SequenceLayout layout) {
   const StereoNames names = stereo_names(source, frame.index, layout);
   const bool gray = frame.colour.empty() || layout == SequenceLayout::euroc;
   if (frame.readable()) write_png(folder / names.left, gray ? frame.gray : frame.colour);
-  if (frame.stereo) write_png(folder / names.right, gray ? to_gray(frame.stereo->right) : frame.stereo->right);
+  if (frame.stereo)
+    write_png(folder / names.right, gray ? to_gray(frame.stereo->right) : frame.stereo->right);
 }
 
-WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder, SequenceLayout layout) {
+WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder,
+                         SequenceLayout layout) {
   const Frame frame = source.read(index);
   WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}};
   const std::string name = image_name(source.timestamp(index));
@@ -205,8 +209,8 @@ void write_pairs(const FrameSource& source, const fs::path& folder,
   write_text_file(folder / "associations.txt", pairs);
 }
 
-void write_lists(const FrameSource& source, const fs::path& folder,
-                 const std::vector<WrittenFrame>& written, SequenceLayout layout) {
+void write_lists(const FrameSource& source, const fs::path& folder, const std::vector<WrittenFrame>& written,
+                 SequenceLayout layout) {
   std::vector<std::optional<double>> colours, depths, masks;
   for (std::size_t i = 0; i < written.size(); ++i) {
     const double stamp = source.timestamp(static_cast<int>(i));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
-#include <opencv2/imgproc.hpp>
 
 #include "core/sequence/generated/furniture.hpp"
 #include "core/sequence/generated/ray_caster.hpp"
@@ -38,7 +38,8 @@ void build_houses(Furnisher& f, Dice& dice) {
                                     Picture::kPosterE, Picture::kPosterG, Picture::kDarkWood};
   for (const float side : {-1.0F, 1.0F})
     for (float y = -12.0F; y < kFar;) {
-      const auto length = static_cast<float>(dice.between(8, 15)), height = static_cast<float>(dice.between(5, 11)),
+      const auto length = static_cast<float>(dice.between(8, 15)),
+                 height = static_cast<float>(dice.between(5, 11)),
                  set_back = static_cast<float>(dice.between(9, 12));
       const float tint = static_cast<float>(dice.between(0.6, 1.1));
       f.box({side * (set_back + 4.0F), y + length / 2, height / 2}, {8.0F, length, height}, 0,
@@ -57,14 +58,16 @@ void build_roadside(Furnisher& f, Dice& dice) {
       const float x = side * 4.6F;
       const float shade = static_cast<float>(dice.between(0.25, 1.1));
       if (dice.below(3) > 0) {
-        f.box({x, y, 0.65F}, {1.75F, 4.2F, 0.8F}, 0, f.surface(Picture::kMetal, 0.9F, {shade, 0.8F * shade, shade}));
+        f.box({x, y, 0.65F}, {1.75F, 4.2F, 0.8F}, 0,
+              f.surface(Picture::kMetal, 0.9F, {shade, 0.8F * shade, shade}));
         f.box({x, y - 0.2F, 1.2F}, {1.6F, 2.2F, 0.55F}, 0, f.surface(Picture::kScreen, 0.4F));
         for (const float wheel : {-1.3F, 1.3F})
           f.cylinder({x - side * 0.9F, y + wheel, 0.32F}, {x - side * 0.7F, y + wheel, 0.32F}, 0.32F,
                      f.plain(30, 30, 30));
       } else {
         f.cylinder({side * 6.6F, y, 0.0F}, {side * 6.6F, y, 2.6F}, 0.16F, f.surface(Picture::kDarkWood, 2));
-        f.ellipsoid({side * 6.6F, y, 3.6F}, {1.3F, 1.3F, 1.5F}, dice.between(0, 3), f.surface(Picture::kLeaf, 1.0F));
+        f.ellipsoid({side * 6.6F, y, 3.6F}, {1.3F, 1.3F, 1.5F}, dice.between(0, 3),
+                    f.surface(Picture::kLeaf, 1.0F));
       }
       f.rod({side * 6.0F, y + 3.0F, 0.0F}, {side * 6.0F, y + 3.0F, 4.5F}, 0.06F, f.plain(90, 92, 96));
       f.hang({side * 6.0F, y + 2.93F, 2.6F}, 0.6F, 0.6F, -M_PI / 2, f.surface(Picture::kPosterC));

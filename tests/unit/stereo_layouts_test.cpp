@@ -149,13 +149,14 @@ TEST(StereoLayouts, AnRgbdFolderWithABaselineIsNotStereo) {
 
 TEST(StereoLayouts, ASourceIsWrittenInALayoutOfItsKind) {
   TemporaryFolder folder;
-  const auto rgbd = make_generated_sequence("room", 1, 1), stereo = make_generated_sequence("room:stereo", 1, 1);
-  EXPECT_THAT(input_error_of([&] {
-                write_sequence(*rgbd, folder.path("a"), {.layout = SequenceLayout::kitti});
-              }),
-              HasSubstr("is RGB-D, and cannot be written in a layout of stereo pairs"));
-  EXPECT_THAT(input_error_of([&] { write_sequence(*stereo, folder.path("b"), {.layout = SequenceLayout::tum}); }),
-              HasSubstr("is stereo"));
+  const auto rgbd = make_generated_sequence("room", 1, 1),
+             stereo = make_generated_sequence("room:stereo", 1, 1);
+  EXPECT_THAT(
+      input_error_of([&] { write_sequence(*rgbd, folder.path("a"), {.layout = SequenceLayout::kitti}); }),
+      HasSubstr("is RGB-D, and cannot be written in a layout of stereo pairs"));
+  EXPECT_THAT(
+      input_error_of([&] { write_sequence(*stereo, folder.path("b"), {.layout = SequenceLayout::tum}); }),
+      HasSubstr("is stereo"));
 }
 
 // ---- what is missing
@@ -188,8 +189,9 @@ TEST(StereoLayouts, ACameraWithoutBaselineHasNoScale) {
   EXPECT_THAT(spoilt.error(), HasSubstr("has no baseline_m"));
   OpenOptions options;
   options.camera = camera_by_name("freiburg1");
-  EXPECT_THAT(input_error_of([&] { (void)open_sequence(miniature(SequenceLayout::kitti).string(), options); }),
-              HasSubstr("camera freiburg1 has no baseline_m"));
+  EXPECT_THAT(
+      input_error_of([&] { (void)open_sequence(miniature(SequenceLayout::kitti).string(), options); }),
+      HasSubstr("camera freiburg1 has no baseline_m"));
 }
 
 TEST(StereoLayouts, ACalibrationThatCannotBeIsSaid) {
@@ -269,7 +271,8 @@ TEST(StereoLayouts, PosesLieWhereTheBenchmarkHasThem) {
   fs::copy(miniature(SequenceLayout::kitti), folder.path("sequences/07"), fs::copy_options::recursive);
   fs::create_directories(folder.path("poses"));
   fs::rename(folder.path("sequences/07/poses.txt"), folder.path("poses/07.txt"));
-  EXPECT_EQ(open_sequence(folder.path("sequences/07"))->ground_truth().size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(open_sequence(folder.path("sequences/07"))->ground_truth().size(),
+            static_cast<std::size_t>(kFrames));
   fs::remove(folder.path("poses/07.txt"));
   EXPECT_TRUE(open_sequence(folder.path("sequences/07"))->ground_truth().empty());
 }
@@ -373,7 +376,8 @@ TEST(StereoRectification, APairAsItCameIsRectifiedOnOpening) {
   Camera left = ideal->camera(), right = left;
   left.k1 = -0.12, left.k2 = 0.03, left.p1 = 2e-4, right.k1 = -0.10, right.k2 = 0.02, right.p2 = -3e-4;
   right.fx = 530, right.cy = 240;
-  const Eigen::Matrix3d turn_left = so3_exp({0.01, -0.012, 0.008}), turn_right = so3_exp({-0.006, 0.01, -0.01});
+  const Eigen::Matrix3d turn_left = so3_exp({0.01, -0.012, 0.008}),
+                        turn_right = so3_exp({-0.006, 0.01, -0.01});
   Pose body_from_ideal = Pose::Identity();
   body_from_ideal.linear() = so3_exp({0.3, -0.2, 1.2});
   body_from_ideal.translation() << 0.05, -0.02, 0.1;
@@ -387,13 +391,15 @@ TEST(StereoRectification, APairAsItCameIsRectifiedOnOpening) {
   for (int i = 0; i < ideal->size(); ++i) {
     const Frame frame = ideal->read(i);
     const long long stamp = std::llround(ideal->timestamp(i) * 1e6) * 1000;
-    folder.write(fmt::format("mav0/cam0/data/{}.png", stamp), seen_by(left, turn_left, frame.gray, ideal->camera()));
+    folder.write(fmt::format("mav0/cam0/data/{}.png", stamp),
+                 seen_by(left, turn_left, frame.gray, ideal->camera()));
     folder.write(fmt::format("mav0/cam1/data/{}.png", stamp),
                  seen_by(right, turn_right, to_gray(frame.stereo->right), ideal->camera()));
     const Pose body = *ideal->truth(i).world_from_camera * body_from_ideal.inverse();
     const Eigen::Quaterniond q(body.linear());
-    truth += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", stamp, body.translation().x(),
-                         body.translation().y(), body.translation().z(), q.w(), q.x(), q.y(), q.z());
+    truth +=
+        fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", stamp, body.translation().x(),
+                    body.translation().y(), body.translation().z(), q.w(), q.x(), q.y(), q.z());
   }
   folder.write("mav0/state_groundtruth_estimate0/data.csv", truth);
 
@@ -404,7 +410,8 @@ TEST(StereoRectification, APairAsItCameIsRectifiedOnOpening) {
   const Frame frame = read->read(2);
   ASSERT_TRUE(frame.has_depth());
   // Both say where the same points lie: through the poses, in the world.
-  const Pose ideal_from_read = ideal->truth(2).world_from_camera->inverse() * *read->truth(2).world_from_camera;
+  const Pose ideal_from_read =
+      ideal->truth(2).world_from_camera->inverse() * *read->truth(2).world_from_camera;
   EXPECT_LT(ideal_from_read.translation().norm(), 1e-5);  // m: rectifying turns the camera where it stands
   const cv::Mat exact = ideal->truth(2).depth;
   std::vector<double> errors;  // px, of disparity
@@ -419,7 +426,8 @@ TEST(StereoRectification, APairAsItCameIsRectifiedOnOpening) {
       errors.push_back(std::abs(1.0 / p.z() - 1.0 / exact.at<float>(pixel)) * read->camera().fx * 0.12);
     }
   ASSERT_GT(errors.size(), 5000U);
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
   EXPECT_LT(errors[errors.size() / 2], 0.5);
 }
 

@@ -19,10 +19,12 @@ TEST(StereoStreet, ADriveIsTrackedWhole) {
     ASSERT_EQ(run.trajectory.size(), static_cast<std::size_t>(kFrames)) << method;
     const Trajectory& truth = street->ground_truth();
     const Pose true_way = truth.front().world_from_camera.inverse() * truth.back().world_from_camera,
-               way = run.trajectory.front().world_from_camera.inverse() * run.trajectory.back().world_from_camera;
+               way = run.trajectory.front().world_from_camera.inverse() *
+                     run.trajectory.back().world_from_camera;
     double length = 0.0;
     for (std::size_t i = 1; i < truth.size(); ++i)
-      length += (truth[i].world_from_camera.translation() - truth[i - 1].world_from_camera.translation()).norm();
+      length +=
+          (truth[i].world_from_camera.translation() - truth[i - 1].world_from_camera.translation()).norm();
     EXPECT_LT((true_way.translation() - way.translation()).norm(), 0.015 * length) << method;
   }
 }

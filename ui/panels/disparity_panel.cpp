@@ -75,8 +75,8 @@ class DisparityPanel final : public FramePanel {
   void draw_right(const UiFrame& frame, const FramePlace& place, const FrameView& view) {
     const cv::Mat& right = view.frame.stereo->right;
     Footer footer;
-    footer.caption =
-        fmt::format("{}, as the right camera saw it; rows correspond.", frame_text(place.session, view.frame));
+    footer.caption = fmt::format("{}, as the right camera saw it; rows correspond.",
+                                 frame_text(place.session, view.frame));
     ImageContent content;
     content.texture = &right_.get(frame, place.session.current, 0, [&] { return right; });
     content.values = &right;
@@ -85,8 +85,8 @@ class DisparityPanel final : public FramePanel {
   }
 
   void collect(const cv::Mat& depth, const Camera& camera) {
-    disparity_ = depth.empty() ? cv::Mat::zeros(camera.height, camera.width, CV_32FC1)
-                               : disparity_of(depth, camera);
+    disparity_ =
+        depth.empty() ? cv::Mat::zeros(camera.height, camera.width, CV_32FC1) : disparity_of(depth, camera);
     std::vector<float> known;
     for (int y = 0; y < disparity_.rows; y += 2)
       for (int x = 0; x < disparity_.cols; x += 2)
@@ -116,24 +116,24 @@ struct HoleKind {
   const char* name;
   Rgb colour;
 };
-constexpr std::array<HoleKind, 4> kHoles{{{StereoHole::outside, "beyond the right image", okabe_ito::kSkyBlue},
-                                          {StereoHole::rejected, "plain, repeated or hidden",
-                                           okabe_ito::kVermillion},
-                                          {StereoHole::speckle, "speckle", okabe_ito::kYellow},
-                                          {StereoHole::range, "too near or too far", okabe_ito::kPurple}}};
+constexpr std::array<HoleKind, 4> kHoles{
+    {{StereoHole::outside, "beyond the right image", okabe_ito::kSkyBlue},
+     {StereoHole::rejected, "plain, repeated or hidden", okabe_ito::kVermillion},
+     {StereoHole::speckle, "speckle", okabe_ito::kYellow},
+     {StereoHole::range, "too near or too far", okabe_ito::kPurple}}};
 
 /// Where left and right were not matched, and why.
 class StereoHolesPanel final : public FramePanel {
  public:
-  explicit StereoHolesPanel(Shared shared)
-      : FramePanel("stereo_holes", "Stereo holes", std::move(shared)) {}
+  explicit StereoHolesPanel(Shared shared) : FramePanel("stereo_holes", "Stereo holes", std::move(shared)) {}
 
   [[nodiscard]] bool is_for(const SessionView& session) const override { return session.camera.is_stereo(); }
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (!has_stereo(frame, session)) return;
     const FrameView& view = *session.current;
     Controls(frame).slider("##opacity", opacity_, 0.0F, 1.0F, "opacity %.2f");
-    const Texture& tint = tint_.get(frame, session.current, 0, [&] { return tinted(view.frame.stereo->holes); });
+    const Texture& tint =
+        tint_.get(frame, session.current, 0, [&] { return tinted(view.frame.stereo->holes); });
     Footer footer;
     for (std::size_t i = 0; i < kHoles.size(); ++i)
       footer.legend.push_back(

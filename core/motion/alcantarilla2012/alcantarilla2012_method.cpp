@@ -33,7 +33,9 @@ const Preparation& prepared(const MotionInput& input) {
 class Alcantarilla2012Method final : public MotionMethod {
  public:
   Alcantarilla2012Method(const Camera& camera, const Alcantarilla2012Config& config)
-      : camera_(camera), config_(config.for_camera(camera)), rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
+      : camera_(camera),
+        config_(config.for_camera(camera)),
+        rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Alcantarilla2012Method>(*this);

@@ -18,7 +18,9 @@ struct Preparation final : MotionPreparation {
 class Lin2017Method final : public MotionMethod {
  public:
   Lin2017Method(const Camera& camera, const Lin2017Config& config)
-      : camera_(camera), config_(config.for_camera(camera)), rays_(camera, {camera.width, camera.height}, 1) {}
+      : camera_(camera),
+        config_(config.for_camera(camera)),
+        rays_(camera, {camera.width, camera.height}, 1) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Lin2017Method>(*this);

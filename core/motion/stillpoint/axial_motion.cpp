@@ -107,8 +107,8 @@ class Shifts {
                           w01 = cv::v_setall_f32(right * (1 - down)),
                           w10 = cv::v_setall_f32((1 - right) * down), w11 = cv::v_setall_f32(right * down);
     const cv::v_float32x4 gray = cv::v_setall_f32(p.gray), depth = cv::v_setall_f32(p.z),
-                          tolerance = cv::v_setall_f32(depth_tolerance(p, then.noise)), one = cv::v_setall_f32(1.0F),
-                          none = cv::v_setzero_f32();
+                          tolerance = cv::v_setall_f32(depth_tolerance(p, then.noise)),
+                          one = cv::v_setall_f32(1.0F), none = cv::v_setzero_f32();
     constexpr int kFirst = Rimmed::kRim - kSideways;
     const int nearest_x = cvRound(at.x) + kFirst, nearest_y = cvRound(at.y) + kFirst;
     float* sums = sums_.data();

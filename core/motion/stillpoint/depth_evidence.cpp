@@ -198,7 +198,7 @@ WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const
   constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
   constexpr float kDepthShare = 0.02F;
   constexpr double kLikeSigmas = 2.0;  // … and of a stereo pair's depth, standard deviations
-  constexpr float kArrived = 1.5F;  // log-odds that a dynamic object's step warps at most
+  constexpr float kArrived = 1.5F;     // log-odds that a dynamic object's step warps at most
   const cv::Size size = current.depth.size();
   WarpedPrior result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
   cv::Mat& prior = result.log_odds;
@@ -223,7 +223,8 @@ WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const
       }
       const float expected = warped.z(x),
                   tolerance = kLikeDepth + kDepthShare * depth[x] +
-                              static_cast<float>(kLikeSigmas * current.camera.stereo_sigma(static_cast<double>(depth[x])));
+                              static_cast<float>(kLikeSigmas *
+                                                 current.camera.stereo_sigma(static_cast<double>(depth[x])));
       if (std::abs(warped.at(there, x) - expected) < tolerance) {
         const float odds = warped.at(known, x);
         out[x] = odds > firm ? odds : keep * odds;

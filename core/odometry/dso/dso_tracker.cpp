@@ -107,9 +107,9 @@ std::vector<DsoCandidate> DsoTracker::add_points(const TrackerFrame& frame, DsoT
     made.push_back(one);
   }
   // No more than the window is to hold, but a keyframe's share at least: thinned evenly.
-  const auto room = static_cast<std::size_t>(
-      std::max(config_.active_points / config_.window,
-               config_.active_points - static_cast<int>(window_.points.size())));
+  const auto room =
+      static_cast<std::size_t>(std::max(config_.active_points / config_.window,
+                                        config_.active_points - static_cast<int>(window_.points.size())));
   if (points.size() > room) {
     const std::size_t count = points.size();
     std::vector<DsoPoint> fewer;

@@ -35,8 +35,8 @@ Residual residual_of(const PtamBundle& bundle, const PtamBundle::Measurement& on
   const double scale = std::ldexp(1.0, -one.level);
   residual.r.head<2>() = scale * (camera.project(residual.p) - one.pixel);
   if (one.depth > 0.0)
-    residual.r[2] =
-        scale * depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx * (1.0 / one.depth - 1.0 / residual.p.z());
+    residual.r[2] = scale * depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx *
+                    (1.0 / one.depth - 1.0 / residual.p.z());
   residual.seen = true;
   return residual;
 }
@@ -113,8 +113,8 @@ class BundleStep {
     Eigen::Matrix3d by_point = Eigen::Matrix3d::Zero();
     by_point.topRows<2>() = scale * pixel_by_point(camera_, residual.p);
     if (one.depth > 0.0)
-      by_point(2, 2) = scale * config_.bundle_depth_weight * camera_.baseline_or(kDepthBaseline) * camera_.fx /
-                       (residual.p.z() * residual.p.z());
+      by_point(2, 2) = scale * config_.bundle_depth_weight * camera_.baseline_or(kDepthBaseline) *
+                       camera_.fx / (residual.p.z() * residual.p.z());
     const double pixel = one.static_weight * tukey_weight(residual.squared(), bound_),
                  depth = one.static_weight * tukey_weight(residual.r[2] * residual.r[2], bound_);
     const Eigen::Vector3d w(pixel, pixel, depth);

@@ -31,8 +31,9 @@ inline constexpr std::string_view kStereoEnding = ":stereo";
 /// they stand or sit (they belong to what is dynamic in the sequence, and never keep quite still), the cart
 /// that is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
 /// after. Furniture, chairs and shadows are not moving.
-/// KIND:stereo is the same scene filmed by a stereo pair: the left image is that of KIND to the byte, the right
-/// one is filmed 0.12 m beside it, with noise and exposure of its own, and depth comes of matching the two.
+/// KIND:stereo is the same scene filmed by a stereo pair: the left image is that of KIND to the byte, the
+/// right one is filmed 0.12 m beside it, with noise and exposure of its own, and depth comes of matching the
+/// two.
 /// @param frames how many; 0 = the kind's own length, 300.
 /// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above
 /// 100,000.

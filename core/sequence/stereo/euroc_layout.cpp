@@ -14,7 +14,8 @@ struct AslCamera {
   Pose body_from_camera;
 };
 
-AslCamera read_camera_folder(const FileStore& folder, const std::string& name, std::vector<std::string>& warnings) {
+AslCamera read_camera_folder(const FileStore& folder, const std::string& name,
+                             std::vector<std::string>& warnings) {
   if (!folder.is_folder(name))
     throw InputError(fmt::format("{}: is missing; depth comes of two images a frame, of cam0 and cam1",
                                  folder.path_of(name)));
@@ -32,9 +33,10 @@ AslCamera read_camera_folder(const FileStore& folder, const std::string& name, s
   if (read.images.entries.empty())
     throw InputError(fmt::format("{}: names no images, and data/ holds none", folder.path_of(name)));
   if (!folder.is_there(sensor))
-    throw InputError(fmt::format("{}: is missing; it says how the camera sees and where it sits, without which the "
-                                 "pair cannot be rectified",
-                                 folder.path_of(sensor)));
+    throw InputError(
+        fmt::format("{}: is missing; it says how the camera sees and where it sits, without which the "
+                    "pair cannot be rectified",
+                    folder.path_of(sensor)));
   const std::string path = folder.path_of(sensor), text = folder.read_text(sensor);
   read.camera = read_yaml_camera_text(path, text);
   read.body_from_camera = read_yaml_body_from_sensor(path, text);
@@ -58,8 +60,8 @@ std::optional<StereoRecording> read_euroc(const FileStore& folder, const OpenOpt
   recording.camera = recording.rectification->camera();
   recording.camera.name = "euroc";
   if (options.camera && options.camera->name != recording.camera.name)
-    throw InputError(fmt::format("{}: --camera does not go with two sensor.yaml, which say how to rectify the pair",
-                                 folder.place()));
+    throw InputError(fmt::format(
+        "{}: --camera does not go with two sensor.yaml, which say how to rectify the pair", folder.place()));
   recording.lists.stereo = true;
   recording.lists.colours = std::move(left.images);
   recording.lists.depths = std::move(right.images);

@@ -21,7 +21,8 @@ struct Pair {
 };
 constexpr Pair kPairs[] = {{0, 1}, {2, 3}};
 
-/// The pair of folders to read: grey where both are there, otherwise colour, otherwise what there is of either.
+/// The pair of folders to read: grey where both are there, otherwise colour, otherwise what there is of
+/// either.
 std::optional<Pair> pair_in(const FileStore& folder) {
   const auto is_there = [&](const Pair& pair, int camera) { return folder.is_folder(pair.folder(camera)); };
   for (const Pair& pair : kPairs)
@@ -73,8 +74,9 @@ Camera camera_of(const FileStore& folder, const Pair& pair, StereoRecording& rec
   const Projection &left = projection(all, pair.left, path), &right = projection(all, pair.right, path);
   constexpr double kSame = 1e-3;  // px
   if ((left.leftCols<3>() - right.leftCols<3>()).cwiseAbs().maxCoeff() > kSame)
-    throw InputError(fmt::format("{}: P{} and P{} have different focal lengths or centres, expected a rectified pair",
-                                 path, pair.left, pair.right));
+    throw InputError(
+        fmt::format("{}: P{} and P{} have different focal lengths or centres, expected a rectified pair",
+                    path, pair.left, pair.right));
   const Eigen::Vector3d right_from_left = offset(right) - offset(left);
   Camera camera;
   camera.name = "kitti";
@@ -107,7 +109,8 @@ void stamp(const FileStore& folder, StereoRecording& recording) {
 
 /// Poses beside the images, or where the benchmark has them.
 std::string truth_of(const FileStore& folder) {
-  for (const std::string& name : {std::string("poses.txt"), fmt::format("../../poses/{}.txt", folder.own_names()[0])})
+  for (const std::string& name :
+       {std::string("poses.txt"), fmt::format("../../poses/{}.txt", folder.own_names()[0])})
     if (folder.is_file(name)) return name;
   return {};
 }
@@ -121,9 +124,9 @@ std::optional<StereoRecording> read_kitti(const FileStore& folder, const OpenOpt
     const std::string name = pair->folder(camera);
     ImageList images = images_of(folder, name);
     if (images.entries.empty())
-      throw InputError(fmt::format("{}: {}; depth comes of two images a frame, and {} holds the other one",
-                                   folder.path_of(name),
-                                   folder.is_folder(name) ? "holds no images" : "is missing", pair->folder(other)));
+      throw InputError(fmt::format(
+          "{}: {}; depth comes of two images a frame, and {} holds the other one", folder.path_of(name),
+          folder.is_folder(name) ? "holds no images" : "is missing", pair->folder(other)));
     return images;
   };
   StereoRecording recording;

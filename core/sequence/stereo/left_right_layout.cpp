@@ -13,10 +13,10 @@ Camera camera_of(const FileStore& folder, const OpenOptions& options) {
   if (options.camera) return *options.camera;
   for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"})
     if (folder.is_there(name)) return read_camera_text(folder.path_of(name), folder.read_text(name));
-  throw InputError(
-      fmt::format("{}: left/ and right/ need a camera.toml (fx, fy, cx, cy, width, height and baseline_m, the "
-                  "distance of the two cameras), or --camera FILE",
-                  folder.place()));
+  throw InputError(fmt::format(
+      "{}: left/ and right/ need a camera.toml (fx, fy, cx, cy, width, height and baseline_m, the "
+      "distance of the two cameras), or --camera FILE",
+      folder.place()));
 }
 
 }  // namespace
@@ -37,10 +37,12 @@ std::optional<StereoRecording> read_left_right(const FileStore& folder, const Op
   recording.lists.depths = list(kRight, kLeft);
   recording.camera = camera_of(folder, options);
   if (recording.camera.has_distortion())
-    throw InputError(fmt::format("{}: camera {} has distortion, and left/ and right/ are read as rectified images; "
-                                 "the EuRoC layout has a calibration a camera",
-                                 folder.place(), recording.camera.name));
-  if (folder.is_there(kTimes)) stamp_by_times(folder.path_of(kTimes), read_times(folder, kTimes), recording.lists);
+    throw InputError(
+        fmt::format("{}: camera {} has distortion, and left/ and right/ are read as rectified images; "
+                    "the EuRoC layout has a calibration a camera",
+                    folder.place(), recording.camera.name));
+  if (folder.is_there(kTimes))
+    stamp_by_times(folder.path_of(kTimes), read_times(folder, kTimes), recording.lists);
   return recording;
 }
 

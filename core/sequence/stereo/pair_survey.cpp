@@ -12,14 +12,15 @@ namespace {
 constexpr int kCorners = 800, kLevels = 3;  // fine levels alone: rows are wanted to a fraction of a pixel
 constexpr int kFewestMatches = 40;          // over all pairs: fewer say nothing
 constexpr float kMostDistance = 40.0F;      // bits, of descriptors
-constexpr double kMostAside = 0.08, kMostAlong = 0.4;  // of the image's sides: farther apart is chance
-constexpr double kLeastShift = 0.5;                    // px: nearer to 0 is far away
-constexpr double kExchanged = 0.85;                    // of the matches
+constexpr double kMostAside = 0.08, kMostAlong = 0.4;   // of the image's sides: farther apart is chance
+constexpr double kLeastShift = 0.5;                     // px: nearer to 0 is far away
+constexpr double kExchanged = 0.85;                     // of the matches
 constexpr double kMostOffset = 1.0, kMostSpread = 2.5;  // px
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -57,8 +58,8 @@ PairSurvey survey_pairs(const std::vector<PairPaths>& pairs, const ImageReader& 
     ++survey.pairs;
     if (left.image.size() != right.image.size()) {
       if (survey.fault.empty())
-        survey.fault = fmt::format("{} is {}x{} px, but its left image is {}x{} px", pair.right, right.image.cols,
-                                   right.image.rows, left.image.cols, left.image.rows);
+        survey.fault = fmt::format("{} is {}x{} px, but its left image is {}x{} px", pair.right,
+                                   right.image.cols, right.image.rows, left.image.cols, left.image.rows);
       continue;
     }
     ++survey.fit;

@@ -21,9 +21,9 @@ struct PairSurvey {
   int fit = 0;        ///< of these, pairs of one size
   std::string fault;  ///< of the first that does not fit, one sentence
   int matches = 0;
-  double row_offset_px = 0.0;   ///< median row of a corner on the right less its row on the left
-  double row_spread_px = 0.0;   ///< three of four matches lie within so many rows of that
-  double to_the_left = 0.0;     ///< share of the matches that lie farther right in the right image
+  double row_offset_px = 0.0;  ///< median row of a corner on the right less its row on the left
+  double row_spread_px = 0.0;  ///< three of four matches lie within so many rows of that
+  double to_the_left = 0.0;    ///< share of the matches that lie farther right in the right image
 };
 [[nodiscard]] PairSurvey survey_pairs(const std::vector<PairPaths>& pairs, const ImageReader& read_image);
 

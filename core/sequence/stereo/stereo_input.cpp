@@ -47,16 +47,19 @@ class StereoInput final : public SequenceInput {
       }
       unit = StampUnit::seconds;
     }
-    truth = settle_truth(truth.path, std::move(file.poses), stamps, unit, options_.frame_rate, options_.truth);
-    for (StampedPose& pose : truth.poses) pose.world_from_camera = pose.world_from_camera * recording_.body_from_camera;
+    truth =
+        settle_truth(truth.path, std::move(file.poses), stamps, unit, options_.frame_rate, options_.truth);
+    for (StampedPose& pose : truth.poses)
+      pose.world_from_camera = pose.world_from_camera * recording_.body_from_camera;
     truth.warnings.insert(truth.warnings.begin(), file.warnings.begin(), file.warnings.end());
     return truth;
   }
   [[nodiscard]] Camera camera(std::vector<std::string>&) override {
     if (!recording_.camera.is_stereo())
-      throw InputError(fmt::format("{}: camera {} has no baseline_m, the distance (m) of the left camera from the "
-                                   "right one, without which a stereo pair has no scale",
-                                   place(), recording_.camera.name));
+      throw InputError(
+          fmt::format("{}: camera {} has no baseline_m, the distance (m) of the left camera from the "
+                      "right one, without which a stereo pair has no scale",
+                      place(), recording_.camera.name));
     return recording_.camera;
   }
   [[nodiscard]] ImageRead image(const std::string& file) const override {
@@ -83,7 +86,8 @@ class StereoInput final : public SequenceInput {
     for (StampedPose& pose : poses) {
       const auto row = static_cast<std::size_t>(pose.timestamp);
       if (row >= rows.size())
-        return fmt::format("{}: has {} poses or more, and there are {} times for them", path, row + 1, rows.size());
+        return fmt::format("{}: has {} poses or more, and there are {} times for them", path, row + 1,
+                           rows.size());
       pose.timestamp = rows[row];
     }
     return {};
@@ -97,7 +101,8 @@ class StereoInput final : public SequenceInput {
 
 }  // namespace
 
-std::unique_ptr<SequenceInput> make_stereo_input(std::unique_ptr<FileStore>& files, const OpenOptions& options) {
+std::unique_ptr<SequenceInput> make_stereo_input(std::unique_ptr<FileStore>& files,
+                                                 const OpenOptions& options) {
   auto recording = read_stereo_recording(*files, options);
   if (!recording) return nullptr;
   return std::make_unique<StereoInput>(std::move(files), std::move(*recording), options);

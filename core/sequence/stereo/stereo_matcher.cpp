@@ -11,7 +11,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStep = 16;             // SGBM's: disparities come in multiples of it, each in 16 parts
+constexpr int kStep = 16;              // SGBM's: disparities come in multiples of it, each in 16 parts
 constexpr int kMostDisparities = 128;  // px, where the images' width alone decides
 constexpr double kShareOfWidth = 0.2;  // … of it
 constexpr int kBlock = 5;              // px
@@ -34,9 +34,11 @@ cv::Mat sixteenths(const cv::Mat& left, const cv::Mat& right, int disparities, b
   cv::copyMakeBorder(left, wide_left, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
   cv::copyMakeBorder(right, wide_right, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
   constexpr int kSquare = kBlock * kBlock;
+  // OpenCV takes 0 and less for 1: only a difference that no two disparities have switches its check off.
+  const int most_difference = check ? 1 : disparities;
   const auto matcher =
-      cv::StereoSGBM::create(0, disparities, kBlock, 8 * kSquare, 32 * kSquare, check ? 1 : -1, 31, kUnique, 0,
-                             0, cv::StereoSGBM::MODE_SGBM_3WAY);
+      cv::StereoSGBM::create(0, disparities, kBlock, 8 * kSquare, 32 * kSquare, most_difference, 31, kUnique,
+                             0, 0, cv::StereoSGBM::MODE_SGBM_3WAY);
   matcher->compute(wide_left, wide_right, found);
   return found.colRange(disparities, found.cols).clone();
 }

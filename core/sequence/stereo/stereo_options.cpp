@@ -16,8 +16,8 @@ int disparities_from(const std::string& value, const std::string& option) {
   const auto number = parse_number(value);
   const int whole = number && *number >= kFewest && *number <= kMost ? static_cast<int>(*number) : 0;
   if (whole == 0 || whole != *number || whole % kStep != 0)
-    throw InputError(fmt::format("{}: disparities={} is no multiple of {} from {} to {}", option, value, kStep,
-                                 kFewest, kMost));
+    throw InputError(fmt::format("{}: disparities={} is no multiple of {} from {} to {}", option, value,
+                                 kStep, kFewest, kMost));
   return whole;
 }
 

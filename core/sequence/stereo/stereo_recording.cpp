@@ -16,12 +16,13 @@ cv::Size first_size(const FileStore& folder, const ImageList& images) {
   for (const ListEntry& entry : images.entries) {
     Bytes bytes;
     const std::string path = folder.path_of(entry.file), fault = folder.read(entry.file, bytes);
-    const ImageRead read = fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
+    const ImageRead read =
+        fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
     if (!read.image.empty()) return read.image.size();
     if (problem.empty()) problem = read.problem;
   }
-  throw InputError(fmt::format("{}: none of its {} images can be read{}{}", images.path, images.entries.size(),
-                               problem.empty() ? "" : "; ", problem));
+  throw InputError(fmt::format("{}: none of its {} images can be read{}{}", images.path,
+                               images.entries.size(), problem.empty() ? "" : "; ", problem));
 }
 
 std::vector<double> read_times(const FileStore& folder, const std::string& name) {
@@ -32,8 +33,8 @@ std::vector<double> read_times(const FileStore& folder, const std::string& name)
       throw InputError(fmt::format("{}:{}: {} is no time, expected one number a line", folder.path_of(name),
                                    line.number, in_quotes(line.text)));
     if (!times.empty() && *number <= times.back())
-      throw InputError(fmt::format("{}:{}: {} is no later than the line before", folder.path_of(name), line.number,
-                                   line.text));
+      throw InputError(fmt::format("{}:{}: {} is no later than the line before", folder.path_of(name),
+                                   line.number, line.text));
     times.push_back(*number);
   }
   return times;
@@ -47,7 +48,8 @@ void stamp_by_times(const std::string& path, const std::vector<double>& times, F
   for (const ListEntry& entry : left) numbers.push_back(entry.timestamp);
   const auto row_of = [&](double number) -> std::size_t {
     if (!in_order) return static_cast<std::size_t>(number);
-    return static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+    return static_cast<std::size_t>(std::lower_bound(numbers.begin(), numbers.end(), number) -
+                                    numbers.begin());
   };
   if (!in_order && numbers.back() >= static_cast<double>(times.size()))
     throw InputError(fmt::format("{}: has {} times for {} left images, whose last one is number {:.0f}", path,

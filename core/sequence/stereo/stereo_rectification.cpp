@@ -12,8 +12,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kParallel = 1e-6;      // rad and relative: what rounding leaves of a rectified pair
-constexpr double kMostAside = 0.70710;  // of the baseline, across the image: more lies above or below, not beside
+constexpr double kParallel = 1e-6;  // rad and relative: what rounding leaves of a rectified pair
+constexpr double kMostAside =
+    0.70710;  // of the baseline, across the image: more lies above or below, not beside
 
 cv::Mat distortion_of(const Camera& c) { return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3); }
 
@@ -35,10 +36,10 @@ StereoRectification::StereoRectification(const Camera& left, const Camera& right
   if (!(baseline > 0) || !std::isfinite(baseline))
     throw InputError(fmt::format("{}: both cameras are said to be at one place", where));
   if (right_in_left.x() < kMostAside * baseline)
-    throw InputError(fmt::format("{}: the second camera is said to lie {} the first one, expected a pair of left "
-                                 "and right",
-                                 where, right_in_left.x() < -kMostAside * baseline ? "to the left of"
-                                                                                   : "above, below or before"));
+    throw InputError(fmt::format(
+        "{}: the second camera is said to lie {} the first one, expected a pair of left "
+        "and right",
+        where, right_in_left.x() < -kMostAside * baseline ? "to the left of" : "above, below or before"));
   const bool is_rectified = !left.has_distortion() && !right.has_distortion() && is_like(left, right) &&
                             rotation_angle(right_from_left.linear()) <= kParallel &&
                             right_in_left.tail<2>().norm() <= kParallel * baseline;
@@ -50,7 +51,8 @@ StereoRectification::StereoRectification(const Camera& left, const Camera& right
   cv::eigen2cv(Eigen::Matrix3d(right_from_left.linear()), rotation);
   cv::eigen2cv(Eigen::Vector3d(right_from_left.translation()), translation);
   cv::stereoRectify(left.matrix(), distortion_of(left), right.matrix(), distortion_of(right), size, rotation,
-                    translation, turn[0], turn[1], projection[0], projection[1], q, cv::CALIB_ZERO_DISPARITY, 0.0);
+                    translation, turn[0], turn[1], projection[0], projection[1], q, cv::CALIB_ZERO_DISPARITY,
+                    0.0);
   const Camera* cameras[] = {&left, &right};
   for (int side = 0; side < 2; ++side)
     cv::initUndistortRectifyMap(cameras[side]->matrix(), distortion_of(*cameras[side]), turn[side],

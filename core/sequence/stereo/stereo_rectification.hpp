@@ -8,8 +8,8 @@
 
 namespace stillpoint {
 
-/// Two calibrated cameras as a rectified pair: rows correspond, and the right camera lies straight to the right
-/// (Bouguet's method as OpenCV has it, stereoRectify; no pixel is without image).
+/// Two calibrated cameras as a rectified pair: rows correspond, and the right camera lies straight to the
+/// right (Bouguet's method as OpenCV has it, stereoRectify; no pixel is without image).
 class StereoRectification {
  public:
   /// @param left,right pinhole cameras with their distortion, of one size
@@ -32,7 +32,8 @@ class StereoRectification {
  private:
   Camera camera_;
   Pose left_from_rectified_ = Pose::Identity();
-  cv::Mat maps_[4];  // of the left, then of the right: whole pixels, and parts of them; empty: none are needed
+  cv::Mat
+      maps_[4];  // of the left, then of the right: whole pixels, and parts of them; empty: none are needed
 };
 
 }  // namespace stillpoint

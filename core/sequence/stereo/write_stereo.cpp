@@ -29,7 +29,10 @@ Pose body_from_left() {
 std::string sensor_yaml(const Camera& camera, const Pose& body_from_camera) {
   std::string rows;
   for (int i = 0; i < 16; ++i)
-    rows += fmt::format("{}{}", i == 0 ? "" : i % 4 == 0 ? ",\n         " : ", ",
+    rows += fmt::format("{}{}",
+                        i == 0       ? ""
+                        : i % 4 == 0 ? ",\n         "
+                                     : ", ",
                         body_from_camera.matrix()(i / 4, i % 4));
   return fmt::format(
       "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [{}]\nresolution: [{}, {}]\n"
@@ -49,14 +52,15 @@ void write_euroc(const FrameSource& source, const fs::path& folder, int frames) 
     write_text_file(folder / name / "sensor.yaml", sensor_yaml(camera, body_from_camera));
   }
   if (source.ground_truth().empty()) return;
-  std::string truth = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
-                      "q_RS_z []\n";
+  std::string truth =
+      "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+      "q_RS_z []\n";
   for (const StampedPose& stamped : source.ground_truth()) {
     const Pose body = stamped.world_from_camera * body_from_left().inverse();
     const Eigen::Vector3d p = body.translation();
     const Eigen::Quaterniond q(body.linear());
-    truth += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", nanoseconds(stamped.timestamp),
-                         p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    truth += fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
+                         nanoseconds(stamped.timestamp), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
   }
   fs::create_directories(folder / kTruth);
   write_text_file(folder / kTruth / "data.csv", truth);
@@ -66,8 +70,8 @@ void write_kitti(const FrameSource& source, const fs::path& folder, int frames) 
   const Camera& c = source.camera();
   std::string calibration, times, poses;
   for (int camera = 0; camera < 4; ++camera)
-    calibration += fmt::format("P{}: {:.12e} 0 {:.12e} {:.12e} 0 {:.12e} {:.12e} 0 0 0 1 0\n", camera, c.fx, c.cx,
-                               camera % 2 == 1 ? -c.fx * c.baseline_m : 0.0, c.fy, c.cy);
+    calibration += fmt::format("P{}: {:.12e} 0 {:.12e} {:.12e} 0 {:.12e} {:.12e} 0 0 0 1 0\n", camera, c.fx,
+                               c.cx, camera % 2 == 1 ? -c.fx * c.baseline_m : 0.0, c.fy, c.cy);
   bool all_known = frames > 0;
   for (int i = 0; i < frames; ++i) {
     times += fmt::format("{:.6f}\n", source.timestamp(i));
@@ -97,20 +101,25 @@ StereoNames stereo_names(const FrameSource& source, int index, SequenceLayout la
 }
 
 const std::vector<std::string>& stereo_image_folders() {
-  static const std::vector<std::string> folders = {
-      "left", "right", "image_2", "image_3", "mav0/cam0/data", "mav0/cam1/data"};
+  static const std::vector<std::string> folders = {"left",    "right",          "image_2",
+                                                   "image_3", "mav0/cam0/data", "mav0/cam1/data"};
   return folders;
 }
 
 const std::vector<std::string>& stereo_text_files() {
-  static const std::vector<std::string> files = {
-      "calib.txt",           "times.txt",           "poses.txt",
-      "mav0/cam0/data.csv",  "mav0/cam1/data.csv",  "mav0/cam0/sensor.yaml",
-      "mav0/cam1/sensor.yaml", "mav0/state_groundtruth_estimate0/data.csv"};
+  static const std::vector<std::string> files = {"calib.txt",
+                                                 "times.txt",
+                                                 "poses.txt",
+                                                 "mav0/cam0/data.csv",
+                                                 "mav0/cam1/data.csv",
+                                                 "mav0/cam0/sensor.yaml",
+                                                 "mav0/cam1/sensor.yaml",
+                                                 "mav0/state_groundtruth_estimate0/data.csv"};
   return files;
 }
 
-void write_stereo_texts(const FrameSource& source, const fs::path& folder, int frames, SequenceLayout layout) {
+void write_stereo_texts(const FrameSource& source, const fs::path& folder, int frames,
+                        SequenceLayout layout) {
   if (layout == SequenceLayout::euroc) write_euroc(source, folder, frames);
   if (layout == SequenceLayout::kitti) write_kitti(source, folder, frames);
 }
