@@ -158,7 +158,7 @@ TEST_F(Wall, PointsSeldomFoundAreCulled) {
 TEST_F(Wall, RedundantKeyframesRetireAndTheirPosesStayKnown) {
   const auto ids = begin();
   for (const double x : {0.05, 0.1, 0.15, 0.2}) add(x, ids);
-  EXPECT_GT(cull_keyframes(map_, 4, camera_, config_), 0);
+  EXPECT_GT(cull_keyframes(map_, 4, kCamera, config_), 0);
   ASSERT_FALSE(map_.retired().empty());
   EXPECT_TRUE(map_.has_keyframe(0)) << "the first holds the map in place";
   EXPECT_TRUE(map_.has_keyframe(4)) << "the newest is not judged yet";
@@ -174,7 +174,7 @@ TEST_F(Wall, TheMapNeverOutgrowsItsBound) {
   const auto ids = begin();
   for (int k = 1; k < 20; ++k) {
     const int id = add(0.02 * k, ids);
-    cull_keyframes(map_, id, camera_, config_);
+    cull_keyframes(map_, id, kCamera, config_);
     EXPECT_LE(map_.keyframes().size(), 5u);
   }
   EXPECT_NEAR(map_.pose_of(0).translation().x(), 0.0, 1e-12);
