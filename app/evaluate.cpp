@@ -146,7 +146,8 @@ void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& a
 double number_argument(const char* option, const std::string& text, double least, double most) {
   const auto value = parse_number(text);
   if (!value || !(*value >= least) || !(*value <= most))
-    throw InputError(fmt::format("{} {}: expected a number from {:g} to {:g}", option, text, least, most));
+    throw CLI::ValidationError(option,
+                               fmt::format("{}: expected a number from {:g} to {:g}", text, least, most));
   return *value;
 }
 
@@ -161,7 +162,8 @@ void read_alignment(const std::string& text, EvaluationOptions& options) {
     options.align = AlignBy::first;
     options.align_first = static_cast<int>(number_argument("--align", text.substr(kFirst.size()), 3, 1e8));
   } else {
-    throw InputError(fmt::format("--align {}: expected none, origin, first:N, se3 or sim3", text));
+    throw CLI::ValidationError("--align",
+                               fmt::format("{}: expected none, origin, first:N, se3 or sim3", text));
   }
 }
 

@@ -61,10 +61,16 @@ McapFileName::McapFileName(std::string path, bool force) : path_(std::move(path)
     throw InputError(fmt::format("{}: is there already; --force replaces it", path_));
 }
 
-void McapFileName::finish() const {
+McapFileName::~McapFileName() {
+  std::error_code none;
+  if (!finished_) fs::remove(part_, none);
+}
+
+void McapFileName::finish() {
   std::error_code failed;
   fs::rename(part_, path_, failed);
   if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path_, failed.message()));
+  finished_ = true;
   write_text_file(fs::path(path_).replace_extension(".foxglove.json"), foxglove_layout());
 }
 
@@ -72,7 +78,7 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
                  bool force, const std::vector<std::string>& layers) {
   const OpenedRun run = open_run(run_folder, sequence);
   if (!layers.empty() && !run.no_images.empty()) throw InputError(run.no_images);
-  const McapFileName name(to, force);
+  McapFileName name(to, force);
   const std::vector<FrameRecord>& records = run.recorded->run.records;
   McapExport file(name.while_written(), run.source->camera());
   {

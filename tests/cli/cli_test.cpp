@@ -93,6 +93,9 @@ TEST_F(Evaluate, BadInputGetsOneSentence) {
 TEST_F(Evaluate, BadArgumentsEndWithStatusTwo) {
   EXPECT_EQ(evaluate({"--frames", "0"}).exit_code, 2);
   EXPECT_EQ(evaluate({"--max-difference", "-1"}).exit_code, 2);
+  EXPECT_EQ(evaluate({"--align", "sideways"}).exit_code, 2);
+  EXPECT_EQ(evaluate({"--align", "first:2"}).exit_code, 2);
+  EXPECT_EQ(evaluate({"--time-offset", "soon"}).exit_code, 2);
   EXPECT_EQ(run_cli({"evaluate", folder.path("truth.txt")}).exit_code, 2);
   EXPECT_EQ(run_cli({"evaluate", "--help"}).exit_code, 0);
 }

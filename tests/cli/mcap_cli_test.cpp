@@ -41,9 +41,12 @@ TEST_F(Mcap, WhatCannotBeMeantIsRefused) {
                       "is there already; --force replaces it");
   expect_one_sentence(run_cli({"export", sequence.path("run"), "--to", sequence.path("a.bag")}),
                       "expected a name that ends in .mcap");
-  expect_one_sentence(
-      run_cli({"export", sequence.path("run"), "--to", sequence.path("l.mcap"), "--layers", "nonsense"}),
-      "no stage of any frame has a layer of that id");
+  const CliResult layers =
+      run_cli({"export", sequence.path("run"), "--to", sequence.path("l.mcap"), "--layers", "nonsense"});
+  EXPECT_EQ(layers.exit_code, 1);
+  EXPECT_THAT(layers.err, HasSubstr("--layers nonsense: no stage of any frame has a layer of that id"));
+  for (const char* left : {"l.mcap", "l.mcap.part"})
+    EXPECT_FALSE(std::filesystem::exists(sequence.path(left)));
 }
 
 TEST_F(Mcap, TheFormatsOwnReaderFindsEverything) {
