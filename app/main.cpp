@@ -38,8 +38,9 @@ int main(int argc, char** argv) {
   cv::setNumThreads(1);
   // What is wrong with an image is said once, by whoever reads it.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  CLI::App app{"Stillpoint: a visual debugger for RGB-D visual odometry in scenes where things move",
-               "stillpoint"};
+  CLI::App app{
+      "Stillpoint: a visual debugger for RGB-D and stereo visual odometry in scenes where things move",
+      "stillpoint"};
   app.require_subcommand(0, 1);
   stillpoint::add_commands(app);
   try {
