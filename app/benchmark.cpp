@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/arguments.hpp"
 #include "app/benchmark_repeats.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "app/version.hpp"
 #include "core/error.hpp"
-#include "core/evaluation/tables.hpp"
+#include "core/evaluation/benchmark_results.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/records_file.hpp"
@@ -21,85 +23,90 @@
 namespace stillpoint {
 namespace {
 
+constexpr const char* kResultsName = "results.json";
+
 struct BenchmarkArguments {
   std::vector<std::string> sequences, methods = usual_methods(), engines;
   std::string out;
-  bool force = false;
+  bool force = false, resume = false;
   int repeats = 1;
   ConfigArguments config;
   SequenceArguments frames;
 };
 
-std::string cell(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
-}
-
-/// What Table 1 leaves out: the other errors, coverage, masks and speed.
-Table details_table(const std::vector<RunReport>& reports) {
-  Table table;
-  table.header = {"sequence",  "odometry",    "method",         "coverage %",      "ATE m",
-                  "RPE 1 s m", "RPE 1 s deg", "pairs",          "RPE 1 frame m",   "mask precision",
-                  "recall",    "IoU",         "forward recall", "removed rightly", "removed wrongly",
-                  "median ms", "p99 ms",      "ORB units"};
-  for (const RunReport& r : reports) {
-    std::optional<double> ate, rpe, rpe_deg, rpe_frame;
-    int pairs = 0;
-    if (r.evaluation && r.evaluation->ate.translation_m.count > 0) ate = r.evaluation->ate.translation_m.rmse;
-    if (r.evaluation && (pairs = r.evaluation->rpe_time.translation_m.count) > 0) {
-      rpe = r.evaluation->rpe_time.translation_m.rmse;
-      rpe_deg = r.evaluation->rpe_time.rotation_deg.rmse;
-    }
-    if (r.evaluation && r.evaluation->rpe_frame.translation_m.count > 0)
-      rpe_frame = r.evaluation->rpe_frame.translation_m.rmse;
-    const bool masks = r.scores.known && !method_named(r.method).baseline;
-    table.rows.push_back(
-        {r.sequence, r.odometry, r.method, fmt::format("{:.1f}", 100.0 * r.coverage), cell(ate, 4),
-         cell(rpe, 4), cell(rpe_deg, 3), std::to_string(pairs), cell(rpe_frame, 5),
-         masks ? cell(r.scores.mask.precision(), 3) : "-", masks ? cell(r.scores.mask.recall(), 3) : "-",
-         masks ? cell(r.scores.mask.iou(), 3) : "-", masks ? cell(r.scores.partial_mask.recall(), 3) : "-",
-         masks ? std::to_string(r.scores.removal.removed_rightly) : "-",
-         masks ? std::to_string(r.scores.removal.removed_wrongly) : "-",
-         fmt::format("{:.1f}", r.speed.median_ms), fmt::format("{:.1f}", r.speed.p99_ms),
-         fmt::format("{:.2f}", r.speed.units)});
-  }
-  return table;
-}
-
-BenchmarkCell cell_of(const RunReport& report) {
-  BenchmarkCell result;
+BenchmarkResult result_of(const RunReport& report) {
+  BenchmarkResult result;
+  result.sequence = report.sequence;
+  result.odometry = report.odometry;
   result.method = report.method;
+  result.frames = report.frames;
   result.coverage = report.coverage;
-  if (report.evaluation && report.evaluation->rpe_time.translation_m.count > 0) {
-    result.rpe_m = report.evaluation->rpe_time.translation_m.rmse;
-    result.pairs = report.evaluation->rpe_time.translation_m.count;
+  if (const auto& e = report.evaluation) {
+    if (e->ate.translation_m.count > 0) result.ate_m = e->ate.translation_m.rmse;
+    if (e->rpe_time.translation_m.count > 0) {
+      result.pairs = e->rpe_time.translation_m.count;
+      result.rpe_m = e->rpe_time.translation_m.rmse;
+      result.rpe_deg = e->rpe_time.rotation_deg.rmse;
+    }
+    if (e->rpe_frame.translation_m.count > 0) result.rpe_frame_m = e->rpe_frame.translation_m.rmse;
   }
+  if (report.scores.known && !method_named(report.method).baseline) {
+    result.precision = report.scores.mask.precision();
+    result.recall = report.scores.mask.recall();
+    result.iou = report.scores.mask.iou();
+    result.partial_recall = report.scores.partial_mask.recall();
+    result.right = report.scores.removal.removed_rightly;
+    result.wrong = report.scores.removal.removed_wrongly;
+  }
+  result.median_ms = report.speed.median_ms;
+  result.p99_ms = report.speed.p99_ms;
+  result.units = report.speed.units;
+  result.hash = report.hash;
   return result;
 }
 
-/// What one engine reached behind each method.
-struct EngineRows {
-  std::string engine;
-  std::vector<BenchmarkRow> rows;
-};
-
 /// Table 1 once an engine: gains are over the baseline behind the same one.
-std::string tables_text(const std::vector<EngineRows>& all, const std::vector<std::string>& methods) {
+std::string tables_text(const BenchmarkResults& results, const BenchmarkArguments& arguments) {
   std::string text;
-  for (const EngineRows& one : all) {
-    if (all.size() > 1) text += fmt::format("{}Odometry {}\n\n", text.empty() ? "" : "\n", one.engine);
-    text += to_markdown(table_one(one.rows, methods, baseline_method().name));
+  for (const std::string& engine : arguments.engines) {
+    if (arguments.engines.size() > 1)
+      text += fmt::format("{}Odometry {}\n\n", text.empty() ? "" : "\n", engine);
+    text += to_markdown(table_one(results, engine, arguments.methods, baseline_method().name));
   }
   return text;
 }
 
-void write_tables(const std::filesystem::path& folder, const std::vector<EngineRows>& all,
-                  const std::vector<std::string>& methods, const Table& details) {
-  write_text_file(folder / "table1.md", tables_text(all, methods));
-  for (const EngineRows& one : all)
-    write_text_file(folder / (&one == &all.front() ? "table1.csv" : fmt::format("table1_{}.csv", one.engine)),
-                    to_csv(table_one(one.rows, methods, baseline_method().name)));
-  write_text_file(folder / "details.md", to_markdown(details));
-  write_text_file(folder / "details.csv", to_csv(details));
+void write_tables(const BenchmarkResults& results, const BenchmarkArguments& arguments) {
+  const std::filesystem::path folder = arguments.out;
+  write_text_file(folder / kResultsName, to_json(results).dump(2) + "\n");
+  write_text_file(folder / "table1.md", tables_text(results, arguments));
+  for (const std::string& engine : arguments.engines)
+    write_text_file(
+        folder / (engine == arguments.engines.front() ? "table1.csv" : fmt::format("table1_{}.csv", engine)),
+        to_csv(table_one(results, engine, arguments.methods, baseline_method().name)));
+  write_text_file(folder / "details.md", to_markdown(details_table(results)));
+  write_text_file(folder / "details.csv", to_csv(details_table(results)));
+}
+
+/// The config that all of a benchmark's runs share.
+std::string shared_config(Config config) {
+  config.run.method = RunConfig().method;
+  config.run.odometry = RunConfig().odometry;
+  return to_toml(config);
+}
+
+/// What an earlier benchmark left in the folder, to be gone on with.
+/// @throws InputError where its runs are not what these would be
+std::vector<BenchmarkResult> earlier_runs(const BenchmarkArguments& arguments, const Config& config) {
+  const std::filesystem::path path = std::filesystem::path(arguments.out) / kResultsName;
+  if (!std::filesystem::exists(path)) return {};
+  const BenchmarkResults earlier = read_results(path.string());
+  if (earlier.config != shared_config(config))
+    throw InputError(
+        fmt::format("{}: was made with other parameters, so that --resume cannot go on with it; "
+                    "--force begins anew",
+                    path.string()));
+  return earlier.runs;
 }
 
 /// Everything that can be known to be wrong is told before the first frame, not hours later.
@@ -122,7 +129,8 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .oracle = wants_masks}));
   if (!arguments.out.empty())
-    prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv"}, arguments.force);
+    prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv"},
+                       arguments.force || arguments.resume);
   return sources;
 }
 
@@ -136,14 +144,18 @@ std::filesystem::path runs_folder(const std::string& out, std::string sequence,
   return std::filesystem::path(out) / name;
 }
 
+/// How many frames of a sequence are run. @param asked 0 = all
+int frames_of(const FrameSource& source, int asked) {
+  return asked > 0 ? std::min(asked, source.size()) : source.size();
+}
+
 /// @param records null where the run is not kept
 RunResult run_one(const FrameSource& source, const Config& config, int frames, RecordsWriter* records) {
   RunOptions options;
   options.count = frames;
   options.stop = &stop_requested();
   options.measure_orb_unit = true;
-  const int total = frames > 0 ? std::min(frames, source.size()) : source.size();
-  Progress progress(fmt::format("{} ({})", source.name(), run_label(config)), total);
+  Progress progress(fmt::format("{} ({})", source.name(), run_label(config)), frames_of(source, frames));
   options.on_frame = [&progress, records](const FrameResult& frame) {
     if (records != nullptr) records->add(frame);
     progress.advance(std::string(to_string(frame.record.status)));
@@ -187,35 +199,35 @@ void benchmark(BenchmarkArguments arguments) {
     benchmark_repeats(plan);
     return;
   }
-  std::vector<EngineRows> all;
-  for (const std::string& engine : arguments.engines) all.push_back({engine, {}});
-  std::vector<RunReport> reports;
+  BenchmarkResults results = made_here();
+  results.config = shared_config(config);
+  if (arguments.resume) results.runs = earlier_runs(arguments, config);
   std::set<std::string> taken;
   const std::vector<std::string> places = expanded_sequences(arguments.sequences);
-  for (std::size_t i = 0; i < sources.size(); ++i) {
+  for (std::size_t i = 0; i < sources.size() && !stop_requested(); ++i) {
     const auto& source = sources[i];
     std::optional<SequenceOrigin> origin;
     if (!arguments.out.empty()) origin = origin_of(*source, places[i], arguments.frames.options(config));
     const auto runs = runs_folder(arguments.out, source->name(), taken);
-    for (EngineRows& one : all) {
-      set_parameter(config, "run.odometry=" + one.engine);
-      one.rows.push_back({source->name(), {}});
+    const int frames = frames_of(*source, arguments.frames.frames);
+    for (const std::string& engine : arguments.engines)
       for (const std::string& method : arguments.methods) {
+        const BenchmarkResult* known = results.find(source->name(), engine, method);
+        if (stop_requested() || (known != nullptr && known->frames == frames)) continue;
+        if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
+        set_parameter(config, "run.odometry=" + engine);
         set_parameter(config, "run.method=" + method);
-        std::optional<RunReport> report =
-            run_and_keep(*source, config, arguments.frames.frames, runs, arguments.force, origin);
-        if (!report) break;
-        one.rows.back().cells.push_back(cell_of(*report));
-        reports.push_back(std::move(*report));
+        const std::optional<RunReport> report =
+            run_and_keep(*source, config, frames, runs, arguments.force || arguments.resume, origin);
+        if (!report) continue;
+        results.runs.push_back(result_of(*report));
+        // After each run, so that an interrupted benchmark keeps what it has.
+        if (!arguments.out.empty()) write_tables(results, arguments);
       }
-      if (stop_requested()) break;
-    }
-    // After each sequence, so that an interrupted benchmark keeps what it has.
-    if (!arguments.out.empty()) write_tables(arguments.out, all, arguments.methods, details_table(reports));
-    if (stop_requested()) break;
   }
+  if (!arguments.out.empty() && !results.runs.empty()) write_tables(results, arguments);
   fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
-             tables_text(all, arguments.methods), to_markdown(details_table(reports)));
+             tables_text(results, arguments), to_markdown(details_table(results)));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
   throw_if_interrupted();
 }
@@ -238,8 +250,13 @@ void add_benchmark_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option(
       "--out", arguments->out,
-      "Folder for the tables, as Markdown and CSV, and for SEQUENCE/METHOD folders of the runs");
+      "Folder for the tables, as Markdown, CSV and JSON, and for SEQUENCE/METHOD folders of the runs");
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
+  command
+      ->add_flag("--resume", arguments->resume,
+                 "Go on with the benchmark in the folder of --out: runs that it has are not made again")
+      ->needs("--out")
+      ->excludes("--force");
   command
       ->add_option(
           "--repeat", arguments->repeats,

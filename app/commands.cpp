@@ -7,6 +7,7 @@ void add_commands(CLI::App& app) {
   add_evaluate_command(app);
   add_check_command(app);
   add_benchmark_command(app);
+  add_tables_command(app);
   add_ablate_command(app);
   add_generate_command(app);
   add_motion_command(app);

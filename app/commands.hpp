@@ -19,6 +19,7 @@ void add_run_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
+void add_tables_command(CLI::App& app);
 void add_ablate_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);

@@ -4,11 +4,11 @@
 
 #include <filesystem>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/media/image_codec.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/open_run.hpp"
 #include "core/sequence/association.hpp"
@@ -39,9 +39,8 @@ void visit_frames(const OpenedRun& run, int every, const std::string& what, Visi
   }
 }
 
-void write_image(const fs::path& path, const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});
+void write_png(const fs::path& path, const cv::Mat& image) {
+  const std::vector<std::uint8_t> bytes = encode_png(image, 1);
   write_text_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
@@ -73,7 +72,7 @@ void export_dense(const DenseExport& wanted) {
   std::string table = "frame,filled_share,unknown_share\n";
   visit_frames(run, 1, "background", [&](const Frame& frame, const Pose& pose, const cv::Mat& mask) {
     const FilledFrame filled = filler.fill(frame, pose, mask);
-    write_image(fs::path(wanted.images) / fmt::format("{:06}.png", frame.index), filled.image);
+    write_png(fs::path(wanted.images) / fmt::format("{:06}.png", frame.index), filled.image);
     table += fmt::format(
         "{},{:.4f},{:.4f}\n", frame.index,
         static_cast<double>(cv::countNonZero(filled.filled)) / static_cast<double>(filled.filled.total()),

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/media/image_codec.hpp"
 
 namespace stillpoint {
 namespace {
@@ -196,7 +196,7 @@ cv::Mat draw_mask_overlay(const cv::Mat& colour, const cv::Mat& mask,
 void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   bool written = false;
   try {
-    written = !picture.empty() && cv::imwrite(path.string(), picture);
+    written = !picture.empty() && save_image(path, picture);
   } catch (const cv::Exception&) {
     written = false;
   }

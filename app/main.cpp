@@ -10,6 +10,7 @@
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "app/version.hpp"
 #include "core/error.hpp"
 #include "core/image_memory.hpp"
 
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
       "Stillpoint: a visual debugger for RGB-D and stereo visual odometry in scenes where things move",
       "stillpoint"};
   app.require_subcommand(0, 1);
+  app.set_version_flag("--version", stillpoint::version_text());
   stillpoint::add_commands(app);
   try {
     app.parse(argc, argv);

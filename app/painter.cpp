@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/media/image_codec.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {
@@ -134,10 +134,10 @@ void ImageWriter::finish() {
 }
 
 void write_image(const std::filesystem::path& path, const cv::Mat& image) {
-  // Fast rather than small, as OpenCV packs by itself: packing well would take longer than drawing.
+  // Fast rather than small: packing well would take longer than drawing.
   bool written = false;
   try {
-    written = cv::imwrite(path.string(), image);
+    written = save_image(path, image, 1);
   } catch (const cv::Exception&) {
   }
   std::error_code error;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
 
@@ -32,12 +31,8 @@ const Format* format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-struct VideoFile::Writer {
-  cv::VideoWriter video;
-};
-
 VideoFile::VideoFile(std::filesystem::path path, double frames_per_second, bool force)
-    : path_(std::move(path)), frames_per_second_(frames_per_second), writer_(std::make_unique<Writer>()) {
+    : path_(std::move(path)), frames_per_second_(frames_per_second), video_(media_module().video()) {
   if (format_of(path_) == nullptr)
     throw InputError(fmt::format("--video {}: a video's name ends in .mp4, .mkv or .avi", path_.string()));
   std::error_code failed;
@@ -48,12 +43,9 @@ VideoFile::VideoFile(std::filesystem::path path, double frames_per_second, bool 
     throw InputError(fmt::format("--video {}: is there already; --force overwrites it", path_.string()));
 }
 
-VideoFile::~VideoFile() = default;
-
 void VideoFile::begin(const cv::Size& size) {
   for (const std::string& codec : format_of(path_)->codecs) {
-    const int tag = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
-    if (writer_->video.open(path_.string(), cv::CAP_FFMPEG, tag, frames_per_second_, size)) return;
+    if (video_->open(path_.string(), codec, frames_per_second_, size)) return;
   }
   throw InputError(fmt::format(
       "--video {}: cannot be written (no permission, or OpenCV has no encoder for it)", path_.string()));
@@ -63,16 +55,13 @@ void VideoFile::add(const cv::Mat& image) {
   cv::Mat even;
   cv::copyMakeBorder(image, even, 0, image.rows % 2, 0, image.cols % 2, cv::BORDER_REPLICATE);
   if (images_ == 0) begin(even.size());
-  writer_->video.write(even);
+  video_->write(even);
   ++images_;
 }
 
 void VideoFile::finish() {
-  writer_->video.release();
-  cv::VideoCapture written(path_.string(), cv::CAP_FFMPEG);
-  int readable = 0;
-  while (readable < images_ && written.grab()) ++readable;
-  if (readable < images_)
+  video_->close();
+  if (media_module().readable_frames(path_.string(), images_) < images_)
     throw InputError(
         fmt::format("--video {}: could not be written whole (the disk is full?)", path_.string()));
 }

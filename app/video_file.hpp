@@ -4,6 +4,8 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "core/media/media_module.hpp"
+
 namespace stillpoint {
 
 /// A video being written, image after image: .mp4 and .mkv (H.264, or MPEG-4 where there is no encoder for
@@ -14,9 +16,6 @@ class VideoFile {
   /// @throws InputError for an ending it does not know, a folder that there is not, and a file that is there
   /// already while `force` is not set
   VideoFile(std::filesystem::path path, double frames_per_second, bool force);
-  ~VideoFile();
-  VideoFile(const VideoFile&) = delete;
-  VideoFile& operator=(const VideoFile&) = delete;
 
   /// @param image CV_8UC3 BGR, all of one size; an odd side is repeated to an even one
   /// @throws InputError when the file cannot be begun
@@ -27,13 +26,11 @@ class VideoFile {
   void finish();
 
  private:
-  struct Writer;
-
   void begin(const cv::Size& size);
 
   std::filesystem::path path_;
   double frames_per_second_;
-  std::unique_ptr<Writer> writer_;
+  std::unique_ptr<VideoSink> video_;
   int images_ = 0;
 };
 

@@ -15,4 +15,14 @@ std::filesystem::path assets_folder() {
   return STILLPOINT_SOURCE_ASSETS;
 }
 
+std::filesystem::path modules_folder() {
+  std::error_code none;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
+  if (!none) {
+    auto installed = program.parent_path().parent_path() / "lib" / "stillpoint";
+    if (std::filesystem::is_directory(installed, none)) return installed;
+  }
+  return STILLPOINT_BUILT_MODULES;
+}
+
 }  // namespace stillpoint

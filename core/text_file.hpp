@@ -42,7 +42,11 @@ struct TextLine {
 /// May be NaN or infinite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
-/// A foreign name without control characters, which become '?', so that a message that holds it stays one line.
+/// With the letters A to Z made small.
+[[nodiscard]] std::string lower_case(std::string text);
+
+/// A foreign name without control characters, which become '?', so that a message that holds it stays one
+/// line.
 [[nodiscard]] std::string printable(std::string name);
 
 /// A foreign text fit for an error message: in quotes, clipped, and without control characters.

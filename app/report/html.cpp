@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
+#include "core/media/image_codec.hpp"
 
 namespace stillpoint {
 namespace {
@@ -88,11 +88,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 
 std::string figure_html(const cv::Mat& picture, std::string_view caption, Packing packing) {
   const bool exact = packing == Packing::kExact;
-  std::vector<unsigned char> file;
-  if (exact)
-    cv::imencode(".png", picture, file, {cv::IMWRITE_PNG_COMPRESSION, 8});
-  else
-    cv::imencode(".jpg", picture, file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  const std::vector<unsigned char> file = exact ? encode_png(picture, 8) : encode_jpeg(picture, kJpegQuality);
   return fmt::format(
       "<figure><img src=\"data:image/{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
       "<figcaption>{}</figcaption></figure>\n",

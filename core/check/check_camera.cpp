@@ -10,9 +10,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kWorseResidual = 1.015;  // of the best camera's, to doubt the one that is used
-constexpr double kCertain = 4.0;          // standard errors
-constexpr double kFewestTracked = 0.85;   // of the frames, for a residual to mean anything
+constexpr double kWorseResidual = 1.015;         // of the best camera's, to doubt the one that is used
+constexpr double kCertain = 4.0;                 // standard errors
+constexpr double kFewestTrackedByCamera = 0.85;  // of the frames, for a residual to mean anything
 constexpr double kSameSides = 0.01;
 
 /// Frames at hand under another camera.
@@ -69,7 +69,7 @@ Excess excess_of(const Residuals& used, const Residuals& other) {
     excess.used_px += used[i], excess.other_px += other[i];
   }
   const ErrorStatistics s = statistics_of(ratios);
-  if (s.count < kFewestTracked * static_cast<double>(used.size()) || s.stddev <= 0) return {};
+  if (s.count < kFewestTrackedByCamera * static_cast<double>(used.size()) || s.stddev <= 0) return {};
   excess.ratio = s.mean;
   excess.certainty = (s.mean - 1.0) / (s.stddev / std::sqrt(s.count));
   excess.used_px /= s.count, excess.other_px /= s.count;

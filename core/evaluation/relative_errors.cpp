@@ -15,13 +15,11 @@
 namespace stillpoint {
 namespace {
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
 RelativeError relative_error(const MatchedPose& i, const MatchedPose& j) {
   const Pose truth_motion = i.truth.inverse() * j.truth;
   const Pose estimated_motion = i.estimate.inverse() * j.estimate;
   const Pose error = truth_motion.inverse() * estimated_motion;
-  return {i.timestamp, j.timestamp, error.translation().norm(), degrees(rotation_angle(error.linear()))};
+  return {i.timestamp, j.timestamp, error.translation().norm(), to_degrees(rotation_angle(error.linear()))};
 }
 
 void summarise(RelativePoseError& result, const std::string& why_none) {

@@ -12,12 +12,10 @@
 namespace stillpoint {
 namespace {
 
-constexpr const char* kNothing = "–";
-
 /// "0.0143 ± 0.0008", marked.
 std::string cell_text(const Spread& spread, bool best, bool second, TableMarkup markup) {
   const bool latex = markup == TableMarkup::latex;
-  if (spread.values.empty()) return latex ? "--" : kNothing;
+  if (spread.values.empty()) return latex ? "--" : kNoFigure;
   const double half = 0.5 * (spread.upper - spread.lower);
   std::string text = latex ? fmt::format("{:.4f} $\\pm$ {:.4f}", spread.median, half)
                            : fmt::format("{:.4f} ± {:.4f}", spread.median, half);
@@ -37,7 +35,7 @@ Table table_of(const std::vector<SpreadRow>& rows, const std::vector<std::string
     std::vector<std::string> cells = {row.sequence};
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       cells.push_back(cell_text(row.cells[i], ranking.best == i, ranking.second == i, markup));
-    cells.resize(table.header.size(), kNothing);
+    cells.resize(table.header.size(), kNoFigure);
     table.rows.push_back(std::move(cells));
   }
   return table;

@@ -10,9 +10,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr const char* kNothing = "–";
-constexpr double kLostCoverage = 0.5;  // share of frames with a pose
-
 /// Columns a text takes up: UTF-8 continuation bytes take none.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
@@ -29,18 +26,18 @@ std::string escaped_for_markdown(const std::string& text) {
 }
 
 std::string metres(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6f}", *value) : std::string(kNothing);
+  return value ? fmt::format("{:.6f}", *value) : std::string(kNoFigure);
 }
 
 std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string(kNothing);
+  return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string(kNoFigure);
 }
 
 std::string cell_text(const BenchmarkCell* cell) {
-  if (cell == nullptr) return kNothing;
+  if (cell == nullptr) return kNoFigure;
   // Lost is who has no pose to speak of; without ground truth, or over less than a second, there is just no
   // figure.
-  if (!cell->rpe_m) return cell->coverage < kLostCoverage ? "lost" : kNothing;
+  if (!cell->rpe_m) return cell->coverage < kLostCoverage ? "lost" : kNoFigure;
   if (cell->coverage >= 1.0) return metres(cell->rpe_m);
   // Rounded down, so that a frame lost never reads as 100 %.
   return fmt::format("{} ({:.1f} % of frames)", metres(cell->rpe_m),
@@ -69,7 +66,7 @@ struct GainColumn {
     return percent(gain);
   }
   [[nodiscard]] std::string mean() const {
-    if (gains.empty()) return kNothing;
+    if (gains.empty()) return kNoFigure;
     return percent(std::accumulate(gains.begin(), gains.end(), 0.0) / static_cast<double>(gains.size()));
   }
 };
@@ -168,7 +165,7 @@ Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::st
                                  published->ref7 ? metres(published->ref7) : "lost", metres(published->ref12),
                                  published_gain.add(1.0 - published->paper / published->orb_slam2_vo)});
     } else {
-      cells.insert(cells.end(), 5, kNothing);
+      cells.insert(cells.end(), 5, kNoFigure);
     }
     for (const std::string& method : methods) cells.push_back(cell_text(find_cell(row, method)));
     for (std::size_t i = 0; i < methods.size(); ++i)

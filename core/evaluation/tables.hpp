@@ -7,6 +7,12 @@
 
 namespace stillpoint {
 
+/// What a cell holds where there is nothing to tell.
+inline constexpr const char* kNoFigure = "–";
+
+/// A run in which a smaller share of the frames has a pose counts as lost.
+inline constexpr double kLostCoverage = 0.5;
+
 /// A table of texts; every row has as many cells as the header.
 struct Table {
   std::vector<std::string> header;

@@ -11,8 +11,6 @@
 namespace stillpoint {
 namespace {
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
 template <typename Error>
 std::vector<double> column(const std::vector<Error>& errors, double Error::*member) {
   std::vector<double> values;
@@ -131,7 +129,7 @@ AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched, 
   for (const MatchedPose& pose : matched) {
     const Pose aligned = result.alignment.truth_from_estimate * pose.estimate;
     result.errors.push_back({pose.timestamp, (aligned.translation() - pose.truth.translation()).norm(),
-                             degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
+                             to_degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
   }
   if (estimate.size() < needed) {
     result.why_none = fmt::format("{} matched pose(s), and an alignment needs {}", estimate.size(), needed);

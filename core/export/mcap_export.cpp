@@ -8,12 +8,12 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/export/foxglove_messages.hpp"
 #include "core/export/mcap_writer.hpp"
+#include "core/media/image_codec.hpp"
 #include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
@@ -46,11 +46,7 @@ void colour(MessageFields fields, const std::array<std::uint8_t, 3>& rgb) {
   fields.number("r", rgb[0] / kFull).number("g", rgb[1] / kFull).number("b", rgb[2] / kFull).number("a", 1.0);
 }
 
-std::string encoded(const char* format, const cv::Mat& image, const std::vector<int>& options) {
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(format, image, bytes, options);
-  return {bytes.begin(), bytes.end()};
-}
+std::string as_text(const std::vector<unsigned char>& bytes) { return {bytes.begin(), bytes.end()}; }
 
 /// Points as a PointCloud holds them: x, y, z as float, then red, green, blue.
 class PackedPoints {
@@ -249,23 +245,20 @@ void McapExport::add(const Frame& frame, const FrameRecord& record, const cv::Ma
   }
   if (frame.readable())
     channels_->image("/camera/colour", time, "jpeg",
-                     encoded(".jpg", frame.colour.empty() ? frame.gray : frame.colour,
-                             {cv::IMWRITE_JPEG_QUALITY, kJpegQuality}));
+                     as_text(encode_jpeg(frame.colour.empty() ? frame.gray : frame.colour, kJpegQuality)));
   if (frame.has_depth()) {
     cv::Mat millimetres;
     frame.depth.convertTo(millimetres, CV_16U, kMillimetres);
     channels_->raw("/camera/depth", time, "16UC1", millimetres);
   }
-  if (!mask.empty())
-    channels_->image("/camera/mask", time, "png", encoded(".png", mask, {cv::IMWRITE_PNG_COMPRESSION, 1}));
+  if (!mask.empty()) channels_->image("/camera/mask", time, "png", as_text(encode_png(mask, 1)));
   for (const Layer* layer : layers) {
     if (layer->image.empty()) continue;
     const LayerPicture picture = picture_of(*layer);
     if (picture.values)
       channels_->raw("/stages/" + layer->id, time, "32FC1", picture.pixels);
     else
-      channels_->image("/stages/" + layer->id, time, "png",
-                       encoded(".png", picture.pixels, {cv::IMWRITE_PNG_COMPRESSION, 1}));
+      channels_->image("/stages/" + layer->id, time, "png", as_text(encode_png(picture.pixels, 1)));
   }
   const auto annotations = make_foxglove_message("ImageAnnotations");
   annotate(record.features, features_before_, time, MessageFields(*annotations));

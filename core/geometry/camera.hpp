@@ -11,6 +11,9 @@
 
 namespace stillpoint {
 
+/// Points nearer to a camera than this are not projected into it.
+inline constexpr double kNearestProjected = 0.05;  // m
+
 /// A pinhole camera with Brown-Conrady distortion, and the scale of its depth images.
 ///
 /// Images are shown as they are; geometry uses undistorted pixels (Camera::undistort). The left camera of a

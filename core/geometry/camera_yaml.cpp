@@ -12,14 +12,10 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// The file as YAML 1.2 has it: OpenCV's first line, `%YAML:1.0`, is none.
 YAML::Node load(const std::string& path, std::string content) {
@@ -33,9 +29,9 @@ YAML::Node load(const std::string& path, std::string content) {
   }
 }
 
-class Reader {
+class YamlReader {
  public:
-  Reader(const std::string& path, std::string text) : path_(path), root_(load(path, std::move(text))) {
+  YamlReader(const std::string& path, std::string text) : path_(path), root_(load(path, std::move(text))) {
     if (!root_.IsMap()) throw InputError(fmt::format("{}: no camera file: no keys with values", path));
     camera_.name = path;
   }
@@ -130,7 +126,7 @@ class Reader {
 
   void read_orb_slam(const std::string& prefix) {
     if (const YAML::Node type = at("Camera.type"); type) {
-      const std::string name = lower(type.as<std::string>(""));
+      const std::string name = lower_case(type.as<std::string>(""));
       if (name != "pinhole" && name != "rectified" && name != "perspective")
         throw InputError(
             fmt::format("{}: Camera.type is {}, and only PinHole is read", path_, type.as<std::string>("")));
@@ -164,7 +160,8 @@ class Reader {
   }
 
   void read_intrinsics(const YAML::Node& node) {
-    if (const YAML::Node model = node["camera_model"]; model && lower(model.as<std::string>("")) != "pinhole")
+    if (const YAML::Node model = node["camera_model"];
+        model && lower_case(model.as<std::string>("")) != "pinhole")
       throw InputError(
           fmt::format("{}: camera_model is {}, and only pinhole is read", path_, model.as<std::string>("")));
     const auto intrinsics = numbers(node["intrinsics"], "intrinsics", 4);
@@ -196,7 +193,7 @@ class Reader {
   void check_distortion_model(const YAML::Node& node) const {
     const YAML::Node model = node["distortion_model"];
     if (!model) return;
-    const std::string name = lower(model.as<std::string>(""));
+    const std::string name = lower_case(model.as<std::string>(""));
     for (const char* known : {"radtan", "radial-tangential", "plumb_bob", "none", ""})
       if (name == known) return;
     throw InputError(fmt::format("{}: distortion_model is {}, and only radial-tangential distortion is read",
@@ -230,7 +227,7 @@ Camera read_yaml_camera(const std::string& path) {
 
 Camera read_yaml_camera_text(const std::string& path, std::string text) {
   try {
-    return Reader(path, std::move(text)).read();
+    return YamlReader(path, std::move(text)).read();
   } catch (const YAML::Exception& error) {
     throw InputError(
         fmt::format("{}:{}: not a readable camera file: {}", path, error.mark.line + 1, error.msg));
@@ -239,7 +236,7 @@ Camera read_yaml_camera_text(const std::string& path, std::string text) {
 
 Pose read_yaml_body_from_sensor(const std::string& path, std::string text) {
   try {
-    return Reader(path, std::move(text)).body_from_sensor();
+    return YamlReader(path, std::move(text)).body_from_sensor();
   } catch (const YAML::Exception& error) {
     throw InputError(
         fmt::format("{}:{}: not a readable camera file: {}", path, error.mark.line + 1, error.msg));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <numbers>
 
 namespace stillpoint {
 
@@ -28,6 +29,9 @@ Vector6d se3_log(const Pose& pose);
 
 /// The angle of a rotation, in radians, 0 to pi.
 double rotation_angle(const Eigen::Matrix3d& rotation);
+
+/// @param radians an angle
+[[nodiscard]] inline double to_degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 /// The pose with its rotation made orthonormal again, after many products.
 Pose normalised(const Pose& pose);

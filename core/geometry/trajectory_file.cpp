@@ -37,9 +37,10 @@ struct ReadPose {
 /// Why a row holds no pose.
 enum class Fault { none, columns, number, not_finite, quaternion };
 
-class Reader {
+class TrajectoryReader {
  public:
-  Reader(const std::string& path, std::string_view text, std::optional<QuaternionOrder> order) : path_(path) {
+  TrajectoryReader(const std::string& path, std::string_view text, std::optional<QuaternionOrder> order)
+      : path_(path) {
     std::vector<TextLine> comments;
     lines_ = text_lines(text, &comments);
     layout_ = find_layout(lines_, comments);
@@ -190,12 +191,12 @@ class Reader {
 }  // namespace
 
 TrajectoryFile read_trajectory_file(const std::string& path, std::optional<QuaternionOrder> order) {
-  return Reader(path, read_text(path), order).read();
+  return TrajectoryReader(path, read_text(path), order).read();
 }
 
 TrajectoryFile read_trajectory_text(const std::string& path, std::string_view text,
                                     std::optional<QuaternionOrder> order) {
-  return Reader(path, text, order).read();
+  return TrajectoryReader(path, text, order).read();
 }
 
 }  // namespace stillpoint

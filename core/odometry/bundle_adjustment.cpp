@@ -82,10 +82,9 @@ class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
     const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Quaterniond>(parameters[0]).toRotationMatrix();
     const Eigen::Map<const Eigen::Vector3d> t(parameters[0] + 4), point(parameters[1]);
     const Eigen::Vector3d p = rotation * point + t;
-    constexpr double kNearest = 0.05;  // m: nearer or behind, the step is refused
     if (outlier_ != 0) {
       residual.setZero();
-    } else if (p.z() < kNearest) {
+    } else if (p.z() < kNearestProjected) {
       return false;
     } else {
       const double weight = std::sqrt(edge_.static_weight) / edge_.sigma_px, iz = 1.0 / p.z();

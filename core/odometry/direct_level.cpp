@@ -8,8 +8,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNearest = 0.1;     // m
-constexpr double kLeastNoise = 1.0;  // grey levels: images are rounded to whole ones
+constexpr double kNearestAligned = 0.1;  // m
+constexpr double kLeastNoise = 1.0;      // grey levels: images are rounded to whole ones
 constexpr int kHalf = DirectLevel::kSide / 2;
 
 /// A CV_8UC1 image between its pixels, over a square block; the block lies inside.
@@ -76,13 +76,13 @@ DirectLevel::DirectLevel(const std::vector<PatchPoint>& patches, const cv::Mat& 
 
 bool DirectLevel::place(const Eigen::Vector3d& in_target, const Vector6d& velocity, cv::Point2f& full) const {
   Eigen::Vector3d p = in_target;
-  if (p.z() < kNearest) return false;
+  if (p.z() < kNearestAligned) return false;
   Eigen::Vector2d pixel = camera_.has_distortion() ? camera_.distort(camera_.project(p)) : camera_.project(p);
   if (camera_.readout_s != 0.0) {
     // Where its row, exposed before or after the middle one, shows it.
     const double after_middle = ((pixel.y() + 0.5) / camera_.height - 0.5) * camera_.readout_s;
     p += after_middle * (velocity.head<3>() + velocity.tail<3>().cross(p));
-    if (p.z() < kNearest) return false;
+    if (p.z() < kNearestAligned) return false;
     pixel = camera_.has_distortion() ? camera_.distort(camera_.project(p)) : camera_.project(p);
   }
   full = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};

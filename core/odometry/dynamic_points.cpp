@@ -8,13 +8,12 @@ int remove_dynamic_points(LocalMap& map, const cv::Mat& depth, const cv::Mat& ma
                           const Config& config) {
   constexpr double kLikeDepth =
       0.1;  // m: the point lies on what is dynamic or before it, where nothing is now
-  constexpr double kNearest = 0.05;  // m: nearer points are not projected
   if (mask.empty() || depth.empty() || map.keyframes().empty()) return 0;
   int removed = 0;
   // Not only what the last frame showed: what has gone on meanwhile stays behind in the map.
   for (const int id : local_points(map, {}, about, config.map.max_local_keyframes)) {
     const Eigen::Vector3d p = camera_from_world * map.point(id).position;
-    if (p.z() < kNearest) continue;
+    if (p.z() < kNearestProjected) continue;
     const Eigen::Vector2d pixel = camera.distort(camera.project(p));
     const int x = cvRound(pixel.x()), y = cvRound(pixel.y());
     if (x < 0 || y < 0 || x >= mask.cols || y >= mask.rows || mask.at<uchar>(y, x) == 0) continue;

@@ -109,15 +109,14 @@ class PoseProblem {
   };
 
   [[nodiscard]] Residual residual(const Block& block, const Pose& pose) const {
-    constexpr double kNearest = 0.05;  // m
     const auto& m = pose.matrix();
     const auto& p = block.point;
     Residual r;
     r.x = m(0, 0) * p[0] + m(0, 1) * p[1] + m(0, 2) * p[2] + m(0, 3);
     r.y = m(1, 0) * p[0] + m(1, 1) * p[1] + m(1, 2) * p[2] + m(1, 3);
     r.z = m(2, 0) * p[0] + m(2, 1) * p[1] + m(2, 2) * p[2] + m(2, 3);
-    for (std::size_t k = 0; k < kLanes; ++k) r.in_front[k] = r.z[k] > kNearest ? 1.0 : 0.0;
-    for (std::size_t k = 0; k < kLanes; ++k) r.inverse_z[k] = 1.0 / std::max(r.z[k], kNearest);
+    for (std::size_t k = 0; k < kLanes; ++k) r.in_front[k] = r.z[k] > kNearestProjected ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < kLanes; ++k) r.inverse_z[k] = 1.0 / std::max(r.z[k], kNearestProjected);
     r.by_u = block.weight * (camera_.fx * r.x * r.inverse_z + camera_.cx - block.u);
     r.by_v = block.weight * (camera_.fy * r.y * r.inverse_z + camera_.cy - block.v);
     r.by_depth = block.depth_weight * (block.inverse_depth - r.inverse_z);

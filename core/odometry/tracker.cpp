@@ -9,7 +9,6 @@ namespace stillpoint {
 namespace {
 
 constexpr int kMinModelInliers = 10;  // matches that must agree before the motion model's pose is believed
-constexpr double kNearest = 0.05;     // m: nearer points are not projected
 
 }  // namespace
 
@@ -36,7 +35,7 @@ std::vector<Candidate> Tracker::points_of_last(const LocalMap& map, const Pose& 
     const int id = last.points[i];
     if (id == kNone || !map.has_point(id)) continue;
     const Eigen::Vector3d p = predicted * map.point(id).position;
-    if (p.z() < kNearest) continue;
+    if (p.z() < kNearestProjected) continue;
     const Eigen::Vector2d pixel = camera_.project(p);
     if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= camera_.width || pixel.y() >= camera_.height) continue;
     const cv::KeyPoint& seen = last.features->keypoints[i];

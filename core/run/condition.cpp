@@ -25,12 +25,13 @@ struct Condition::Node {
 
 namespace {
 
+constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
+
 using Node = Condition::Node;
 using NodePtr = std::shared_ptr<const Node>;
 using enum FigureUnit;
 using condition_words::fail, condition_words::Kind, condition_words::Token;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSpikeWindow = 60, kSpikeLeast = 8;  // frames
 constexpr int kMaxDepth = 60;                      // of parentheses in each other
 
@@ -195,7 +196,7 @@ class Parser {
       left = node(unit, between.column, [divides, a = left, b = right](const FrameFigures& f, int row) {
         const double x = a->value(f, row), y = b->value(f, row);
         if (!divides) return x * y;
-        return y == 0.0 ? kUnknown : x / y;
+        return y == 0.0 ? kUnknownValue : x / y;
       });
     }
     return left;
@@ -287,7 +288,7 @@ class Parser {
       });
     const bool change = name.text == "change";
     return node(x->unit, column, [x, change](const FrameFigures& f, int row) {
-      if (row == 0) return kUnknown;
+      if (row == 0) return kUnknownValue;
       const double before = x->value(f, row - 1);
       return change ? x->value(f, row) - before : before;
     });

@@ -8,17 +8,18 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameTime = 1e-6;  // s
 
 double flag(bool is) { return is ? 1.0 : 0.0; }
-double known(const std::optional<double>& value) { return value.value_or(kUnknown); }
-double of_pose(const MeasuredFrame& row, double value) { return row.record.estimated ? value : kUnknown; }
-double of_image(const MeasuredFrame& row, double value) {
-  return row.record.status == FrameStatus::unreadable ? kUnknown : value;
+double known(const std::optional<double>& value) { return value.value_or(kUnknownFigure); }
+double of_pose(const MeasuredFrame& row, double value) {
+  return row.record.estimated ? value : kUnknownFigure;
 }
-double of_scores(const MeasuredFrame& row, double value) { return row.scores.known ? value : kUnknown; }
-double time(double ms) { return ms > 0.0 ? ms : kUnknown; }  // 0: not measured
+double of_image(const MeasuredFrame& row, double value) {
+  return row.record.status == FrameStatus::unreadable ? kUnknownFigure : value;
+}
+double of_scores(const MeasuredFrame& row, double value) { return row.scores.known ? value : kUnknownFigure; }
+double time(double ms) { return ms > 0.0 ? ms : kUnknownFigure; }  // 0: not measured
 
 /// The error of the motion that ends at the record, or null. @param errors in order of time
 const RelativeError* motion_error(const std::vector<RelativeError>& errors, const FrameRecord& record) {
@@ -29,25 +30,25 @@ const RelativeError* motion_error(const std::vector<RelativeError>& errors, cons
 }
 
 double rpe_frame(const MeasuredFrame& row, double RelativeError::*part) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknown;
+  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
   const RelativeError* error = motion_error(row.evaluation->rpe_frame.errors, row.record);
-  return error == nullptr ? kUnknown : error->*part;
+  return error == nullptr ? kUnknownFigure : error->*part;
 }
 
 double rpe_second(const MeasuredFrame& row, double RelativeError::*part) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknown;
+  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
   const RelativeError* error = motion_error(row.evaluation->rpe_time.errors, row.record);
-  return error == nullptr ? kUnknown : error->*part;
+  return error == nullptr ? kUnknownFigure : error->*part;
 }
 
 double ate(const MeasuredFrame& row) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknown;
+  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
   const auto& errors = row.evaluation->ate.errors;
   const auto at =
       std::lower_bound(errors.begin(), errors.end(), row.record.timestamp - kSameTime,
                        [](const AbsoluteError& error, double stamp) { return error.timestamp < stamp; });
   return at != errors.end() && at->timestamp < row.record.timestamp + kSameTime ? at->translation_m
-                                                                                : kUnknown;
+                                                                                : kUnknownFigure;
 }
 
 std::vector<FrameFigure> all_figures() {
@@ -216,7 +217,9 @@ std::vector<FrameFigure> all_figures() {
         .worse = high,
         .title = "Residual",
         .column = "rms_px"},
-       [](const MeasuredFrame& r) { return r.record.inliers > 0 ? of_pose(r, r.record.rms_px) : kUnknown; }},
+       [](const MeasuredFrame& r) {
+         return r.record.inliers > 0 ? of_pose(r, r.record.rms_px) : kUnknownFigure;
+       }},
       count("refine_iterations", "Refinement steps", "", "steps the refinement of the pose took",
             [](const MeasuredFrame& r) { return double(r.record.refine_iterations); }),
       is_status("wide_search", "the motion model's window was too small",
@@ -253,7 +256,7 @@ std::vector<FrameFigure> all_figures() {
         .worse = high,
         .title = "Bundle before"},
        [](const MeasuredFrame& r) {
-         return r.record.bundle_iterations > 0 ? r.record.bundle_rms_before_px : kUnknown;
+         return r.record.bundle_iterations > 0 ? r.record.bundle_rms_before_px : kUnknownFigure;
        }},
       {{.name = "bundle_rms_px",
         .unit = pixels,
@@ -261,7 +264,7 @@ std::vector<FrameFigure> all_figures() {
         .worse = high,
         .title = "Bundle residual"},
        [](const MeasuredFrame& r) {
-         return r.record.bundle_iterations > 0 ? r.record.bundle_rms_px : kUnknown;
+         return r.record.bundle_iterations > 0 ? r.record.bundle_rms_px : kUnknownFigure;
        }},
       count("bundle_iterations", "Bundle steps", "", "steps that bundle adjustment took",
             [](const MeasuredFrame& r) { return double(r.record.bundle_iterations); }),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
@@ -9,6 +10,9 @@
 #include "core/run/removal_errors.hpp"
 
 namespace stillpoint {
+
+/// What a figure is where it is not known.
+inline constexpr double kUnknownFigure = std::numeric_limits<double>::quiet_NaN();
 
 /// All that is known of one frame of a run.
 struct MeasuredFrame {

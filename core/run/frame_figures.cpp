@@ -12,14 +12,13 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// A figure of one frame; NaN where it is not known.
 double value_of(const FrameFigure& figure, const MeasuredFrame& row) {
-  if (figure.of_removal && row.removal == nullptr) return kUnknown;
+  if (figure.of_removal && row.removal == nullptr) return kUnknownFigure;
   if (figure.of != nullptr) return figure.of(row);
   for (const MotionFigure& one : row.record.motion_figures)
     if (one.name == figure.info.name) return one.value;
-  return kUnknown;
+  return kUnknownFigure;
 }
 
 using RemovalErrors = std::unordered_map<int, RemovalError>;  // by the frame's index

@@ -9,6 +9,9 @@ namespace stillpoint {
 /// figure.
 inline constexpr double kAssociationTolerance = 0.02;  // s
 
+/// A frame's true pose is interpolated between poses that are no farther apart than this.
+inline constexpr double kTruthMaxGap = 0.05;  // s
+
 /// Indices into two lists of stamps that belong together.
 struct AssociatedPair {
   std::size_t first = 0, second = 0;

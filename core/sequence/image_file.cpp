@@ -11,10 +11,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <vector>
+
+#include "core/media/image_codec.hpp"
 
 namespace stillpoint {
 namespace {
@@ -135,11 +136,11 @@ ImageRead decode_image(const std::string& path, Bytes bytes) {
       fault = "is truncated";
     }
     if (fault.empty()) {
-      // The orientation tag is ignored by IMREAD_UNCHANGED, as it must be: calibrations speak of stored
+      // The orientation tag is ignored, as it must be: calibrations speak of stored
       // pixels.
       fault = other_format(bytes);
       result.is_other_format = !fault.empty();
-      if (fault.empty()) result.image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
+      if (fault.empty()) result.image = decode_pixels(bytes);
       if (fault.empty() && result.image.empty()) fault = "is no image that can be decoded";
     }
     if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);

@@ -31,8 +31,7 @@ double read_stamp(const std::string& path, int line, std::string_view text, cons
 
 /// Whether a first line names columns instead of filling them.
 bool is_header(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = lower_case(std::string(text));
   const auto columns = split_columns(lower);
   if (columns.empty() || parse_number(columns[0])) return false;
   return lower.find("time") != std::string::npos || lower.find("stamp") != std::string::npos ||

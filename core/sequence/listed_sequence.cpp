@@ -16,8 +16,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kTruthMaxGap =
-    0.05;  // s, between the ground-truth poses a frame's pose is interpolated from
 constexpr double kFewestJoined = 0.7;                     // of the colour images with depth; fewer are told
 constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
 constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted

@@ -9,12 +9,12 @@
 #include <exception>
 #include <fstream>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <thread>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/media/image_codec.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/stereo/write_stereo.hpp"
@@ -49,9 +49,8 @@ void write_bytes(const fs::path& path, const void* bytes, std::size_t size) {
 
 void write_png(const fs::path& path, const cv::Mat& image) {
   // Noise hardly packs better at higher levels, and packing must keep up with rendering.
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
-    throw InputError(fmt::format("{} cannot be packed as PNG", path.string()));
+  const std::vector<std::uint8_t> bytes = encode_png(image, 1);
+  if (bytes.empty()) throw InputError(fmt::format("{} cannot be packed as PNG", path.string()));
   write_bytes(path, bytes.data(), bytes.size());
 }
 

@@ -17,18 +17,12 @@
 #include "core/motion/stillpoint/stillpoint_config.hpp"
 #include "core/run/run_report.hpp"
 #include "core/stopwatch.hpp"
+#include "tests/support/resident_memory.hpp"
 #include "ui/session/session.hpp"
 
 namespace {
 
 using namespace stillpoint;
-
-/// Resident prior of this process, MB.
-double resident_mb() {
-  long pages = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> pages >> resident;
-  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
-}
 
 void tell(const std::string& what, std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());

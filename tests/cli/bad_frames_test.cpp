@@ -11,8 +11,8 @@
 namespace stillpoint {
 namespace {
 
-using testing::AnyOf;
-using testing::HasSubstr;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
 
 constexpr int kFrames = 8, kFault = 4;
 
@@ -62,7 +62,7 @@ const std::vector<Fault> kFaults = {
      "tracked", "depth/4.png is 64x48 px, but its colour image is 320x240 px"},
 };
 
-class MidSequence : public testing::TestWithParam<std::tuple<const char*, Fault>> {};
+class MidSequence : public ::testing::TestWithParam<std::tuple<const char*, Fault>> {};
 
 TEST_P(MidSequence, MarksTheFrameAndGoesOn) {
   const auto& [method, fault] = GetParam();
@@ -89,14 +89,14 @@ TEST_P(MidSequence, MarksTheFrameAndGoesOn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, MidSequence,
-                         testing::Combine(testing::Values("none", "paper", "stillpoint"),
-                                          testing::ValuesIn(kFaults)),
+                         ::testing::Combine(::testing::Values("none", "paper", "stillpoint"),
+                                            ::testing::ValuesIn(kFaults)),
                          [](const auto& tested) {
                            return std::string(std::get<1>(tested.param).name) + "_" +
                                   std::get<0>(tested.param);
                          });
 
-class Frames : public testing::Test {
+class Frames : public ::testing::Test {
  protected:
   [[nodiscard]] static CliResult run(const SmallSequence& sequence) {
     return run_cli({"run", sequence.path(), "--method", "paper", "--out", sequence.path("out")});
@@ -128,7 +128,7 @@ TEST_F(Frames, AMapBeginsAtTheFirstFrameThatIsFit) {
   sequence.folder.write(sequence.depth(1), image(CV_16UC1, 0));
   EXPECT_EQ(run(sequence).exit_code, 0);
   EXPECT_THAT(statuses(sequence),
-              testing::ElementsAre("lost", "lost", "initialised", "tracked", "tracked", "tracked"));
+              ::testing::ElementsAre("lost", "lost", "initialised", "tracked", "tracked", "tracked"));
 }
 
 TEST_F(Frames, ADamagedLastFrameIsMarked) {
@@ -142,7 +142,7 @@ TEST_F(Frames, OneFrameIsASequence) {
   const SmallSequence sequence(1);
   const CliResult result = run(sequence);
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(statuses(sequence), testing::ElementsAre("initialised"));
+  EXPECT_THAT(statuses(sequence), ::testing::ElementsAre("initialised"));
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory.txt")), 1U);
 }
 
@@ -150,7 +150,7 @@ TEST_F(Frames, TwoFramesAreASequence) {
   const SmallSequence sequence(2);
   const CliResult result = run(sequence);
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(statuses(sequence), testing::ElementsAre("initialised", "tracked"));
+  EXPECT_THAT(statuses(sequence), ::testing::ElementsAre("initialised", "tracked"));
 }
 
 TEST_F(Frames, NoFrameThatCanBeTrackedIsAFailureThatKeepsItsData) {
@@ -159,7 +159,7 @@ TEST_F(Frames, NoFrameThatCanBeTrackedIsAFailureThatKeepsItsData) {
   const CliResult result = run(sequence);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("no frame could be tracked (only 0 features with depth"));
-  EXPECT_THAT(statuses(sequence), testing::ElementsAre("lost", "lost", "lost"));
+  EXPECT_THAT(statuses(sequence), ::testing::ElementsAre("lost", "lost", "lost"));
   EXPECT_EQ(sequence.folder.read("out/trajectory.txt"), "");
 }
 
@@ -183,7 +183,7 @@ TEST_F(Frames, UnsortedAndRepeatedStampsAreMendedWithAWarning) {
   EXPECT_THAT(result.err, HasSubstr("warning: "));
   EXPECT_THAT(result.err, HasSubstr("rgb.txt:3: "));
   EXPECT_THAT(result.err, HasSubstr("rgb.txt:4: "));
-  EXPECT_THAT(statuses(sequence), testing::ElementsAre("initialised", "tracked", "tracked", "tracked"));
+  EXPECT_THAT(statuses(sequence), ::testing::ElementsAre("initialised", "tracked", "tracked", "tracked"));
   const auto rows = csv_rows(sequence.folder.read("out/frames.csv"));
   EXPECT_LT(std::stod(rows[1].at("timestamp_s")), std::stod(rows[2].at("timestamp_s")));
 }

@@ -11,10 +11,10 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Both commands that run a method over a sequence.
-class Start : public testing::TestWithParam<const char*> {
+class Start : public ::testing::TestWithParam<const char*> {
  protected:
   [[nodiscard]] CliResult start(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {GetParam(), sequence.path()};
@@ -134,10 +134,10 @@ TEST_P(Start, OutFoldersWithoutRights) {
   expect_one_sentence(start({"--out", sequence.path("closed")}), "closed: the folder cannot be written to");
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Start, testing::Values("run", "benchmark"),
+INSTANTIATE_TEST_SUITE_P(Commands, Start, ::testing::Values("run", "benchmark"),
                          [](const auto& tested) { return std::string(tested.param); });
 
-class BadStart : public testing::Test {
+class BadStart : public ::testing::Test {
  protected:
   SmallSequence sequence{2};
 };

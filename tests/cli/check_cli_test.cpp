@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(CheckCommand, HasStatusZeroAndNothingToSayOfASoundFolder) {
   const SmallSequence sequence(8);

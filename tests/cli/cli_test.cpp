@@ -9,11 +9,11 @@
 namespace stillpoint {
 namespace {
 
-using testing::ContainsRegex;
-using testing::HasSubstr;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
 
 /// Ground truth at 1 m/s along x and an estimate at 1.1 m/s, 3 s at 10 Hz.
-class Evaluate : public testing::Test {
+class Evaluate : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string truth, estimate;

@@ -12,13 +12,13 @@
 namespace stillpoint {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-constexpr int kFrames = 8;
+constexpr int kInputFrames = 8;
 
-class Input : public testing::Test {
+class Input : public ::testing::Test {
  protected:
   [[nodiscard]] CliResult run(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {"run",   sequence.path(),      "--method", "none",
@@ -28,18 +28,18 @@ class Input : public testing::Test {
   }
   void write_truth(const std::function<std::string(int)>& row) const {
     std::string text;
-    for (int i = 0; i < kFrames; ++i) text += row(i) + "\n";
+    for (int i = 0; i < kInputFrames; ++i) text += row(i) + "\n";
     sequence.folder.write("groundtruth.txt", text);
   }
   [[nodiscard]] nlohmann::json summary() const {
     return nlohmann::json::parse(sequence.folder.read("out/summary.json"));
   }
-  SmallSequence sequence{kFrames};
+  SmallSequence sequence{kInputFrames};
 };
 
 TEST_F(Input, NumberedFoldersRunAndAreEvaluatedByEveryRoute) {
   std::string rgb, depth;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kInputFrames; ++i) {
     rgb += fmt::format("{} {}\n", i, sequence.colour(i));
     depth += fmt::format("{} {}\n", i, sequence.depth(i));
   }
@@ -51,11 +51,11 @@ TEST_F(Input, NumberedFoldersRunAndAreEvaluatedByEveryRoute) {
   });
   const CliResult result = run();
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(summary()["evaluation"]["matched"], kFrames);
+  EXPECT_EQ(summary()["evaluation"]["matched"], kInputFrames);
   const double ate = summary()["evaluation"]["ate"]["translation_m"]["rmse"];
   EXPECT_LT(ate, 0.005);
   std::string numbered;
-  for (int i = 0; i < kFrames; ++i) numbered += fmt::format("{} {:.6f} 0 0 0 0 0 1\n", i, 0.0115385 * i);
+  for (int i = 0; i < kInputFrames; ++i) numbered += fmt::format("{} {:.6f} 0 0 0 0 0 1\n", i, 0.0115385 * i);
   sequence.folder.write("numbered.txt", numbered);
   for (const std::string truth : {"", "groundtruth.txt"})
     for (const std::string estimate : {"out/trajectory.txt", "numbered.txt"}) {
@@ -63,7 +63,7 @@ TEST_F(Input, NumberedFoldersRunAndAreEvaluatedByEveryRoute) {
           run_cli({"evaluate", sequence.path(truth), sequence.path(estimate), "--json"});
       EXPECT_EQ(evaluated.exit_code, 0) << evaluated.err;
       const auto json = nlohmann::json::parse(evaluated.out);
-      EXPECT_EQ(json["matched"], kFrames) << truth << " " << estimate;
+      EXPECT_EQ(json["matched"], kInputFrames) << truth << " " << estimate;
       if (estimate != "numbered.txt") {
         EXPECT_NEAR(json["ate"]["translation_m"]["rmse"].get<double>(), ate, 1e-6);
       }
@@ -75,7 +75,7 @@ TEST_F(Input, NumberedFoldersRunAndAreEvaluatedByEveryRoute) {
 
 TEST_F(Input, AnEstimateThatCountsFramesMeetsTheFolder) {
   std::string numbered;
-  for (int i = 0; i < kFrames; ++i) numbered += fmt::format("{} {:.6f} 0 0 0 0 0 1\n", i, 0.0115385 * i);
+  for (int i = 0; i < kInputFrames; ++i) numbered += fmt::format("{} {:.6f} 0 0 0 0 0 1\n", i, 0.0115385 * i);
   sequence.folder.write("numbered.txt", numbered);
   const CliResult result = run_cli({"evaluate", sequence.path(), sequence.path("numbered.txt")});
   EXPECT_THAT(result.out, HasSubstr("Matched   8 of 8"));
@@ -110,7 +110,7 @@ TEST_F(Input, TruthOfNoUseIsNotNoTruth) {
 }
 
 TEST_F(Input, DepthOfAnotherKindIsRefusedBeforeTheRun) {
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kInputFrames; ++i)
     sequence.folder.write(sequence.depth(i),
                           cv::Mat(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1, cv::Scalar(80)));
   expect_one_sentence(run(), "its depth is of no use: ");
@@ -130,7 +130,7 @@ TEST_F(Input, FramesThatLackedDepthAreToldAtTheEnd) {
 
 TEST_F(Input, MillimetresAreQuestionedBeforeAndTheScaleIsNamedAfter) {
   cv::Mat depth(SmallSequence::kHeight, SmallSequence::kWidth, CV_16UC1, cv::Scalar(1500));
-  for (int i = 0; i < kFrames; ++i) sequence.folder.write(sequence.depth(i), depth);
+  for (int i = 0; i < kInputFrames; ++i) sequence.folder.write(sequence.depth(i), depth);
   const CliResult result = run();
   EXPECT_THAT(result.err, HasSubstr("`--depth-scale 1000` reads it so"));
   const CliResult told = run({"--depth-scale", "1000"});
@@ -141,7 +141,7 @@ TEST_F(Input, MillimetresAreQuestionedBeforeAndTheScaleIsNamedAfter) {
 
 TEST_F(Input, MasksOfNoUseStopTheOracleAlone) {
   std::string list;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kInputFrames; ++i) {
     sequence.folder.write(
         fmt::format("mask/{}.png", i),
         cv::Mat(SmallSequence::kHeight / 2, SmallSequence::kWidth / 2, CV_8UC1, cv::Scalar(0)));

@@ -13,18 +13,18 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-constexpr int kFrames = 8;
+constexpr int kMcapFrames = 8;
 
-class Mcap : public testing::Test {
+class Mcap : public ::testing::Test {
  protected:
   Mcap() {
     const CliResult run = run_cli({"run", sequence.path(), "--method", "paper", "--out", sequence.path("run"),
                                    "--mcap", sequence.path("beside.mcap")});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
-  SmallSequence sequence{kFrames};
+  SmallSequence sequence{kMcapFrames};
 };
 
 TEST_F(Mcap, BesideTheRunAndAfterwardsAreTheSame) {
@@ -63,10 +63,10 @@ TEST_F(Mcap, TheFormatsOwnReaderFindsEverything) {
       0);
   const auto topics = nlohmann::json::parse(sequence.folder.read("found"));
   for (const char* topic : {"/camera/colour", "/camera/depth", "/camera/features", "/features", "/figures"})
-    EXPECT_EQ(topics[topic]["count"], kFrames) << topic;
-  EXPECT_EQ(topics["/tf"]["count"], 2 * kFrames);
+    EXPECT_EQ(topics[topic]["count"], kMcapFrames) << topic;
+  EXPECT_EQ(topics["/tf"]["count"], 2 * kMcapFrames);
   EXPECT_EQ(topics["/tf"]["schema"], "foxglove.FrameTransforms");
-  EXPECT_EQ(topics["/stages/difference"]["count"], kFrames - 1);
+  EXPECT_EQ(topics["/stages/difference"]["count"], kMcapFrames - 1);
   EXPECT_EQ(topics["/camera/colour"]["first"].get<double>(), 100e9);
 }
 

@@ -138,7 +138,7 @@ TEST_F(MotionCommand, CsvRowsHaveAsManyFieldsAsTheirHeading) {
     EXPECT_EQ(fields, std::count(heading.begin(), heading.end(), ',') + 1) << row;
     EXPECT_FALSE(quoted) << row;
   }
-  EXPECT_THAT(folder_.read("out/motion.csv"), testing::HasSubstr("a, \"\"left\"\".png\","));
+  EXPECT_THAT(folder_.read("out/motion.csv"), ::testing::HasSubstr("a, \"\"left\"\".png\","));
 }
 
 TEST_F(MotionCommand, ColourImagesAndOtherFormatsWork) {
@@ -261,7 +261,7 @@ TEST_F(MotionCommand, MethodsThatNeedMoreThanImagesAreRefused) {
     const CliResult ended = pair("a.png", "b.png", {"--method", method});
     expect_one_sentence(ended, method);
     for (const char* other : {"paper", "epipolar", "stillpoint"})
-      EXPECT_THAT(ended.err, testing::HasSubstr(other));
+      EXPECT_THAT(ended.err, ::testing::HasSubstr(other));
   }
   for (const char* method : {"epipolar", "stillpoint"})
     expect_one_sentence(pair("a.png", "b.png", {"--method", method}),
@@ -274,7 +274,7 @@ TEST_F(MotionCommand, ImagesWithoutTextureEndWellWithANote) {
     folder_.write("blank.png", cv::Mat(cv::Mat::zeros(size, CV_8UC3)));
     const CliResult ended = pair("blank.png", "blank.png", {"--force"});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
-    EXPECT_THAT(ended.out, testing::HasSubstr("no mask"));
+    EXPECT_THAT(ended.out, ::testing::HasSubstr("no mask"));
     EXPECT_FALSE(fs::exists(folder_.path("out/union_mask.png")));
     EXPECT_FALSE(fs::exists(folder_.path("out/mask.png")));
   }
@@ -324,8 +324,8 @@ TEST_F(MotionCommand, MethodsWithStateSeeEveryFrameAndWriteThoseChosen) {
   ASSERT_EQ(all.exit_code, 0) << all.err;
   const CliResult some = sequence("some", {"--method", "stillpoint", "--frames", "6:10:2"});
   ASSERT_EQ(some.exit_code, 0) << some.err;
-  EXPECT_THAT(some.out, testing::HasSubstr("stillpoint judges frames without depth by epipolar"));
-  EXPECT_THAT(all.out, testing::Not(testing::HasSubstr("without depth")));
+  EXPECT_THAT(some.out, ::testing::HasSubstr("stillpoint judges frames without depth by epipolar"));
+  EXPECT_THAT(all.out, ::testing::Not(::testing::HasSubstr("without depth")));
 
   const auto figures = nlohmann::json::parse(folder_.read("all/motion.json")),
              chosen = nlohmann::json::parse(folder_.read("some/motion.json"));
@@ -337,7 +337,7 @@ TEST_F(MotionCommand, MethodsWithStateSeeEveryFrameAndWriteThoseChosen) {
   EXPECT_EQ(chosen["pairs"][0]["mask_share"], figures["pairs"][6]["mask_share"]);
   EXPECT_EQ(figure_of(stage_of(chosen["pairs"][0], "points"), "Points"),
             figure_of(stage_of(figures["pairs"][6], "points"), "Points"));
-  EXPECT_THAT(chosen["pairs"][1]["note"].get<std::string>(), testing::HasSubstr("8.png"));
+  EXPECT_THAT(chosen["pairs"][1]["note"].get<std::string>(), ::testing::HasSubstr("8.png"));
   EXPECT_TRUE(chosen["pairs"][1]["mask_share"].is_null());
   EXPECT_FALSE(fs::exists(folder_.path("some/000005")));
   EXPECT_FALSE(fs::exists(folder_.path("some/000008")));

@@ -12,7 +12,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(Odometry, IsNamedWhereverTheMethodIs) {
   const TemporaryFolder folder;

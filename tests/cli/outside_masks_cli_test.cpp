@@ -14,17 +14,17 @@ namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-constexpr int kFrames = 8;
+constexpr int kMaskedFrames = 8;
 
 /// A generated sequence with people, written once.
-class OutsideMasksCli : public testing::Test {
+class OutsideMasksCli : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder();
-    const CliResult made =
-        run_cli({"generate", "walking_xyz", folder_->path("film"), "--frames", std::to_string(kFrames)});
+    const CliResult made = run_cli({"generate", "walking_xyz", "--out", folder_->path("film"), "--frames",
+                                    std::to_string(kMaskedFrames)});
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   static void TearDownTestSuite() {
@@ -69,7 +69,7 @@ TEST_F(OutsideMasksCli, WhatIsWrongWithSomeIsToldOnceAndMarked) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_->path("some"))) names.push_back(entry.path());
   std::sort(names.begin(), names.end());
-  ASSERT_EQ(names.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(names.size(), static_cast<std::size_t>(kMaskedFrames));
   fs::remove(names[2]);
   cv::imwrite(names[4], cv::Mat(10, 10, CV_8UC1, cv::Scalar(0)));
   cv::imwrite(names[5], cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)));
@@ -77,7 +77,7 @@ TEST_F(OutsideMasksCli, WhatIsWrongWithSomeIsToldOnceAndMarked) {
   EXPECT_THAT(result.out, HasSubstr("no mask       3 of 8 frames: 2, 4-5 ("));
   EXPECT_THAT(result.out, HasSubstr("has no mask for this frame"));
   const auto rows = csv_rows(folder_->read("gaps/frames.csv"));
-  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kMaskedFrames));
   EXPECT_THAT(rows[2].at("note"), HasSubstr("has no mask for this frame"));
   EXPECT_THAT(rows[4].at("note"), HasSubstr("is 10x10 px, but the frame is 640x480 px"));
   EXPECT_THAT(rows[5].at("note"), HasSubstr("takes out the whole frame and is not used"));

@@ -14,11 +14,11 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-constexpr int kFrames = 40;  // over a second, so that there is an RPE over one
+constexpr int kRunFrames = 40;  // over a second, so that there is an RPE over one
 
-class OutsideRunCli : public testing::Test {
+class OutsideRunCli : public ::testing::Test {
  protected:
   OutsideRunCli() {
     EXPECT_EQ(run_cli({"run", sequence.path(), "--method", "none", "--out", sequence.path("own")}).exit_code,
@@ -27,7 +27,7 @@ class OutsideRunCli : public testing::Test {
   [[nodiscard]] nlohmann::json evaluation(const std::string& run) const {
     return nlohmann::json::parse(sequence.folder.read(run + "/summary.json"))["evaluation"];
   }
-  SmallSequence sequence{kFrames};
+  SmallSequence sequence{kRunFrames};
 };
 
 TEST_F(OutsideRunCli, AsOurOwnRunIs) {
@@ -46,7 +46,7 @@ TEST_F(OutsideRunCli, AsOurOwnRunIs) {
   }
   const auto a = csv_rows(sequence.folder.read("own/frames.csv")),
              b = csv_rows(sequence.folder.read("theirs/frames.csv"));
-  ASSERT_EQ(a.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(a.size(), static_cast<std::size_t>(kRunFrames));
   ASSERT_EQ(b.size(), a.size());
   for (std::size_t i = 1; i < a.size(); ++i)
     EXPECT_NEAR(std::stod(b[i].at("rpe_frame_m")), std::stod(a[i].at("rpe_frame_m")), 2e-6) << i;

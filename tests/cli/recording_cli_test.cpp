@@ -15,17 +15,17 @@
 namespace stillpoint {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
-constexpr int kFrames = 8;
+constexpr int kRecordedFrames = 8;
 
-class RecordingCli : public testing::Test {
+class RecordingCli : public ::testing::Test {
  protected:
   RecordingCli() {
     write_archive(places.path("small.tgz"), sequence.path(), "tgz", "small");
     std::vector<LogMessage> messages;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kRecordedFrames; ++i) {
       const std::int64_t stamp = std::llround(SmallSequence::stamp(i) * 1e4) * 100'000;
       cv::Mat depth;
       cv::imread(sequence.path(SmallSequence::depth(i)), cv::IMREAD_UNCHANGED)
@@ -52,7 +52,7 @@ class RecordingCli : public testing::Test {
   }
 
   TemporaryFolder places{"recordings"};
-  SmallSequence sequence{kFrames};
+  SmallSequence sequence{kRecordedFrames};
 };
 
 TEST_F(RecordingCli, RunsAreTheFolders) {
@@ -108,11 +108,11 @@ TEST_F(RecordingCli, BadOnesEndInASentence) {
 }
 
 TEST_F(RecordingCli, EvaluationTakesTruthFromAnArchive) {
-  EXPECT_EQ(summary(sequence.path())["source"]["frames"], kFrames);
+  EXPECT_EQ(summary(sequence.path())["source"]["frames"], kRecordedFrames);
   const CliResult result =
       run_cli({"evaluate", places.path("small.tgz"), places.path("out/trajectory.txt"), "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(nlohmann::json::parse(result.out)["matched"], kFrames);
+  EXPECT_EQ(nlohmann::json::parse(result.out)["matched"], kRecordedFrames);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST_F(ReplayCli, SaysWhatIsWrongInOneSentence) {
 }
 
 TEST_F(ReplayCli, TheWindowShowsTheSame) {
-  const testing::Xvfb xvfb;
+  const stillpoint::testing::Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
   const std::string file = recording(
       "frame 4\npoint input 0.5 0.5\nwheel 0 2\nwait 0.2\nmove -9999 -9999\nscreenshot four.png\nquit\n");
@@ -76,7 +76,7 @@ TEST_F(ReplayCli, TheWindowShowsTheSame) {
 }
 
 TEST_F(ReplayCli, WhatAWindowRecordedIsReplayed) {
-  const testing::Xvfb xvfb;
+  const stillpoint::testing::Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
   ::setenv("XDG_CONFIG_HOME", sequence_.path("config").c_str(), 1);
   const std::string file = sequence_.path("mine.txt");
@@ -93,7 +93,7 @@ TEST_F(ReplayCli, WhatAWindowRecordedIsReplayed) {
 }
 
 TEST_F(ReplayCli, ARecordingThatCannotBeWrittenIsSaidBeforeThereIsAWindow) {
-  const testing::Xvfb xvfb;
+  const stillpoint::testing::Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
   expect_one_sentence(run_cli({"view", sequence_.path(), "--record", "/nowhere/at/all"}),
                       "cannot be written");

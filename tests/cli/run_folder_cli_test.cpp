@@ -162,7 +162,7 @@ TEST_F(RunFolder, AFullDiskIsToldOnce) {
 }
 
 TEST_F(RunFolder, OpensInAWindow) {
-  const testing::Xvfb xvfb;
+  const stillpoint::testing::Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
   ::setenv("XDG_CONFIG_HOME", out_.path("config").c_str(), 1);
   CliProcess window({"view", run("stillpoint")});

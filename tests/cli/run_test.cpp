@@ -17,7 +17,7 @@
 namespace stillpoint {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 nlohmann::json summary_of(const TemporaryFolder& folder, const std::string& run) {
   return nlohmann::json::parse(folder.read(run + "/summary.json"));
@@ -34,7 +34,7 @@ TEST(Run, LeavesWhatItSays) {
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory.txt")), 10U);
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory_live.txt")), 10U);
   EXPECT_GE(line_count(sequence.folder.read("out/keyframes.txt")), 1U);
-  EXPECT_THAT(sequence.folder.read("out/map.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
+  EXPECT_THAT(sequence.folder.read("out/map.ply"), ::testing::StartsWith("ply\nformat ascii 1.0\n"));
   // Points have the colours of the images: greys of the wall, and many of them.
   std::istringstream map(sequence.folder.read("out/map.ply"));
   std::set<std::string> colours;
@@ -49,7 +49,7 @@ TEST(Run, LeavesWhatItSays) {
   EXPECT_THAT(sequence.folder.read("out/config.toml"), HasSubstr("method = \"paper\""));
   const auto rows = csv_rows(sequence.folder.read("out/frames.csv"));
   ASSERT_EQ(rows.size(), 10U);
-  EXPECT_THAT(rows[3], testing::Contains(testing::Pair("status", "tracked")));
+  EXPECT_THAT(rows[3], ::testing::Contains(::testing::Pair("status", "tracked")));
   EXPECT_GT(std::stoi(rows[3].at("inliers")), 50);
   EXPECT_LT(std::stod(rows[3].at("rpe_frame_m")), 0.01);
 
@@ -85,7 +85,7 @@ TEST(Run, ConfigCommandPrintsWhatIsRun) {
 }
 
 /// The same frames from memory and from a folder; with one thread, with two, and again.
-class Determinism : public testing::TestWithParam<const char*> {};
+class Determinism : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
   const std::string method = GetParam(), frames = "16", kind = "walking_xyz";
@@ -113,7 +113,7 @@ TEST_P(Determinism, SameBytesWhateverTheThreadsAndTheSource) {
   EXPECT_GT(line_count(folder.read("one/trajectory.txt")), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values("none", "paper", "stillpoint"),
+INSTANTIATE_TEST_SUITE_P(Methods, Determinism, ::testing::Values("none", "paper", "stillpoint"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(Determinism, AnotherSeedIsAnotherSequence) {
@@ -128,12 +128,12 @@ TEST(Determinism, AnotherSeedIsAnotherSequence) {
   EXPECT_NE(folder.read("1/rgb/" + first), folder.read("2/rgb/" + first));
 }
 
-class Interrupt : public testing::TestWithParam<int> {};
+class Interrupt : public ::testing::TestWithParam<int> {};
 
 TEST_P(Interrupt, KeepsWhatWasDone) {
-  constexpr int kFrames = 30'000;
+  constexpr int kMany = 30'000;
   const SmallSequence sequence(4);
-  sequence.write_lists(kFrames);
+  sequence.write_lists(kMany);
   CliProcess process({"run", sequence.path(), "--method", "none", "--out", sequence.path("out")});
   // The program listens to signals before it makes the folder.
   for (int i = 0; i < 600 && !std::filesystem::exists(sequence.path("out")); ++i)
@@ -147,13 +147,13 @@ TEST_P(Interrupt, KeepsWhatWasDone) {
 
   const auto summary = summary_of(sequence.folder, "out");
   EXPECT_EQ(summary["interrupted"], true);
-  EXPECT_EQ(summary["frames_in_sequence"], kFrames);
-  EXPECT_LT(summary["frames"], kFrames);
+  EXPECT_EQ(summary["frames_in_sequence"], kMany);
+  EXPECT_LT(summary["frames"], kMany);
   EXPECT_EQ(csv_rows(sequence.folder.read("out/frames.csv")).size(), summary["frames"].get<std::size_t>());
   EXPECT_EQ(line_count(sequence.folder.read("out/trajectory.txt")), summary["tracked"].get<std::size_t>());
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, ::testing::Values(SIGINT, SIGTERM));
 
 TEST(FullDisk, StandardOutput) {
   const SmallSequence sequence(2);

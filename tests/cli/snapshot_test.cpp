@@ -102,7 +102,7 @@ TEST(View, WithoutADisplayNamesSnapshot) {
 }
 
 TEST(View, ComesBackAsItWasLeft) {
-  const testing::Xvfb xvfb;
+  const stillpoint::testing::Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
   const SmallSequence sequence(4);
   ::setenv("XDG_CONFIG_HOME", sequence.path("config").c_str(), 1);

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/resident_memory.hpp"
 #include "tests/ui/controller_example.hpp"
 #include "ui/shell/offscreen.hpp"
 #include "ui/workbench/app_controller.hpp"
@@ -68,13 +69,6 @@ GLuint next_texture(const Gl& gl) {
   gl.GenTextures(1, &name);
   gl.DeleteTextures(1, &name);
   return name;
-}
-
-double resident_mb() {
-  std::ifstream file("/proc/self/statm");
-  double whole = 0.0, resident = 0.0;
-  file >> whole >> resident;
-  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
 TEST(AppController, AThousandSequencesLeaveNothingBehind) {

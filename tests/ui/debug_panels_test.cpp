@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 
-constexpr int kWidth = 640, kHeight = 420;
+constexpr int kSheetWidth = 640, kSheetHeight = 420;
 
 // Where things are in the panels at that size, as shares of it.
 constexpr double kRulerY = 0.1, kSecondLaneY = 0.47;
@@ -57,7 +57,7 @@ TEST(DebugPanels, GoldenImages) {
                                     {"compare", ThemeName::kLight},
                                     {"removal", ThemeName::kDark},
                                     {"errors", ThemeName::kLight}}) {
-    PanelStage stage(name, {theme, 1.0F}, kWidth, kHeight);
+    PanelStage stage(name, {theme, 1.0F}, kSheetWidth, kSheetHeight);
     EXPECT_TRUE(matches_golden(stage.render(example), std::string("debug_") + name));
   }
 }
@@ -171,7 +171,7 @@ TEST_F(DebugKeys, WhatTheSessionWroteIsSaid) {
 TEST(Timeline, ADragInTheTopRowSelectsARange) {
   SessionView session = debug_example();
   session.debug.span.reset();
-  PanelStage stage("timeline", {}, kWidth, kHeight);
+  PanelStage stage("timeline", {}, kSheetWidth, kSheetHeight);
   const auto ruler = only<request::Span>(stage.drag(session, {0.4, kRulerY}, {0.6, kRulerY}, {}));
   ASSERT_TRUE(ruler.span);
   const auto shift = only<request::Span>(stage.drag(session, {0.6, 0.6}, {0.4, 0.6}, {.shift = true}));
@@ -184,7 +184,7 @@ TEST(Timeline, ADragInTheTopRowSelectsARange) {
 
 TEST(Timeline, AClickInTheTopRowGoesThere) {
   const SessionView session = debug_example();
-  PanelStage stage("timeline", {}, kWidth, kHeight);
+  PanelStage stage("timeline", {}, kSheetWidth, kSheetHeight);
   const PanelActions actions = stage.click(session, 0.75, kRulerY);
   EXPECT_THAT(actions.requests, IsEmpty());
   EXPECT_TRUE(actions.go_to_frame);
@@ -192,13 +192,13 @@ TEST(Timeline, AClickInTheTopRowGoesThere) {
 
 TEST(Timeline, ALaneChosenDecidesWhatIsWorst) {
   const SessionView session = debug_example();
-  PanelStage stage("timeline", {}, kWidth, kHeight);
+  PanelStage stage("timeline", {}, kSheetWidth, kSheetHeight);
   EXPECT_EQ(stage.click(session, 0.05, kSecondLaneY).worst_by, frame_figure("mask"));
 }
 
 TEST(Timeline, ThousandsOfFramesKeepTheirSpike) {
   // One bad frame among 3,000 on some 450 columns is seen: without it the image differs.
-  PanelStage stage("timeline", {}, kWidth, kHeight);
+  PanelStage stage("timeline", {}, kSheetWidth, kSheetHeight);
   const cv::Mat spike = stage.render(long_example(3000, 1500));
   const cv::Mat none = stage.render(long_example(3000, -1));
   EXPECT_FALSE(images_agree(spike, none, {2, 20.0, 0.0}));
@@ -206,7 +206,7 @@ TEST(Timeline, ThousandsOfFramesKeepTheirSpike) {
 
 TEST(Breakpoints, OneIsAddedByTyping) {
   const SessionView session = debug_example();
-  PanelStage stage("breakpoints", {}, kWidth, kHeight);
+  PanelStage stage("breakpoints", {}, kSheetWidth, kSheetHeight);
   stage.click(session, 0.2, kNewY);
   stage.play(session, typed("inliers < 40"));
   const auto added = only<request::Breakpoints>(stage.play(session, struck(Key::kEnter)));
@@ -216,26 +216,26 @@ TEST(Breakpoints, OneIsAddedByTyping) {
 
 TEST(Breakpoints, AWrongOneIsNotAdded) {
   const SessionView session = debug_example();
-  PanelStage stage("breakpoints", {}, kWidth, kHeight);
+  PanelStage stage("breakpoints", {}, kSheetWidth, kSheetHeight);
   const cv::Mat before = stage.render(session);
   stage.click(session, 0.2, kNewY);
   stage.play(session, typed("inliers <"));
   EXPECT_THAT(stage.play(session, struck(Key::kEnter)).requests, IsEmpty());
-  const cv::Rect below(0, static_cast<int>(kNewY * kHeight) + 12, kWidth, 24);
+  const cv::Rect below(0, static_cast<int>(kNewY * kSheetHeight) + 12, kSheetWidth, 24);
   EXPECT_FALSE(images_agree(stage.render(session)(below), before(below), {2, 100.0, 0.0}))
       << "what is wrong is said below";
 }
 
 TEST(Breakpoints, HitsAreGoneTo) {
   const SessionView session = debug_example();  // at frame 24; hits at 19, 20, 21 and 30, 31, 32
-  PanelStage stage("breakpoints", {}, kWidth, kHeight);
+  PanelStage stage("breakpoints", {}, kSheetWidth, kSheetHeight);
   EXPECT_EQ(stage.click(session, kNextHitX, kFirstRowY).go_to_frame, 30);
   EXPECT_EQ(stage.click(session, kPreviousHitX, kFirstRowY).go_to_frame, 21);
 }
 
 TEST(Breakpoints, OneIsSwitchedOffAndDeleted) {
   const SessionView session = debug_example();
-  PanelStage stage("breakpoints", {}, kWidth, kHeight);
+  PanelStage stage("breakpoints", {}, kSheetWidth, kSheetHeight);
   const auto off = only<request::Breakpoints>(stage.click(session, kCheckX, kFirstRowY));
   EXPECT_FALSE(off.all.at(0).enabled);
   EXPECT_TRUE(off.all.at(1).enabled);
@@ -246,7 +246,7 @@ TEST(Breakpoints, OneIsSwitchedOffAndDeleted) {
 
 TEST(Bookmarks, NotesAreWritten) {
   const SessionView session = debug_example();
-  PanelStage stage("bookmarks", {}, kWidth, kHeight);
+  PanelStage stage("bookmarks", {}, kSheetWidth, kSheetHeight);
   stage.click(session, 0.5, kSecondNoteY);  // frame 24, without a note
   stage.play(session, typed("here"));
   const auto noted = only<request::Bookmarks>(stage.play(session, struck(Key::kEnter)));
@@ -255,14 +255,14 @@ TEST(Bookmarks, NotesAreWritten) {
 
 TEST(Compare, DivergenceIsGoneToAndGhostsAreRemoved) {
   const SessionView session = debug_example();
-  PanelStage stage("compare", {}, kWidth, kHeight);
+  PanelStage stage("compare", {}, kSheetWidth, kSheetHeight);
   EXPECT_EQ(stage.click(session, kPartsX, kFirstGhostY).go_to_frame, 12);
   EXPECT_EQ(only<request::RemoveGhost>(stage.click(session, kRemoveX, kFirstGhostY)).index, 0);
 }
 
 TEST(Removal, TheWorstHarmIsGoneTo) {
   const SessionView session = debug_example();
-  PanelStage stage("removal", {}, kWidth, kHeight);
+  PanelStage stage("removal", {}, kSheetWidth, kSheetHeight);
   const auto frame = stage.click(session, 0.06, kWorstHurtY).go_to_frame;
   ASSERT_TRUE(frame);
   EXPECT_THAT(hurt_frames(session.debug), ::testing::Contains(*frame));
@@ -272,13 +272,13 @@ TEST(Removal, IsCheckedWhenAskedFor) {
   SessionView session = debug_example();
   session.debug.removal.clear();
   session.ground_truth.push_back({0.0, Pose::Identity()});
-  PanelStage stage("removal", {}, kWidth, kHeight);
+  PanelStage stage("removal", {}, kSheetWidth, kSheetHeight);
   EXPECT_EQ(only<request::RunAll>(stage.click(session, 0.06, 0.05)).config.run.check_removal, true);
 }
 
 TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
   const SessionView session = debug_example();
-  PanelStage stage("parameters", {}, kWidth, kHeight);
+  PanelStage stage("parameters", {}, kSheetWidth, kSheetHeight);
   stage.click(session, 0.1, kFilterY);
   stage.play(session, typed("border_px"));
   const PanelActions moved = stage.click(session, kSliderX, kSliderY);
@@ -297,7 +297,7 @@ TEST(ParametersPanel, AValueMovedIsPreviewedAndRunOnlyWhenAskedFor) {
 TEST(ParametersPanel, ResetGoesBackToTheDefault) {
   SessionView session = debug_example();
   session.config.of<PaperConfig>().border_px = 9;
-  PanelStage stage("parameters", {}, kWidth, kHeight);
+  PanelStage stage("parameters", {}, kSheetWidth, kSheetHeight);
   stage.click(session, 0.1, kFilterY);
   stage.play(session, typed("border_px"));
   const auto preview = only<request::Preview>(stage.click(session, kResetX, kSliderY));

@@ -25,12 +25,6 @@ bool has_scene(const std::string& panel) { return panel == "trajectory"; }
 /// Panels take turns in the two themes.
 Look look_of(std::size_t place) { return {place % 2 == 0 ? ThemeName::kDark : ThemeName::kLight, 0.8F}; }
 
-std::vector<std::string> panel_names() {
-  std::vector<std::string> names;
-  for (const auto& panel : make_panels()) names.push_back(panel->name());
-  return names;
-}
-
 /// What is there for a person to do, so that nothing is greyed out.
 WorkbenchHost idle_host() {
   return {.go_to_frame = [](int) {},

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "tests/support/golden.hpp"
+#include "tests/support/resident_memory.hpp"
 #include "tests/ui/gallery.hpp"
 
 namespace stillpoint::testing {
@@ -89,14 +90,6 @@ TEST(OffscreenTest, ResizingKeepsDrawing) {
     EXPECT_EQ(offscreen.image().size(), cv::Size(width, height));
   }
   EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
-}
-
-/// Resident memory of this process, MB.
-double resident_mb() {
-  std::ifstream file("/proc/self/statm");
-  double total = 0.0, resident = 0.0;
-  file >> total >> resident;
-  return resident * 4096.0 / 1e6;
 }
 
 TEST(OffscreenTest, TwoHundredContextsLeaveNothingBehind) {

@@ -16,12 +16,6 @@
 namespace stillpoint::testing {
 namespace {
 
-std::vector<std::string> panel_names() {
-  std::vector<std::string> names;
-  for (const auto& panel : make_panels()) names.push_back(panel->name());
-  return names;
-}
-
 /// The example without what the method saw.
 SessionView without_stages() {
   SessionView view = generated_example();

@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr int kFrames = 8;
+constexpr int kReplayFrames = 8;
 
 class Replay : public ::testing::Test {
  protected:
@@ -57,7 +57,7 @@ class Replay : public ::testing::Test {
     return problem;
   }
 
-  SmallSequence folder_{kFrames};
+  SmallSequence folder_{kReplayFrames};
   TemporaryFolder out_;
   bool opens_ = true;
 };

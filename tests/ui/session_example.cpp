@@ -9,6 +9,7 @@
 #include "core/motion/paper/paper_stages.hpp"
 #include "core/motion/stillpoint/stillpoint_stages.hpp"
 #include "core/run/run_sequence.hpp"
+#include "ui/panels/panel.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -397,6 +398,12 @@ SessionView long_example(int frames, int worst) {
   view.baseline = nullptr;
   view.frame_count = view.processed = frames;
   return view;
+}
+
+std::vector<std::string> panel_names() {
+  std::vector<std::string> names;
+  for (const auto& panel : make_panels()) names.push_back(panel->name());
+  return names;
 }
 
 }  // namespace stillpoint::testing

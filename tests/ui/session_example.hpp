@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/sequence/source.hpp"
 #include "ui/session/session_view.hpp"
@@ -28,6 +30,9 @@ struct SessionExample {
 
 /// A run of as many frames as wanted, its figures going up and down; worst at `worst`.
 [[nodiscard]] SessionView long_example(int frames, int worst);
+
+/// The names of all panels, in the order in which they are made.
+[[nodiscard]] std::vector<std::string> panel_names();
 
 /// 14 frames of generated:walking_static, run once a program.
 [[nodiscard]] const SessionView& generated_example();

@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr int kWidth = 1200, kHeight = 800;
+constexpr int kWindowWidth = 1200, kWindowHeight = 800;
 
 class WindowTest : public ::testing::Test {
  protected:
@@ -47,12 +47,12 @@ cv::Mat settled_image(Window& window, const FrameFunction& function) {
 TEST_F(WindowTest, ShowsWhatTheOffscreenImageHolds) {
   cv::Mat shown;
   {
-    Window window({.width = kWidth, .height = kHeight});
+    Window window({.width = kWindowWidth, .height = kWindowHeight});
     Gallery gallery(false);
     shown = settled_image(window, std::ref(gallery));
     EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
   }
-  Offscreen offscreen({.width = kWidth, .height = kHeight});
+  Offscreen offscreen({.width = kWindowWidth, .height = kWindowHeight});
   Gallery gallery(false);
   EXPECT_TRUE(images_agree(shown, offscreen.render(std::ref(gallery)), kInterfaceTolerance));
 }
@@ -60,12 +60,12 @@ TEST_F(WindowTest, ShowsWhatTheOffscreenImageHolds) {
 TEST_F(WindowTest, ShowsTheTrajectoryAsTheOffscreenImageDoes) {
   cv::Mat shown;
   {
-    Window window({.width = kWidth, .height = kHeight});
+    Window window({.width = kWindowWidth, .height = kWindowHeight});
     Gallery gallery(true);
     shown = settled_image(window, std::ref(gallery));
     EXPECT_THAT(window.canvas().take_gl_errors(), IsEmpty());
   }
-  Offscreen offscreen({.width = kWidth, .height = kHeight});
+  Offscreen offscreen({.width = kWindowWidth, .height = kWindowHeight});
   Gallery gallery(true);
   EXPECT_TRUE(images_agree(shown, offscreen.render(std::ref(gallery)), kSceneTolerance));
 }

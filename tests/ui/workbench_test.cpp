@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr int kFrames = 8;
+constexpr int kWorkbenchFrames = 8;
 
 /// A session at a frame. Times, which differ from run to run, are left out.
 std::unique_ptr<Session> session_at(const SmallSequence& folder, int frame) {
@@ -53,7 +53,7 @@ class WorkbenchTest : public ::testing::Test {
     return offscreen_.render([&](UiFrame& frame) { workbench.draw(frame, view.get()); });
   }
 
-  SmallSequence folder_{kFrames};
+  SmallSequence folder_{kWorkbenchFrames};
   Offscreen offscreen_{{.width = 1280, .height = 800}};
 };
 
@@ -119,7 +119,7 @@ TEST_F(WorkbenchTest, KeysDoWhatTheySay) {
   strike(offscreen_, Key::kEnd, {.ctrl = true});
   strike(offscreen_, Key::kSpace);
   render(workbench, *session);
-  EXPECT_THAT(gone_to, ElementsAre(6, 4, 0, kFrames - 1));
+  EXPECT_THAT(gone_to, ElementsAre(6, 4, 0, kWorkbenchFrames - 1));
   EXPECT_THAT(played, ElementsAre(true));
 }
 
@@ -235,7 +235,7 @@ TEST(Settings, DamagedOnesGiveTheDefaults) {
 TEST(WorkbenchWindow, PlaysTakesKeysAndCloses) {
   const Xvfb xvfb;
   if (!xvfb.running()) GTEST_SKIP() << "Xvfb is not installed";
-  const SmallSequence folder(kFrames);
+  const SmallSequence folder(kWorkbenchFrames);
   Window window({.width = 1000, .height = 700});
   std::vector<std::string> opened;
   auto session = std::make_unique<Session>(open_sequence(folder.path()), Config{});
@@ -256,7 +256,7 @@ TEST(WorkbenchWindow, PlaysTakesKeysAndCloses) {
     return holds();
   };
   strike(window, Key::kSpace);
-  EXPECT_TRUE(draw_until([&] { return session->view()->current->index == kFrames - 1; }));
+  EXPECT_TRUE(draw_until([&] { return session->view()->current->index == kWorkbenchFrames - 1; }));
   strike(window, Key::kHome);
   EXPECT_TRUE(draw_until([&] { return session->view()->current->index == 0; }));
   strike(window, Key::kRight);

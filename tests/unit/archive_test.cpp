@@ -11,6 +11,7 @@
 #include "core/sequence/archive/cache_folder.hpp"
 #include "core/sequence/write_sequence.hpp"
 #include "tests/support/archive_writer.hpp"
+#include "tests/support/hash_of_run.hpp"
 #include "tests/unit/bag_example.hpp"
 #include "tests/unit/input_folder.hpp"
 
@@ -22,14 +23,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string run_hash(const FrameSource& source) {
-  Config config;
-  config.run.threads = 2;
-  RunHash hash;
-  for (const FrameRecord& record : run_sequence(source, config).records) hash.add(record);
-  return hash.hex();
-}
 
 /// A text as gzip has it, stored.
 std::string packed_text(const std::string& text) {
@@ -92,13 +85,13 @@ TEST_F(Archives, GiveTheFoldersRun) {
   options.frames = 8;
   write_sequence(*open_sequence("generated:walking_static", options), folder.path());
   const auto unpacked = open_sequence(folder.path());
-  const std::string expected = run_hash(*unpacked);
+  const std::string expected = hash_of_run(*unpacked);
   for (const char* kind : {"tgz", "zip"}) {
     const std::string path = places_.path(std::string("run.") + kind);
     write_archive(path, folder.path(), kind, "walk");
     for (int time = 0; time < 2; ++time) {  // unpacked, and found unpacked
       const auto source = open_sequence(path);
-      EXPECT_EQ(run_hash(*source), expected) << kind;
+      EXPECT_EQ(hash_of_run(*source), expected) << kind;
       ASSERT_TRUE(source->has_masks());
       EXPECT_EQ(cv::norm(source->truth(3).moving, unpacked->truth(3).moving, cv::NORM_INF), 0);
       EXPECT_EQ(source->ground_truth().size(), unpacked->ground_truth().size());
@@ -120,7 +113,7 @@ TEST_F(Archives, AreFoldersOfImagesToo) {
     fs::remove(input_.folder.path(list));
   fs::remove_all(input_.folder.path("depth"));
   const auto source = open_sequence(packed("zip"));
-  EXPECT_EQ(source->size(), kFrames);
+  EXPECT_EQ(source->size(), kInputFrames);
   EXPECT_EQ(source->name(), "walk");
   EXPECT_THAT(source->warnings(), Contains(HasSubstr("walk.zip/rgb: nothing lists its 12 images")));
 }
@@ -190,7 +183,7 @@ TEST_F(Archives, WithoutAPlaceToUnpackItIsSaid) {
 
 TEST_F(Archives, CutOffTheyGiveWhatTheyHold) {
   std::mt19937 random(9);
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kInputFrames; ++i) {
     cv::Mat noise(120, 160, CV_8UC3);
     for (int at = 0; at < noise.rows * noise.cols * 3; ++at)
       noise.data[at] = static_cast<unsigned char>(random());

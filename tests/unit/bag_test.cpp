@@ -8,6 +8,7 @@
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/fingerprint.hpp"
 #include "core/sequence/write_sequence.hpp"
+#include "tests/support/hash_of_run.hpp"
 #include "tests/support/places.hpp"
 #include "tests/unit/bag_example.hpp"
 #include "tests/unit/temporary_folder.hpp"
@@ -22,14 +23,6 @@ using ::testing::IsEmpty;
 
 constexpr int kExampleFrames = 8;
 
-std::string run_hash(const FrameSource& source) {
-  Config config;
-  config.run.threads = 2;
-  RunHash hash;
-  for (const FrameRecord& record : run_sequence(source, config).records) hash.add(record);
-  return hash.hex();
-}
-
 /// A generated sequence as a folder, and what a run of it gives: made once.
 class Example {
  public:
@@ -38,7 +31,7 @@ class Example {
     options.frames = kExampleFrames;
     write_sequence(*open_sequence("generated:walking_static", options), folder.path());
     source = open_sequence(folder.path());
-    hash = run_hash(*source);
+    hash = hash_of_run(*source);
   }
   TemporaryFolder folder;
   std::unique_ptr<FrameSource> source;
@@ -70,7 +63,7 @@ void expect_the_folders(const FrameSource& bag, bool with_run) {
   EXPECT_EQ(bag.camera().cy, folder.camera().cy);
   EXPECT_THAT(bag.warnings(), IsEmpty());
   if (with_run) {
-    EXPECT_EQ(run_hash(bag), example().hash);
+    EXPECT_EQ(hash_of_run(bag), example().hash);
   }
 }
 

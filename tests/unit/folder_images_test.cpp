@@ -42,7 +42,7 @@ TEST(FolderImages, DepthOfAnotherKindIsKnownBeforeTheFirstFrame) {
     EXPECT_TRUE(source->read(0).readable());
   }
   const InputFolder folder;
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kInputFrames; ++i)
     folder.folder.write(fmt::format("depth/{}.npy", i), std::string("\x93NUMPY\x01 …"));
   folder.replace("depth.txt", ".png", ".npy");
   EXPECT_THAT(folder.open()->why_not(FramePart::depth), HasSubstr("depth/0.npy is a NumPy array"));
@@ -72,7 +72,7 @@ TEST(FolderImages, TheLargestDepthIsNoMeasurement) {
 TEST(FolderImages, DepthOfAnotherClockNamesTheOffset) {
   const InputFolder folder;
   std::string depth;
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kInputFrames; ++i)
     depth += fmt::format("{:.6f} depth/{}.png\n", kStart + 1000.004 + i / 30.0, i);
   folder.folder.write("depth.txt", depth);
   auto source = folder.open();
@@ -117,7 +117,7 @@ std::unique_ptr<FrameSource> with_masks(const InputFolder& folder,
                                         const std::function<cv::Mat(const cv::Mat&)>& make,
                                         const OpenOptions& options = {}) {
   std::string list;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kInputFrames; ++i) {
     cv::Mat mask = cv::Mat::zeros(48, 64, CV_8UC1);
     mask(cv::Rect(10, 10, 16, 20)) = 255;
     folder.folder.write(fmt::format("mask/{}.png", i), make(mask));

@@ -68,7 +68,7 @@ TEST(FolderInput, FrameNumbersHaveTheRateThatIsSaid) {
 TEST(FolderInput, TruthInAnotherUnitThanTheImagesIsConvertedAndTold) {
   const InputFolder folder;
   std::string truth;
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kInputFrames; ++i)
     truth += fmt::format("{:.0f},{},0,0,0,0,0,1\n", (kStart + i / 30.0) * 1e9, i);
   folder.folder.write("groundtruth.txt", truth);
   const auto source = folder.open();
@@ -146,7 +146,7 @@ TEST(FolderInput, AssociationsByOtherNamesAreRead) {
   for (const char* name : {"associate.txt", "association.txt", "assoc.txt"}) {
     const InputFolder folder;
     std::string pairs;
-    for (int i = 0; i < kFrames; ++i)
+    for (int i = 0; i < kInputFrames; ++i)
       pairs += fmt::format("{0:.6f} rgb/{2}.png {1:.6f} depth/{2}.png\n", kStart + i / 30.0,
                            kStart + 0.004 + i / 30.0, i);
     folder.folder.write(name, pairs);
@@ -165,7 +165,7 @@ TEST(FolderInput, AListCutShortLosesItsLastRow) {
         std::pair(20U, "the last line was cut short")}) {
     folder.folder.write("rgb.txt", rgb.substr(0, rgb.size() - cut));
     const auto source = folder.open();
-    EXPECT_EQ(source->size(), kFrames - 1) << cut;
+    EXPECT_EQ(source->size(), kInputFrames - 1) << cut;
     EXPECT_THAT(source->warnings(), Contains(HasSubstr(told))) << cut;
   }
 }
@@ -182,8 +182,8 @@ TEST(FolderInput, ImagesAloneAreASequence) {
   for (const char* gone : {"rgb.txt", "depth.txt", "groundtruth.txt"})
     std::filesystem::remove(folder.folder.path(gone));
   const auto source = folder.open();
-  ASSERT_EQ(source->size(), kFrames);
-  for (int i = 0; i < kFrames; ++i) {
+  ASSERT_EQ(source->size(), kInputFrames);
+  for (int i = 0; i < kInputFrames; ++i) {
     EXPECT_NEAR(source->timestamp(i), i / 30.0, 1e-9);
     const Frame frame = source->read(i);
     EXPECT_EQ(frame.colour.at<cv::Vec3b>(5, 5)[2], i) << "10 comes after 9";
@@ -191,7 +191,7 @@ TEST(FolderInput, ImagesAloneAreASequence) {
   }
   EXPECT_THAT(source->warnings(), Contains(HasSubstr("nothing lists its 12 images")));
   const auto colours = open_sequence(folder.folder.path("rgb"));
-  EXPECT_EQ(colours->size(), kFrames);
+  EXPECT_EQ(colours->size(), kInputFrames);
   EXPECT_FALSE(colours->has_depth());
   EXPECT_EQ(colours->why_not(FramePart::depth), "");
 }

@@ -13,6 +13,7 @@
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/generated/primitives.hpp"
 #include "core/sequence/write_sequence.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
 namespace {
@@ -38,14 +39,6 @@ std::string sentence_of(const std::function<void()>& action) {
   }
   return "";
 }
-
-/// A folder of its own that is gone afterwards.
-struct TemporaryFolder {
-  fs::path path = fs::path(testing::TempDir()) /
-                  ("generated_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  TemporaryFolder() { fs::remove_all(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
 
 // ---- what rays meet
 // ------------------------------------------------------------------------------------------------
@@ -277,11 +270,11 @@ TEST(WriteSequence, FolderReadsBackTheSame) {
   const TemporaryFolder folder;
   const auto memory = make_generated_sequence("cup", 3, 4);
   int told = 0;
-  write_sequence(*memory, folder.path,
+  write_sequence(*memory, folder.path(),
                  {false, 2, [&](int done, int total) { told = done * (total == 3 ? 1 : 100); }});
   EXPECT_EQ(told, 3);
 
-  const auto read = open_sequence(folder.path.string());
+  const auto read = open_sequence(folder.path());
   ASSERT_EQ(read->size(), 3);
   EXPECT_TRUE(read->has_masks() && read->has_depth());
   EXPECT_EQ(read->camera().fx, memory->camera().fx);
@@ -296,33 +289,33 @@ TEST(WriteSequence, FolderReadsBackTheSame) {
 
 TEST(WriteSequence, KeepsAFolderThatHoldsASequenceUnlessForced) {
   const TemporaryFolder folder;
-  write_sequence(*make_generated_sequence("room", 2, 1), folder.path);
-  std::ofstream(folder.path / "notes.md") << "mine";
+  write_sequence(*make_generated_sequence("room", 2, 1), folder.path());
+  std::ofstream(fs::path(folder.path("notes.md"))) << "mine";
   const auto shorter = make_generated_sequence("room", 1, 1);
-  EXPECT_THAT(sentence_of([&] { write_sequence(*shorter, folder.path); }), testing::HasSubstr("--force"));
-  EXPECT_EQ(open_sequence(folder.path.string())->size(), 2);
-  write_sequence(*shorter, folder.path, {true, 1, {}});
-  EXPECT_EQ(open_sequence(folder.path.string())->size(), 1);
-  EXPECT_TRUE(fs::exists(folder.path / "notes.md"));
+  EXPECT_THAT(sentence_of([&] { write_sequence(*shorter, folder.path()); }), testing::HasSubstr("--force"));
+  EXPECT_EQ(open_sequence(folder.path())->size(), 2);
+  write_sequence(*shorter, folder.path(), {true, 1, {}});
+  EXPECT_EQ(open_sequence(folder.path())->size(), 1);
+  EXPECT_TRUE(fs::exists(fs::path(folder.path("notes.md"))));
 }
 
 TEST(WriteSequence, SaysWhatCannotBeWritten) {
   const TemporaryFolder folder;
   const auto sequence = make_generated_sequence("room", 1, 1);
-  fs::create_directories(folder.path);
-  std::ofstream(folder.path / "file") << "not a folder";
-  EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, folder.path / "file"); }),
+  fs::create_directories(fs::path(folder.path()));
+  std::ofstream(fs::path(folder.path("file"))) << "not a folder";
+  EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, fs::path(folder.path("file"))); }),
               testing::HasSubstr("is a file"));
-  EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, folder.path / "file" / "inside"); }),
+  EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, fs::path(folder.path("file")) / "inside"); }),
               testing::HasSubstr("cannot be written"));
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to stand for a full disk";
-  fs::create_directories(folder.path / "full" / "rgb");
-  fs::create_symlink("/dev/full", folder.path / "full" / "rgb" / "1000.000000.png");
+  fs::create_directories(fs::path(folder.path("full")) / "rgb");
+  fs::create_symlink("/dev/full", fs::path(folder.path("full")) / "rgb" / "1000.000000.png");
   EXPECT_THAT(sentence_of([&] {
-                write_sequence(*sequence, folder.path / "full", {true, 1, {}});
+                write_sequence(*sequence, fs::path(folder.path("full")), {true, 1, {}});
               }),
               testing::HasSubstr("No space left"));
-  EXPECT_FALSE(fs::exists(folder.path / "full" / "rgb.txt"));
+  EXPECT_FALSE(fs::exists(fs::path(folder.path("full")) / "rgb.txt"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace stillpoint {
 
-inline constexpr int kFrames = 12;
+inline constexpr int kInputFrames = 12;
 inline constexpr double kStart = 1305031102.175;  // s since 1970
 
 /// A folder at 30 Hz with depth 4 ms later and ground truth at 100 Hz, whose stamps and names are written as
@@ -22,7 +22,7 @@ class InputFolder {
   explicit InputFolder(const std::string& name = "rgbd_dataset_freiburg3_test") : folder(name) {
     folder.write("camera.toml",
                  "name = \"own\"\nwidth = 64\nheight = 48\nfx = 60\nfy = 60\ncx = 32\ncy = 24\n");
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kInputFrames; ++i) {
       folder.write(fmt::format("rgb/{}.png", i), cv::Mat(48, 64, CV_8UC3, cv::Scalar(10, 20, i)));
       folder.write(fmt::format("depth/{}.png", i), cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000 + i)));
     }
@@ -33,7 +33,7 @@ class InputFolder {
   /// The three lists, stamps written by `stamp`.
   void lists(const Stamp& stamp) const {
     std::string rgb, depth, truth;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kInputFrames; ++i) {
       rgb += fmt::format("{} rgb/{}.png\n", stamp(kStart + i / 30.0, i), i);
       depth += fmt::format("{} depth/{}.png\n", stamp(kStart + 0.004 + i / 30.0, i), i);
       truth += fmt::format("{} {} 0 0 0 0 0 1\n", stamp(kStart + i / 30.0, i), i);
@@ -52,7 +52,7 @@ class InputFolder {
     folder.write(file, text);
   }
   void each_depth(const std::function<cv::Mat(const cv::Mat&)>& make, const std::string& kind = "png") const {
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kInputFrames; ++i) {
       const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(10000 + i));
       folder.write(fmt::format("depth/{}.{}", i, kind), make(depth));
     }
@@ -64,9 +64,9 @@ class InputFolder {
 
 /// Every frame has its depth and its truth, 1/30 s apart, and the right ones.
 inline void expect_whole(const FrameSource& source) {
-  ASSERT_EQ(source.size(), kFrames);
+  ASSERT_EQ(source.size(), kInputFrames);
   EXPECT_TRUE(source.has_depth());
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kInputFrames; ++i) {
     const Frame frame = source.read(i);
     EXPECT_EQ(frame.problem, "") << i;
     ASSERT_TRUE(frame.has_depth()) << i;

@@ -19,7 +19,7 @@ namespace {
 using motion_test::slight_motion;
 using motion_test::textured_image;
 
-const cv::Size kVga(640, 480);
+const cv::Size kImageSize(640, 480);
 
 cv::Mat all_valid(const cv::Size& size) { return {size, CV_8UC1, cv::Scalar(255)}; }
 
@@ -74,11 +74,11 @@ TEST(Corners, FlatImagesAndEdgesHaveNone) {
 
 TEST(Compensation, WarpByHomographyAndItsInverseReturnsTheImage) {
   cv::Mat image;
-  cv::GaussianBlur(textured_image(kVga, 3), image, {0, 0}, 2.0);
+  cv::GaussianBlur(textured_image(kImageSize, 3), image, {0, 0}, 2.0);
   const cv::Matx33d there = slight_motion();
   const CompensatedFrame gone = compensate(image, there, 3);
   const CompensatedFrame back = compensate(gone.image, there.inv(), 3);
-  const cv::Mat known = back.valid & valid_area(kVga, cv::Matx33d::eye(), 12);
+  const cv::Mat known = back.valid & valid_area(kImageSize, cv::Matx33d::eye(), 12);
   EXPECT_GT(cv::countNonZero(known), 640 * 480 * 9 / 10);
   cv::Mat off;
   cv::absdiff(image, back.image, off);
@@ -103,9 +103,9 @@ TEST(Compensation, WholePixelShiftIsExactAndItsBorderIsNotValid) {
 
 TEST(Compensation, ValidAreaAgreesWithWarpingAWhiteImage) {
   const cv::Matx33d tilted(0.9, 0.1, 20, -0.15, 1.05, 11, 2e-4, -3e-4, 1);
-  const cv::Mat ours = valid_area(kVga, tilted, 0);
+  const cv::Mat ours = valid_area(kImageSize, tilted, 0);
   cv::Mat warped;
-  cv::warpPerspective(all_valid(kVga), warped, tilted, kVga, cv::INTER_NEAREST);
+  cv::warpPerspective(all_valid(kImageSize), warped, tilted, kImageSize, cv::INTER_NEAREST);
   // Nearest-pixel warping also takes the half pixel beyond the edge: only the outline may differ.
   EXPECT_EQ(cv::countNonZero(ours & ~warped), 0);
   EXPECT_LT(cv::countNonZero(warped & ~ours), 2 * (640 + 480));
@@ -113,16 +113,16 @@ TEST(Compensation, ValidAreaAgreesWithWarpingAWhiteImage) {
 }
 
 TEST(Compensation, WarpedMaskAgreesWithWarpingTheWholeMask) {
-  cv::Mat mask = cv::Mat::zeros(kVga, CV_8UC1);
+  cv::Mat mask = cv::Mat::zeros(kImageSize, CV_8UC1);
   cv::circle(mask, {300, 200}, 60, 255, cv::FILLED);
   cv::rectangle(mask, {600, 400, 40, 80}, 255, cv::FILLED);
   const cv::Matx33d tilted(0.9, 0.1, 20, -0.15, 1.05, 11, 2e-4, -3e-4, 1);
   cv::Mat whole;
-  cv::warpPerspective(mask, whole, tilted, kVga, cv::INTER_NEAREST);
+  cv::warpPerspective(mask, whole, tilted, kImageSize, cv::INTER_NEAREST);
   const cv::Mat carried = warp_mask(mask, tilted);
   EXPECT_GT(cv::countNonZero(carried), 8000);
   EXPECT_LE(cv::countNonZero(carried != whole), 5);  // pixels exactly half-way may round either way
-  EXPECT_EQ(cv::countNonZero(warp_mask(cv::Mat::zeros(kVga, CV_8UC1), tilted)), 0);
+  EXPECT_EQ(cv::countNonZero(warp_mask(cv::Mat::zeros(kImageSize, CV_8UC1), tilted)), 0);
   EXPECT_EQ(cv::countNonZero(warp_mask(mask, {1, 0, 900, 0, 1, 0, 0, 0, 1})), 0);
 }
 

@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-const Camera kCamera = camera_by_name("freiburg3");
+const Camera kSolverCamera = camera_by_name("freiburg3");
 
 Pose some_pose() {
   Vector6d xi;
@@ -24,7 +24,7 @@ std::vector<PoseObservation> observe(const Pose& camera_from_world, int count, d
   std::vector<PoseObservation> observations;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector2d pixel(x(random), y(random));
-    const Eigen::Vector3d in_camera = kCamera.back_project(pixel, z(random));
+    const Eigen::Vector3d in_camera = kSolverCamera.back_project(pixel, z(random));
     PoseObservation o;
     o.point_in_world = camera_from_world.inverse() * in_camera;
     o.pixel = pixel + Eigen::Vector2d(noise(random), noise(random));
@@ -34,13 +34,13 @@ std::vector<PoseObservation> observe(const Pose& camera_from_world, int count, d
   return observations;
 }
 
-double distance(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
+double pose_distance(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
 
 TEST(RefinePose, FindsThePoseOfExactObservations) {
   for (const bool depth : {false, true}) {
     const auto observations = observe(some_pose(), 60, 0.0, depth);
-    const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
-    EXPECT_LT(distance(refined.camera_from_world, some_pose()), 1e-6);
+    const PoseRefinement refined = refine_pose(kSolverCamera, observations, Pose::Identity(), {});
+    EXPECT_LT(pose_distance(refined.camera_from_world, some_pose()), 1e-6);
     EXPECT_LT(rotation_angle(refined.camera_from_world.linear().transpose() * some_pose().linear()), 1e-6);
     EXPECT_EQ(refined.inliers, 60);
     EXPECT_GT(refined.rms_before_px, 10.0);
@@ -51,8 +51,8 @@ TEST(RefinePose, FindsThePoseOfExactObservations) {
 TEST(RefinePose, TellsOutliersApart) {
   auto observations = observe(some_pose(), 100, 0.5, true);
   for (std::size_t i = 0; i < 30; ++i) observations[i].pixel.x() += 25.0;
-  const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
-  EXPECT_LT(distance(refined.camera_from_world, some_pose()), 0.01);
+  const PoseRefinement refined = refine_pose(kSolverCamera, observations, Pose::Identity(), {});
+  EXPECT_LT(pose_distance(refined.camera_from_world, some_pose()), 0.01);
   for (std::size_t i = 0; i < 30; ++i) EXPECT_FALSE(refined.inlier[i]) << i;
   EXPECT_GE(refined.inliers, 65);
 }
@@ -70,8 +70,8 @@ std::vector<PoseObservation> drifting(double static_weight) {
 
 TEST(RefinePose, WeightsWeighObservations) {
   const auto error = [](double static_weight) {
-    return distance(refine_pose(kCamera, drifting(static_weight), some_pose(), {}).camera_from_world,
-                    some_pose());
+    return pose_distance(
+        refine_pose(kSolverCamera, drifting(static_weight), some_pose(), {}).camera_from_world, some_pose());
   };
   EXPECT_LT(error(1e-6), 1e-5);
   EXPECT_LT(error(0.1), 0.5 * error(1.0));
@@ -81,7 +81,7 @@ TEST(RefinePose, WeightsWeighObservations) {
 TEST(RefinePose, WeightsDoNotChangeWhatIsAnOutlier) {
   auto observations = drifting(1e-6);
   observations[3].pixel.x() += 20.0;
-  const PoseRefinement refined = refine_pose(kCamera, observations, some_pose(), {});
+  const PoseRefinement refined = refine_pose(kSolverCamera, observations, some_pose(), {});
   EXPECT_EQ(refined.inliers, 99);
   EXPECT_FALSE(refined.inlier[3]);
 }
@@ -89,7 +89,7 @@ TEST(RefinePose, WeightsDoNotChangeWhatIsAnOutlier) {
 TEST(RefinePose, ResidualsArePixelDistances) {
   auto observations = observe(Pose::Identity(), 40, 0.0, false);
   observations[5].pixel += Eigen::Vector2d(3.0, 4.0);  // 5 px off
-  const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), {});
+  const PoseRefinement refined = refine_pose(kSolverCamera, observations, Pose::Identity(), {});
   EXPECT_FALSE(refined.inlier[5]);
   EXPECT_NEAR(refined.residual_px[5], 5.0, 0.05);
 }
@@ -110,7 +110,7 @@ TEST(RefinePose, InformationIsTheInverseOfTheSpread) {
       o.pixel += Eigen::Vector2d(noise(random), noise(random));
       o.sigma_px = 0.5;
     }
-    const PoseRefinement refined = refine_pose(kCamera, observations, Pose::Identity(), config);
+    const PoseRefinement refined = refine_pose(kSolverCamera, observations, Pose::Identity(), config);
     const Eigen::Vector3d t = se3_log(refined.camera_from_world).head<3>();
     sum += t;
     squares += t.cwiseAbs2();
@@ -128,14 +128,15 @@ TEST(RefinePose, AHeldStartIsNotDrawnAwayByWhatMoves) {
   Pose moved = some_pose();
   moved.translation().x() += 0.03;
   for (std::size_t i = 0; i < 95; ++i) {
-    const Eigen::Vector3d p = kCamera.back_project(observations[i].pixel, 1.0);
+    const Eigen::Vector3d p = kSolverCamera.back_project(observations[i].pixel, 1.0);
     observations[i].point_in_world = moved.inverse() * p;
     observations[i].depth = 1.0;
   }
   Pose start = some_pose();
   start.translation().y() += 0.002;
   const auto error = [&](double gate) {
-    return distance(refine_pose(kCamera, observations, start, {}, gate).camera_from_world, some_pose());
+    return pose_distance(refine_pose(kSolverCamera, observations, start, {}, gate).camera_from_world,
+                         some_pose());
   };
   EXPECT_GT(error(0.0), 0.01);
   EXPECT_LT(error(2.0), 0.003);
@@ -143,9 +144,10 @@ TEST(RefinePose, AHeldStartIsNotDrawnAwayByWhatMoves) {
 }
 
 TEST(RefinePose, TooFewObservationsLeaveThePoseAlone) {
-  const PoseRefinement refined = refine_pose(kCamera, observe(Pose::Identity(), 2, 0, true), some_pose(), {});
+  const PoseRefinement refined =
+      refine_pose(kSolverCamera, observe(Pose::Identity(), 2, 0, true), some_pose(), {});
   EXPECT_EQ(refined.inliers, 0);
-  EXPECT_LT(distance(refined.camera_from_world, some_pose()), 1e-12);
+  EXPECT_LT(pose_distance(refined.camera_from_world, some_pose()), 1e-12);
 }
 
 TEST(InitialPose, EpnpInRansacSurvivesHalfOutliers) {
@@ -153,9 +155,9 @@ TEST(InitialPose, EpnpInRansacSurvivesHalfOutliers) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> x(0, 640), y(0, 480);
   for (std::size_t i = 0; i < 60; ++i) observations[i].pixel = {x(random), y(random)};
-  const auto initial = initial_pose(kCamera, observations, {});
+  const auto initial = initial_pose(kSolverCamera, observations, {});
   ASSERT_TRUE(initial);
-  EXPECT_LT(distance(initial->camera_from_world, some_pose()), 0.05);
+  EXPECT_LT(pose_distance(initial->camera_from_world, some_pose()), 0.05);
   EXPECT_GE(initial->inliers.size(), 50u);
 }
 
@@ -164,8 +166,8 @@ TEST(InitialPose, NoiseAloneGivesNone) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> x(0, 640), y(0, 480);
   for (auto& o : observations) o.pixel = {x(random), y(random)};
-  EXPECT_FALSE(initial_pose(kCamera, observations, {}));
-  EXPECT_FALSE(initial_pose(kCamera, observe(some_pose(), 5, 0, false), {}));
+  EXPECT_FALSE(initial_pose(kSolverCamera, observations, {}));
+  EXPECT_FALSE(initial_pose(kSolverCamera, observe(some_pose(), 5, 0, false), {}));
 }
 
 }  // namespace

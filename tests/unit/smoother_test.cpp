@@ -14,10 +14,10 @@
 namespace stillpoint {
 namespace {
 
-const Camera kCamera = camera_by_name("freiburg3");
+const Camera kSmootherCamera = camera_by_name("freiburg3");
 constexpr int kFrame = 5, kRoom = 60, kMover = 40;  // points of each, the room's first
 
-double distance(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
+double moved_between(const Pose& a, const Pose& b) { return (a.inverse() * b).translation().norm(); }
 
 /// A map of a room and of something in it, as one keyframe saw them; a later frame sees them from elsewhere,
 /// and by then what is in the room has gone on by four millimetres.
@@ -34,21 +34,22 @@ class LookingBack : public ::testing::Test {
     std::vector<PoseObservation> observations;
     for (int i = 0; i < kRoom + kMover; ++i) {
       const bool mover = i >= kRoom;
-      const Eigen::Vector3d point = kCamera.back_project({x(random), y(random)}, mover ? 1.5 : z(random));
+      const Eigen::Vector3d point =
+          kSmootherCamera.back_project({x(random), y(random)}, mover ? 1.5 : z(random));
       points_.push_back(map_.add_point(point, id, i));
       const Eigen::Vector3d seen = camera_from_world_ * (point + Eigen::Vector3d(mover ? 0.004 : 0.0, 0, 0));
-      const Eigen::Vector2d pixel = kCamera.project(seen);
+      const Eigen::Vector2d pixel = kSmootherCamera.project(seen);
       matches_.push_back({points_.back(), static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
                           static_cast<float>(seen.z()), 1.0F, 1.0F});
       observations.push_back({point, pixel, seen.z()});
     }
-    first_ = {id, refine_pose(kCamera, observations, Pose::Identity(), {}).camera_from_world};
+    first_ = {id, refine_pose(kSmootherCamera, observations, Pose::Identity(), {}).camera_from_world};
     smoother_.remember(kFrame, first_, matches_);
   }
 
   /// The frame's pose as it is after looking back, against the truth; m.
   [[nodiscard]] double error() const {
-    return distance(smoother_.revised().at(kFrame).camera_from_reference, camera_from_world_);
+    return moved_between(smoother_.revised().at(kFrame).camera_from_reference, camera_from_world_);
   }
 
   LocalMap map_;
@@ -60,10 +61,10 @@ class LookingBack : public ::testing::Test {
 };
 
 TEST_F(LookingBack, WhatWasFoundToMoveHasNoPartInThePose) {
-  ASSERT_GT(distance(first_.camera_from_reference, camera_from_world_), 0.0015)
+  ASSERT_GT(moved_between(first_.camera_from_reference, camera_from_world_), 0.0015)
       << "the dynamic object drew it along";
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
-  smoother_.advance(kFrame, map_, kCamera, {});
+  smoother_.advance(kFrame, map_, kSmootherCamera, {});
   EXPECT_LT(error(), 1e-5);
   EXPECT_EQ(smoother_.revised().at(kFrame).reference_keyframe, first_.reference_keyframe);
 }
@@ -71,32 +72,32 @@ TEST_F(LookingBack, WhatWasFoundToMoveHasNoPartInThePose) {
 TEST_F(LookingBack, PosesFollowThePointsTheyWereSolvedBy) {
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
   for (int i = 0; i < kRoom; ++i) map_.point(points_[static_cast<std::size_t>(i)]).position.y() += 0.01;
-  smoother_.advance(kFrame, map_, kCamera, {});
+  smoother_.advance(kFrame, map_, kSmootherCamera, {});
   EXPECT_NEAR(error(), 0.01, 1e-4);
 }
 
 TEST_F(LookingBack, IsDoneOnceAndNotBeforeItsTime) {
-  smoother_.advance(kFrame - 1, map_, kCamera, {});
+  smoother_.advance(kFrame - 1, map_, kSmootherCamera, {});
   EXPECT_TRUE(smoother_.revised().empty());
   EXPECT_EQ(smoother_.pending(), 1U);
-  smoother_.advance(kFrame, map_, kCamera, {});
+  smoother_.advance(kFrame, map_, kSmootherCamera, {});
   const Pose once = smoother_.revised().at(kFrame).camera_from_reference;
   EXPECT_EQ(smoother_.pending(), 0U);
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
-  smoother_.advance(kFrame + 100, map_, kCamera, {});
+  smoother_.advance(kFrame + 100, map_, kSmootherCamera, {});
   EXPECT_EQ(smoother_.revised().at(kFrame).camera_from_reference.matrix(), once.matrix());
 }
 
 TEST_F(LookingBack, WithTooFewPointsLeftThePoseStaysAsItWas) {
   const int third = (kRoom + kMover) / 3;
   for (int i = third - 1; i < kRoom + kMover; ++i) map_.remove_point(points_[static_cast<std::size_t>(i)]);
-  smoother_.advance(kFrame, map_, kCamera, {});
+  smoother_.advance(kFrame, map_, kSmootherCamera, {});
   EXPECT_TRUE(smoother_.revised().empty()) << "a few are no match for what it was solved by";
 }
 
 TEST_F(LookingBack, ACopyLooksBackByItself) {
   FixedLagSmoother copy = smoother_;
-  copy.advance(kFrame, map_, kCamera, {});
+  copy.advance(kFrame, map_, kSmootherCamera, {});
   EXPECT_EQ(copy.revised().size(), 1U);
   EXPECT_TRUE(smoother_.revised().empty());
   EXPECT_EQ(smoother_.pending(), 1U);
@@ -133,7 +134,7 @@ TEST_P(LookingBackInARun, ChangesNoFrameOnlyTheTrajectory) {
     const Pose &after = soon.trajectory[i].world_from_camera, &at_end = late.trajectory[i].world_from_camera;
     revised += before.matrix() != after.matrix();
     revised_at_the_end += before.matrix() != at_end.matrix();
-    EXPECT_LT(distance(before, after), 0.05) << i;
+    EXPECT_LT(moved_between(before, after), 0.05) << i;
     if (never.records[i].keyframe) {
       EXPECT_EQ(before.matrix(), after.matrix()) << "a keyframe's pose is bundle adjustment's";
     }

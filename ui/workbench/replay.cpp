@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "core/error.hpp"
+#include "core/media/image_codec.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -126,7 +126,7 @@ class Player {
     const std::filesystem::path path = options_.out / screenshot.file;
     bool written = false;
     try {
-      written = cv::imwrite(path.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 3});
+      written = save_image(path, image);
     } catch (const cv::Exception&) {
     }
     if (!written) fail(fmt::format("{} cannot be written", path.string()));

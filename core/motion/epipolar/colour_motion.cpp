@@ -16,7 +16,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kSmallerBy = 2;  // full-size pixels a side of a small pixel, in which points are followed
 constexpr int kFewestPairs = 40;
 constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
 constexpr float kExpectedNoise = 0.3F;  // px, downsampled image: of a followed point

@@ -22,6 +22,9 @@ namespace stillpoint {
 // to frame, is shared among neighbours that have moved alike all along, and spreads to the image up to
 // colour's edges.
 
+/// Full-size pixels a side of a small pixel, in which points are followed.
+inline constexpr int kSmallerBy = 2;
+
 /// Comparison of the current frame with one some frames back.
 struct ColourReference {
   int gap = 0;                 ///< frames back

@@ -13,7 +13,6 @@ namespace {
 
 constexpr const char* kPoints = "Followed points";
 constexpr const char* kJudgement = "Judgement";
-constexpr double kSmallerBy = 2.0;  // full-size px a side of a pixel that shifts are counted in
 
 double percent_of(double part, std::size_t whole) {
   return whole == 0 ? 0.0 : 100.0 * part / static_cast<double>(whole);

@@ -12,17 +12,17 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kMinPixels = 12;        // of a superpixel, for each of the tests
+constexpr int kFewestMeasured = 12;   // of a superpixel, for each of the tests
 constexpr float kFarthest = 0.5F;     // m: a step longer than this shows another surface
 constexpr double kLeastSigmas = 3.0;  // of depth: a shorter step is for superpixels that can be followed
 constexpr double kShape = 2.0;     // standard deviations of depth by which steps of one shape may spread …
 constexpr double kLeaning = 0.05;  // … and this share of the step: for what turns as it goes
-constexpr double kMinTexture = 3.0;    // grey levels, standard deviation: less is plain
-constexpr double kUnexplained = 0.35;  // share of its texture by which the same surface may look different
-constexpr int kSideways = 4;           // px, to all sides: how far a superpixel may have gone beside
-constexpr double kSameDepth = 4.0;     // standard deviations within which the nearer surface lies there
-constexpr double kTypicalStep = 0.1;   // m
-constexpr double kSurest = 20.0;       // log-odds: looks may deceive
+constexpr double kMinTexture = 3.0;      // grey levels, standard deviation: less is plain
+constexpr double kUnexplained = 0.35;    // share of its texture by which the same surface may look different
+constexpr int kSideways = 4;             // px, to all sides: how far a superpixel may have gone beside
+constexpr double kSamePatchDepth = 4.0;  // standard deviations within which the nearer surface lies there
+constexpr double kTypicalAxialStep = 0.1;  // m
+constexpr double kSurest = 20.0;           // log-odds: looks may deceive
 
 /// Steps of the pixels of one superpixel.
 struct Steps {
@@ -66,7 +66,7 @@ cv::Point2f place_of(const Seen& p, float share) {
 }
 
 float depth_tolerance(const Seen& p, const DepthNoise& noise) {
-  return static_cast<float>(kSameDepth) * noise.sigma(p.z);
+  return static_cast<float>(kSamePatchDepth) * noise.sigma(p.z);
 }
 
 /// The reference, padded so that every shift of a pixel within reach reads valid memory; the rim has no
@@ -137,7 +137,7 @@ class Shifts {
   };
   [[nodiscard]] Best best(std::size_t pixels) const {
     Best best;
-    const float fewest = std::max(static_cast<float>(kMinPixels), 0.5F * static_cast<float>(pixels));
+    const float fewest = std::max(static_cast<float>(kFewestMeasured), 0.5F * static_cast<float>(pixels));
     for (int dv = -kSideways; dv <= kSideways; ++dv)
       for (int du = -kSideways; du <= kSideways; ++du) {
         const int column = du + kSideways, block = column / Rimmed::kLanes;
@@ -198,7 +198,7 @@ double texture_of(const std::vector<Seen>& pixels) {
 /// Whether the superpixel looks as it did somewhere about where it must have been, for it may have gone
 /// sideways too: what is left of its differences is a small part of its texture.
 bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then, const Rimmed& rimmed) {
-  if (pixels.size() < kMinPixels) return false;
+  if (pixels.size() < kFewestMeasured) return false;
   const double texture = texture_of(pixels);
   if (texture < kMinTexture * kMinTexture) return false;
   Shifts::Best place;
@@ -212,7 +212,7 @@ bool looks_the_same(const std::vector<Seen>& pixels, const RgbdView& then, const
   }
   if (place.left == std::numeric_limits<float>::max()) return false;
   const Looks best = compare(pixels, then, best_share, place.du, place.dv);
-  if (best.n < kMinPixels || 2 * best.n < static_cast<double>(pixels.size())) return false;
+  if (best.n < kFewestMeasured || 2 * best.n < static_cast<double>(pixels.size())) return false;
   // The rest of a pixel is read off the slopes.
   Eigen::Matrix2d h;
   h << best.gxx - best.gx * best.gx / best.n, best.gxy - best.gx * best.gy / best.n, 0,
@@ -244,7 +244,7 @@ void measure_axial_motion(const RgbdView& current, const RgbdView& reference,
   for (std::size_t i = 0; i < superpixels.size(); ++i) {
     const Steps& s = steps[i];
     const double sigma = noise.sigma(superpixels[i].depth);
-    chosen[i] = chosen[i] != 0 && s.n >= kMinPixels && 2 * s.n > superpixels[i].pixels &&
+    chosen[i] = chosen[i] != 0 && s.n >= kFewestMeasured && 2 * s.n > superpixels[i].pixels &&
                 -s.mean() > kLeastSigmas * sigma && s.spread() < kShape * sigma + kLeaning * -s.mean();
   }
   if (std::none_of(chosen.begin(), chosen.end(), [](std::uint8_t c) { return c != 0; })) return;
@@ -267,7 +267,7 @@ void measure_axial_motion(const RgbdView& current, const RgbdView& reference,
     const double still = 9.0 * sigma * sigma / steps[i].n + noise_floor * noise_floor;
     motions[i] = {{0.0F, 0.0F},
                   static_cast<float>(step),
-                  static_cast<float>(std::min(kSurest, step_log_odds(step, still, kTypicalStep)))};
+                  static_cast<float>(std::min(kSurest, step_log_odds(step, still, kTypicalAxialStep)))};
   }
 }
 

@@ -11,13 +11,13 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr FrameSpace kSmall = FrameSpace::kSmall;
 
 /// What is said of each pixel's superpixel; NaN where it is in none, or nothing is said of it.
 template <typename OfSuperpixel>
 cv::Mat superpixel_values(const StillpointTrace& trace, const OfSuperpixel& of_superpixel) {
-  cv::Mat values(trace.labels.size(), CV_32FC1, cv::Scalar(kUnknown));
+  cv::Mat values(trace.labels.size(), CV_32FC1, cv::Scalar(kNoValue));
   for (int y = 0; y < values.rows; ++y)
     for (int x = 0; x < values.cols; ++x)
       if (const int label = trace.labels.at<int>(y, x); label >= 0)
@@ -134,7 +134,7 @@ class StillpointStages {
                                superpixel_values(trace_,
                                                  [&](std::size_t i) {
                                                    const float odds = evidence.motions[i].log_odds;
-                                                   return odds != 0.0F ? odds : kUnknown;
+                                                   return odds != 0.0F ? odds : kNoValue;
                                                  }),
                                4.0, "log-odds", kSmall, 0.0);
     for (std::size_t i = 0; i < evidence.motions.size() && i < trace_.superpixels.size(); ++i) {

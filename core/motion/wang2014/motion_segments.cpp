@@ -1,6 +1,7 @@
 #include "core/motion/wang2014/motion_segments.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/motion/wang2014/dense_labels.hpp"
 #include "core/stopwatch.hpp"
@@ -41,18 +42,39 @@ std::vector<int> of_pairs(const std::vector<int>& values, const MotionSegments& 
   return picked;
 }
 
-/// (e): the largest label is static, and what its motion explains rejoins it.
-void mend(const TrajectoryFrame& here, const Wang2014Config& config, MotionSegments& segments) {
+/// The label whose points move as most points do: of each label's rigid motion, how many of all pairs it
+/// explains. Of two that explain as many, the one with the larger area; where none explains any, the largest.
+void find_background(const std::vector<int>& label, const SceneFlowNoise& noise, const Wang2014Config& config,
+                     MotionSegments& segments, RigidFit& still) {
   const std::vector<int> areas = label_areas(segments.labels, segments.k);
   segments.background = static_cast<int>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+  std::pair<int, int> most{0, 0};  // pairs explained, area
+  for (int c = 0; c < segments.k; ++c) {
+    std::vector<ScenePair> own;
+    for (std::size_t i = 0; i < segments.pairs.size(); ++i)
+      if (label[i] == c) own.push_back(segments.pairs[i]);
+    if (own.empty()) continue;
+    const RigidFit fit = fit_rigid(own, noise, config.merge_sigmas, config.ransac_samples,
+                                   static_cast<std::uint32_t>(segments.k));
+    int explained = 0;
+    if (fit.found)
+      for (const std::uint8_t one : explained_by(fit.motion, segments.pairs, noise, config.merge_sigmas))
+        explained += one != 0 ? 1 : 0;
+    const std::pair<int, int> votes{explained, areas[static_cast<std::size_t>(c)]};
+    if (votes <= most) continue;
+    most = votes;
+    segments.background = c;
+    still = fit;
+  }
+}
+
+/// (e): what the background's motion explains rejoins it; all else is dynamic.
+void mend(const TrajectoryFrame& here, const Wang2014Config& config, MotionSegments& segments) {
   segments.explained.assign(static_cast<std::size_t>(segments.k), 0.0);
   const std::vector<int> label = of_pairs(segments.label, segments);
   const SceneFlowNoise noise = noise_of(here, config);
-  std::vector<ScenePair> own;
-  for (std::size_t i = 0; i < segments.pairs.size(); ++i)
-    if (label[i] == segments.background) own.push_back(segments.pairs[i]);
-  const RigidFit still = fit_rigid(own, noise, config.merge_sigmas, config.ransac_samples,
-                                   static_cast<std::uint32_t>(segments.k));
+  RigidFit still;
+  find_background(label, noise, config, segments, still);
   for (int c = 0; c < segments.k && still.found; ++c) {
     double& share = segments.explained[static_cast<std::size_t>(c)];
     share = explained_share(still.motion, segments.pairs, label, c, noise, config.merge_sigmas);

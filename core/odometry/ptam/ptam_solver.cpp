@@ -8,7 +8,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNearest = 0.05;        // m
 constexpr double kDepthBaseline = 0.08;  // m: inverse depth times this and the focal length, in px
 
 Eigen::Matrix<double, 2, 3> pixel_by_point(const Camera& camera, const Eigen::Vector3d& p) {
@@ -31,7 +30,7 @@ Residual residual_of(const PtamBundle& bundle, const PtamBundle::Measurement& on
   Residual residual;
   residual.p = bundle.views[static_cast<std::size_t>(one.view)].camera_from_world *
                bundle.points[static_cast<std::size_t>(one.point)].world;
-  if (residual.p.z() < kNearest) return residual;
+  if (residual.p.z() < kNearestProjected) return residual;
   const double scale = std::ldexp(1.0, -one.level);
   residual.r.head<2>() = scale * (camera.project(residual.p) - one.pixel);
   if (one.depth > 0.0)
@@ -200,9 +199,9 @@ PtamPose solve_ptam_pose(std::vector<PtamSight>& sights, const Pose& start, cons
   const auto errors = [&] {
     for (PtamSight& sight : sights) {
       const Eigen::Vector3d p = result.camera_from_world * sight.world;
-      sight.squared_px = p.z() < kNearest ? std::numeric_limits<double>::infinity()
-                                          : (camera.project(p) - sight.pixel).squaredNorm() *
-                                                std::ldexp(1.0, -2 * sight.level);
+      sight.squared_px = p.z() < kNearestProjected ? std::numeric_limits<double>::infinity()
+                                                   : (camera.project(p) - sight.pixel).squaredNorm() *
+                                                         std::ldexp(1.0, -2 * sight.level);
     }
   };
   for (int step = 0; step < config.iterations; ++step) {

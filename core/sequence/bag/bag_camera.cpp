@@ -12,13 +12,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::uint32_t kSmallestSide = 32, kLargestSide = 16384;  // px
-constexpr double kFitRemarkable = 0.05;                            // px
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
+constexpr std::uint32_t kSmallestSide = 32;  // px
+constexpr double kFitRemarkable = 0.05;      // px
 
 /// Camera's radial terms nearest to OpenCV's rational ones over the image, each place of the image weighing
 /// the same. @return the largest difference, px
@@ -60,7 +55,7 @@ std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rect
   Camera camera;
   camera.name = "camera_info";
   for (const std::uint32_t side : {info.width, info.height})
-    if (side < kSmallestSide || side > kLargestSide) {
+    if (side < kSmallestSide || side > kLargestImageSide) {
       why_not = fmt::format("{}: the camera's images are said to be {}x{} px", path, info.width, info.height);
       return std::nullopt;
     }
@@ -77,7 +72,7 @@ std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rect
   }
   std::vector<double> d = info.distortion;
   if (is_rectified || std::all_of(d.begin(), d.end(), [](double v) { return v == 0; })) return camera;
-  const std::string model = lower(info.model);
+  const std::string model = lower_case(info.model);
   const bool is_finite_too = std::all_of(d.begin(), d.end(), [](double v) { return std::isfinite(v); });
   const bool is_rational = model == "rational_polynomial";
   if (!is_finite_too ||

@@ -9,8 +9,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::uint32_t kLargestSide = 16384;  // px
-
 /// How an encoding of sensor_msgs is stored, and what OpenCV makes BGR of it; -1 = nothing needs be done.
 struct Encoding {
   const char* name;
@@ -68,10 +66,10 @@ ImageRead raw_image(const ImageMessage& message, const std::string& path) {
   }
   const std::uint64_t row =
       std::uint64_t{message.width} * static_cast<std::uint64_t>(CV_ELEM_SIZE(known->type));
-  if (message.width == 0 || message.height == 0 || message.width > kLargestSide ||
-      message.height > kLargestSide)
+  if (message.width == 0 || message.height == 0 || message.width > kLargestImageSide ||
+      message.height > kLargestImageSide)
     read.problem = fmt::format("{} claims a size of {}x{} px, expected 1 to {} px a side", path,
-                               message.width, message.height, kLargestSide);
+                               message.width, message.height, kLargestImageSide);
   else if (message.step < row)
     read.problem = fmt::format("{} is damaged: {} bytes a row for {} px of {}", path, message.step,
                                message.width, message.encoding);

@@ -8,17 +8,13 @@
 #include <initializer_list>
 
 #include "core/sequence/bag/frame_tree.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 bool has_any(const std::string& name, std::initializer_list<const char*> parts) {
-  const std::string small = lower(name);
+  const std::string small = lower_case(name);
   return std::any_of(parts.begin(), parts.end(),
                      [&](const char* part) { return small.find(part) != std::string::npos; });
 }

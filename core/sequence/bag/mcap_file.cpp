@@ -11,7 +11,7 @@ namespace {
 
 // The format: mcap.dev/spec. A file is records, each an opcode, a length and bytes.
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 constexpr std::uint64_t kRecordHead = 9;  // bytes: opcode and length
 constexpr std::uint64_t kChunkHead = 8 + 8 + 8 + 4 + 4 + 64 + 8;
 constexpr std::uint64_t kLargestRecord = 64 << 20;  // bytes, of records that are read whole
@@ -29,16 +29,10 @@ struct Channel {
   std::string topic, encoding;
 };
 
-/// `sensor_msgs/msg/Image` as ROS 1 has it.
-std::string plain_type(std::string type) {
-  if (const auto at = type.find("/msg/"); at != std::string::npos) type.erase(at, 4);
-  return type;
-}
-
 class McapFile final : public ChunkedLog {
  public:
   McapFile(const std::string& file, const std::string& path) : ChunkedLog(file, path) {
-    if (ByteReader::to_text(file_.read(0, kMagic.size())) != kMagic)
+    if (ByteReader::to_text(file_.read(0, kMcapMagic.size())) != kMcapMagic)
       throw InputError(fmt::format("{}: is no MCAP file", path));
     walk();
     for (const auto& [chunk, ids] : ids_in_)
@@ -63,7 +57,7 @@ class McapFile final : public ChunkedLog {
   /// All records from the first to the last, the chunks' contents passed over: an index stands behind each
   /// chunk, so that one way serves whole and cut files.
   void walk() {
-    for (std::uint64_t at = kMagic.size(); at < file_.size();) {
+    for (std::uint64_t at = kMcapMagic.size(); at < file_.size();) {
       const Bytes head = file_.read(at, kRecordHead);
       if (head.size() < kRecordHead) return cut_off(at);
       ByteReader reader(head);

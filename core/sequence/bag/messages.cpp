@@ -86,6 +86,11 @@ bool contains(const std::string& text, std::string_view part) { return text.find
 
 }  // namespace
 
+std::string plain_type(std::string type) {
+  if (const auto at = type.find("/msg/"); at != std::string::npos) type.erase(at, 4);
+  return type;
+}
+
 std::int64_t stamp_of(ByteView message, WireFormat format) {
   MessageReader reader(message, format);
   reader.begin_header();

@@ -26,6 +26,12 @@ inline constexpr std::size_t kStampBytes = 16;
 /// The stamp of a message that begins with a header, of which kStampBytes are enough.
 [[nodiscard]] std::int64_t stamp_of(ByteView message, WireFormat format);
 
+/// An image that is wider or higher is taken for a damaged message.
+inline constexpr std::uint32_t kLargestImageSide = 16384;  // px
+
+/// A ROS 2 type such as `sensor_msgs/msg/Image` as ROS 1 has it.
+[[nodiscard]] std::string plain_type(std::string type);
+
 /// What a sensor_msgs/Image or CompressedImage says of itself before its pixels.
 struct ImageMessage {
   MessageHeader header;

@@ -19,9 +19,9 @@ std::int64_t nanoseconds(std::uint32_t seconds, std::uint32_t rest) {
 class Ros1Bag final : public ChunkedLog {
  public:
   Ros1Bag(const std::string& file, const std::string& path) : ChunkedLog(file, path) {
-    const Bytes magic = file_.read(0, kMagic.size());
+    const Bytes magic = file_.read(0, kRos1Magic.size());
     const std::string version = ByteReader::to_text(magic);
-    if (version != kMagic)
+    if (version != kRos1Magic)
       throw InputError(version.starts_with("#ROSBAG") || version.starts_with("#ROSRECORD")
                            ? fmt::format("{}: is a bag of an older format, and 2.0 is read (`rosbag fix` "
                                          "writes it anew)",
@@ -78,7 +78,7 @@ class Ros1Bag final : public ChunkedLog {
   void walk() {
     bool is_whole = false;
     Record record;
-    for (std::uint64_t at = kMagic.size(); at < file_.size(); at = record.end()) {
+    for (std::uint64_t at = kRos1Magic.size(); at < file_.size(); at = record.end()) {
       const RecordState state = read_record(file_, at, record);
       if (state == RecordState::damaged) return damaged(at, "has a record whose header is none");
       if (state == RecordState::cut_off) return cut_off(at);

@@ -16,7 +16,7 @@ namespace stillpoint::ros1 {
 
 // The format: wiki.ros.org/Bags/Format/2.0. A file is records, each a header of named fields and data.
 
-inline constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+inline constexpr std::string_view kRos1Magic = "#ROSBAG V2.0\n";
 
 enum Op : std::uint8_t {
   kMessage = 2,

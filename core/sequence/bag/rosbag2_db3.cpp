@@ -25,11 +25,6 @@ struct CloseStatement {
 };
 using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 
-std::string plain_type(std::string type) {
-  if (const auto at = type.find("/msg/"); at != std::string::npos) type.erase(at, 4);
-  return type;
-}
-
 /// A path as SQLite's URIs have it.
 std::string uri_of(const std::string& path, bool immutable) {
   std::string uri = "file:";

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/sequence/bag/messages.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -17,11 +18,6 @@ namespace {
 constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 ImageTopic look_at(const MessageLog& log, std::size_t topic) {
   ImageTopic image;
@@ -35,7 +31,7 @@ ImageTopic look_at(const MessageLog& log, std::size_t topic) {
     image.may_be_depth = message.may_be_depth(), image.is_float = message.is_float();
     // compressed_image_transport gives depth that was not compressed for depth as plain PNG, and names no
     // kind.
-    const std::string name = lower(logged.name);
+    const std::string name = lower_case(logged.name);
     if (image.is_compressed && message.encoding.find("8UC") == std::string::npos &&
         name.find("depth") != std::string::npos && message.encoding.find("png") != std::string::npos)
       image.may_be_depth = true;
@@ -51,7 +47,7 @@ bool has_any(const std::string& name, std::initializer_list<const char*> parts) 
 
 /// How likely a topic is the colour images; below 0 it is not.
 int colour_score(const ImageTopic& image, const LoggedTopic& topic) {
-  const std::string name = lower(topic.name);
+  const std::string name = lower_case(topic.name);
   if (image.may_be_depth || image.encoding.empty() || has_any(name, {"depth", "disparity", "confidence"}))
     return -1;
   int score = has_any(name, {"rgb", "color", "colour"}) ? 40 : 10;
@@ -64,7 +60,7 @@ int colour_score(const ImageTopic& image, const LoggedTopic& topic) {
 }
 
 int depth_score(const ImageTopic& image, const LoggedTopic& topic) {
-  const std::string name = lower(topic.name);
+  const std::string name = lower_case(topic.name);
   if (!image.may_be_depth || has_any(name, {"disparity", "confidence", "infra", "/ir/"})) return -1;
   int score = has_any(name, {"depth"}) ? 20 : 5;
   if (has_any(name, {"aligned", "registered", "to_color", "to_rgb"})) score += 20;

@@ -48,9 +48,9 @@ class BagUnpacker {
   std::string unpack() {
     if (const auto found = out_.found()) return *found;
     out_.begin();
-    out_.write(view_of(std::string(kMagic)));
+    out_.write(view_of(std::string(kRos1Magic)));
     Record record;
-    for (std::uint64_t at = kMagic.size(); at < file_.size(); at = record.end()) {
+    for (std::uint64_t at = kRos1Magic.size(); at < file_.size(); at = record.end()) {
       if (read_record(file_, at, record) != RecordState::read) break;
       if (!take(record) || record.is_cut) break;
       if (options_.progress)
@@ -137,7 +137,7 @@ bool is_slow_bag(const std::string& path) {
   const RandomFile file(path);
   std::uint64_t packed = 0;
   Record record;
-  for (std::uint64_t at = kMagic.size(); at < file.size() && packed < kMany; at = record.end()) {
+  for (std::uint64_t at = kRos1Magic.size(); at < file.size() && packed < kMany; at = record.end()) {
     if (read_record(file, at, record) != RecordState::read) break;
     try {
       if (text_field(fields_of(record.header), "compression") == "bz2") packed += record.size;

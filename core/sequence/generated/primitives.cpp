@@ -7,7 +7,6 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr float kNear = 0.05f;  // m; nothing is seen nearer than this
 constexpr float kPi = 3.14159265f;
 
 /// atan2 to about 0.01 rad: picture coordinates need no better, and it runs for every sample on a limb.

@@ -13,6 +13,9 @@ using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
+/// Nothing is seen nearer than this.
+inline constexpr float kNear = 0.05f;  // m
+
 /// What a face of a primitive is covered with.
 struct Surface {
   Picture picture = Picture::kPlain;

@@ -7,8 +7,6 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr float kNear = 0.05f;  // m
-
 /// The image rectangle and least depth of a primitive's bounding box.
 struct Bounds {
   float left = 1e9f, right = -1e9f, up = 1e9f, down = -1e9f, nearest = 1e9f;

@@ -11,7 +11,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kStep = 16;              // SGBM's: disparities come in multiples of it, each in 16 parts
 constexpr int kMostDisparities = 128;  // px, where the images' width alone decides
 constexpr double kShareOfWidth = 0.2;  // … of it
 constexpr int kBlock = 5;              // px
@@ -23,7 +22,7 @@ constexpr float kLeastDisparity = 1.0F;  // px: farther, the noise of depth is a
 constexpr double kFullSigma = 0.35, kHalfSigma = 0.55;
 
 int rounded_up(double disparities) {
-  return kStep * std::max(1, static_cast<int>(std::ceil(disparities / kStep)));
+  return kDisparityStep * std::max(1, static_cast<int>(std::ceil(disparities / kDisparityStep)));
 }
 
 /// Disparities in sixteenths of a pixel, below 0 where there is none; CV_16SC1.
@@ -66,9 +65,10 @@ StereoMatch StereoMatcher::match(const cv::Mat& left, const cv::Mat& right) cons
                                                    rounded_up(0.5 * disparities_), options_.left_right_check)
                                       : sixteenths(left, right, disparities_, options_.left_right_check);
   cv::Mat kept = found.clone();
-  cv::filterSpeckles(kept, -kStep, kSpecklePixels / (factor * factor), kSpeckleRange * kStep / factor);
+  cv::filterSpeckles(kept, -kDisparityStep, kSpecklePixels / (factor * factor),
+                     kSpeckleRange * kDisparityStep / factor);
   StereoMatch result{cv::Mat::zeros(left.size(), CV_32FC1), cv::Mat(left.size(), CV_8UC1)};
-  const float unit = static_cast<float>(factor) / static_cast<float>(kStep);
+  const float unit = static_cast<float>(factor) / static_cast<float>(kDisparityStep);
   const auto most = static_cast<float>(disparities_);
   for (int y = 0; y < left.rows; ++y) {
     const auto *raw = found.ptr<std::int16_t>(std::min(y / factor, found.rows - 1)),

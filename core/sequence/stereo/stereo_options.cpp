@@ -10,14 +10,14 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kFewest = 16, kMost = 512, kStep = 16;  // px, of disparities
+constexpr int kFewest = 16, kMost = 512;  // px, of disparities
 
 int disparities_from(const std::string& value, const std::string& option) {
   const auto number = parse_number(value);
   const int whole = number && *number >= kFewest && *number <= kMost ? static_cast<int>(*number) : 0;
-  if (whole == 0 || whole != *number || whole % kStep != 0)
+  if (whole == 0 || whole != *number || whole % kDisparityStep != 0)
     throw InputError(fmt::format("{}: disparities={} is no multiple of {} from {} to {}", option, value,
-                                 kStep, kFewest, kMost));
+                                 kDisparityStep, kFewest, kMost));
   return whole;
 }
 

@@ -4,6 +4,9 @@
 
 namespace stillpoint {
 
+/// StereoSGBM's disparities come in multiples of it, each in as many parts.
+inline constexpr int kDisparityStep = 16;
+
 /// How a stereo pair is matched.
 struct StereoOptions {
   bool half = false;             ///< at half the images' size: four to eight times as fast, and less exact

@@ -13,7 +13,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kParallel = 1e-6;  // rad and relative: what rounding leaves of a rectified pair
-constexpr double kMostAside =
+constexpr double kLeastAside =
     0.70710;  // of the baseline, across the image: more lies above or below, not beside
 
 cv::Mat distortion_of(const Camera& c) { return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3); }
@@ -35,11 +35,11 @@ StereoRectification::StereoRectification(const Camera& left, const Camera& right
   const double baseline = right_in_left.norm();
   if (!(baseline > 0) || !std::isfinite(baseline))
     throw InputError(fmt::format("{}: both cameras are said to be at one place", where));
-  if (right_in_left.x() < kMostAside * baseline)
+  if (right_in_left.x() < kLeastAside * baseline)
     throw InputError(fmt::format(
         "{}: the second camera is said to lie {} the first one, expected a pair of left "
         "and right",
-        where, right_in_left.x() < -kMostAside * baseline ? "to the left of" : "above, below or before"));
+        where, right_in_left.x() < -kLeastAside * baseline ? "to the left of" : "above, below or before"));
   const bool is_rectified = !left.has_distortion() && !right.has_distortion() && is_like(left, right) &&
                             rotation_angle(right_from_left.linear()) <= kParallel &&
                             right_in_left.tail<2>().norm() <= kParallel * baseline;

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "core/out_folder.hpp"
+#include "core/sequence/association.hpp"
 
 namespace stillpoint {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTruthMaxGap = 0.05;  // s, as truth is read
 constexpr const char *kCam0 = "mav0/cam0", *kCam1 = "mav0/cam1", *kTruth = "mav0/state_groundtruth_estimate0";
 
 long long nanoseconds(double seconds) { return std::llround(seconds * 1e6) * 1000; }  // stamps are whole µs

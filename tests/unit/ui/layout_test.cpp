@@ -16,7 +16,7 @@ const std::vector<std::string> kKnown = {"a", "b", "c", "d"};
 
 LayoutNode from(const std::string& json) { return parse_layout(json, "file.json", kKnown); }
 
-std::string complaint(const std::string& json) {
+std::string layout_complaint(const std::string& json) {
   try {
     (void)from(json);
   } catch (const InputError& error) {
@@ -124,17 +124,18 @@ TEST(Layout, SharesAreScaledAndEqualWithoutAny) {
 }
 
 TEST(Layout, SaysWhatIsWrongWithAFile) {
-  EXPECT_THAT(complaint("{"), HasSubstr("file.json: is no layout: not JSON"));
-  EXPECT_THAT(complaint(R"({"panel": "z"})"), HasSubstr("no panel 'z'; the panels are a, b, c, d"));
-  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a"}, {"panel": "a"}]})"), HasSubstr("'a' is named twice"));
-  EXPECT_THAT(complaint(R"({"rows": []})"), HasSubstr("at least one tile"));
-  EXPECT_THAT(complaint("[]"), HasSubstr("must be an object"));
-  EXPECT_THAT(complaint(R"({"panel": "a", "rows": []})"), HasSubstr("one of"));
-  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a", "share": -1}]})"), HasSubstr("greater than 0"));
-  EXPECT_THAT(complaint(R"({"rows": [{"panel": "a", "share": "x"}]})"), HasSubstr("must be a number"));
+  EXPECT_THAT(layout_complaint("{"), HasSubstr("file.json: is no layout: not JSON"));
+  EXPECT_THAT(layout_complaint(R"({"panel": "z"})"), HasSubstr("no panel 'z'; the panels are a, b, c, d"));
+  EXPECT_THAT(layout_complaint(R"({"rows": [{"panel": "a"}, {"panel": "a"}]})"),
+              HasSubstr("'a' is named twice"));
+  EXPECT_THAT(layout_complaint(R"({"rows": []})"), HasSubstr("at least one tile"));
+  EXPECT_THAT(layout_complaint("[]"), HasSubstr("must be an object"));
+  EXPECT_THAT(layout_complaint(R"({"panel": "a", "rows": []})"), HasSubstr("one of"));
+  EXPECT_THAT(layout_complaint(R"({"rows": [{"panel": "a", "share": -1}]})"), HasSubstr("greater than 0"));
+  EXPECT_THAT(layout_complaint(R"({"rows": [{"panel": "a", "share": "x"}]})"), HasSubstr("must be a number"));
   std::string deep = R"({"panel": "a"})";
   for (int i = 0; i < 100; ++i) deep = R"({"rows": [)" + deep + "]}";
-  EXPECT_THAT(complaint(deep), HasSubstr("more than 32 times"));
+  EXPECT_THAT(layout_complaint(deep), HasSubstr("more than 32 times"));
 }
 
 TEST(LayoutJson, ChoicesOfPanelsComeBack) {

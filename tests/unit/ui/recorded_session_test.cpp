@@ -111,7 +111,7 @@ TEST_P(RecordedSession, WithoutImagesNothingIsLostOrTried) {
   EXPECT_GT(view->run->evaluation.ate.translation_m.count, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, RecordedSession, testing::Values("none", "paper", "stillpoint"),
+INSTANTIATE_TEST_SUITE_P(Methods, RecordedSession, ::testing::Values("none", "paper", "stillpoint"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace

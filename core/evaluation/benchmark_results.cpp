@@ -1,0 +1,160 @@
+#include "core/evaluation/benchmark_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+#include "core/text_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+template <typename Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+template <typename Value>
+void read_optional(const nlohmann::json& json, const char* key, std::optional<Value>& value) {
+  if (const auto it = json.find(key); it != json.end() && !it->is_null()) value = it->get<Value>();
+}
+
+nlohmann::ordered_json run_json(const BenchmarkResult& r) {
+  nlohmann::ordered_json json;
+  json["sequence"] = r.sequence;
+  json["odometry"] = r.odometry;
+  json["method"] = r.method;
+  json["frames"] = r.frames;
+  json["coverage"] = r.coverage;
+  json["ate_m"] = or_null(r.ate_m);
+  json["rpe_m"] = or_null(r.rpe_m);
+  json["rpe_deg"] = or_null(r.rpe_deg);
+  json["rpe_frame_m"] = or_null(r.rpe_frame_m);
+  json["pairs"] = r.pairs;
+  json["precision"] = or_null(r.precision);
+  json["recall"] = or_null(r.recall);
+  json["iou"] = or_null(r.iou);
+  json["partial_recall"] = or_null(r.partial_recall);
+  json["removed_rightly"] = or_null(r.right);
+  json["removed_wrongly"] = or_null(r.wrong);
+  json["median_ms"] = r.median_ms;
+  json["p99_ms"] = r.p99_ms;
+  json["orb_units"] = r.units;
+  json["run_hash"] = r.hash;
+  return json;
+}
+
+BenchmarkResult run_from(const nlohmann::json& json) {
+  BenchmarkResult r;
+  json.at("sequence").get_to(r.sequence);
+  json.at("odometry").get_to(r.odometry);
+  json.at("method").get_to(r.method);
+  json.at("frames").get_to(r.frames);
+  json.at("coverage").get_to(r.coverage);
+  read_optional(json, "ate_m", r.ate_m);
+  read_optional(json, "rpe_m", r.rpe_m);
+  read_optional(json, "rpe_deg", r.rpe_deg);
+  read_optional(json, "rpe_frame_m", r.rpe_frame_m);
+  json.at("pairs").get_to(r.pairs);
+  read_optional(json, "precision", r.precision);
+  read_optional(json, "recall", r.recall);
+  read_optional(json, "iou", r.iou);
+  read_optional(json, "partial_recall", r.partial_recall);
+  read_optional(json, "removed_rightly", r.right);
+  read_optional(json, "removed_wrongly", r.wrong);
+  json.at("median_ms").get_to(r.median_ms);
+  json.at("p99_ms").get_to(r.p99_ms);
+  json.at("orb_units").get_to(r.units);
+  json.at("run_hash").get_to(r.hash);
+  return r;
+}
+
+std::string figure(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
+}
+
+std::string whole(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "-"; }
+
+}  // namespace
+
+const BenchmarkResult* BenchmarkResults::find(const std::string& sequence, const std::string& odometry,
+                                              const std::string& method) const {
+  const auto it = std::find_if(runs.begin(), runs.end(), [&](const BenchmarkResult& r) {
+    return r.sequence == sequence && r.odometry == odometry && r.method == method;
+  });
+  return it == runs.end() ? nullptr : &*it;
+}
+
+std::vector<std::string> BenchmarkResults::sequences() const {
+  std::vector<std::string> names;
+  for (const BenchmarkResult& r : runs)
+    if (std::find(names.begin(), names.end(), r.sequence) == names.end()) names.push_back(r.sequence);
+  return names;
+}
+
+nlohmann::ordered_json to_json(const BenchmarkResults& results) {
+  nlohmann::ordered_json json;
+  json["program"] = "stillpoint " + results.version;
+  json["commit"] = results.commit;
+  json["machine"] = results.machine;
+  json["date"] = results.date;
+  json["command"] = results.command;
+  json["config"] = results.config;
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const BenchmarkResult& r : results.runs) json["runs"].push_back(run_json(r));
+  return json;
+}
+
+BenchmarkResults results_from_json(const std::string& text, const std::string& where) {
+  try {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    BenchmarkResults results;
+    constexpr std::string_view kProgram = "stillpoint ";
+    const auto program = json.at("program").get<std::string>();
+    results.version = program.starts_with(kProgram) ? program.substr(kProgram.size()) : program;
+    json.at("commit").get_to(results.commit);
+    json.at("machine").get_to(results.machine);
+    json.at("date").get_to(results.date);
+    json.at("command").get_to(results.command);
+    json.at("config").get_to(results.config);
+    for (const nlohmann::json& run : json.at("runs")) results.runs.push_back(run_from(run));
+    return results;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: holds no results of a benchmark ({})", where, printable(error.what())));
+  }
+}
+
+BenchmarkResults read_results(const std::string& path) { return results_from_json(read_text(path), path); }
+
+Table table_one(const BenchmarkResults& results, const std::string& odometry,
+                const std::vector<std::string>& methods, const std::string& baseline) {
+  std::vector<BenchmarkRow> rows;
+  for (const std::string& sequence : results.sequences()) {
+    BenchmarkRow row{sequence, {}};
+    for (const std::string& method : methods)
+      if (const BenchmarkResult* r = results.find(sequence, odometry, method))
+        row.cells.push_back({method, r->rpe_m, r->coverage, r->pairs});
+    if (!row.cells.empty()) rows.push_back(std::move(row));
+  }
+  return table_one(rows, methods, baseline);
+}
+
+Table details_table(const BenchmarkResults& results) {
+  Table table;
+  table.header = {"sequence",  "odometry",    "method",         "coverage %",      "ATE m",
+                  "RPE 1 s m", "RPE 1 s deg", "pairs",          "RPE 1 frame m",   "mask precision",
+                  "recall",    "IoU",         "forward recall", "removed rightly", "removed wrongly",
+                  "median ms", "p99 ms",      "ORB units"};
+  for (const BenchmarkResult& r : results.runs)
+    table.rows.push_back({r.sequence, r.odometry, r.method, fmt::format("{:.1f}", 100.0 * r.coverage),
+                          figure(r.ate_m, 4), figure(r.rpe_m, 4), figure(r.rpe_deg, 3),
+                          std::to_string(r.pairs), figure(r.rpe_frame_m, 5), figure(r.precision, 3),
+                          figure(r.recall, 3), figure(r.iou, 3), figure(r.partial_recall, 3), whole(r.right),
+                          whole(r.wrong), fmt::format("{:.1f}", r.median_ms), fmt::format("{:.1f}", r.p99_ms),
+                          fmt::format("{:.2f}", r.units)});
+  return table;
+}
+
+}  // namespace stillpoint

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/tables.hpp"
+
+namespace stillpoint {
+
+// What a benchmark leaves (`results.json`): what it measured, run by run, and what it was made by. Tables are
+// made of it, in the terminal and in pages (page_tables.hpp), so that no figure is written down twice.
+
+/// What one run of a benchmark reached. A figure is absent where there is nothing to measure it by.
+struct BenchmarkResult {
+  std::string sequence, odometry, method;
+  int frames = 0;
+  double coverage = 1.0;                     ///< share of frames with a pose, 0 to 1
+  std::optional<double> ate_m;               ///< m, RMSE
+  std::optional<double> rpe_m, rpe_deg;      ///< over 1 s, RMSE in m and degrees
+  std::optional<double> rpe_frame_m;         ///< m, over one frame, RMSE
+  int pairs = 0;                             ///< the RPE over 1 s is of
+  std::optional<double> precision, recall;   ///< of the mask, 0 to 1, by pixels of all frames
+  std::optional<double> iou;                 ///< likewise
+  std::optional<double> partial_recall;      ///< of the part of the mask that the method names (partial_mask)
+  std::optional<std::int64_t> right, wrong;  ///< features removed that are on what is dynamic, and not
+  double median_ms = 0.0, p99_ms = 0.0;      ///< wall time of tracking a frame
+  double units = 0.0;                        ///< median_ms in units of one ORB extraction; 0 = not measured
+  std::string hash;                          ///< run_hash
+  bool operator==(const BenchmarkResult&) const = default;
+};
+
+/// A benchmark's results.
+struct BenchmarkResults {
+  std::string version, commit;  ///< of the program
+  std::string machine;          ///< processor and number of cores
+  std::string date;             ///< of its end, YYYY-MM-DD
+  std::string command;          ///< what was typed
+  std::string config;           ///< TOML, but for method and odometry
+  std::vector<BenchmarkResult> runs;
+
+  /// Null where there is none.
+  [[nodiscard]] const BenchmarkResult* find(const std::string& sequence, const std::string& odometry,
+                                            const std::string& method) const;
+  /// In the order in which they first appear.
+  [[nodiscard]] std::vector<std::string> sequences() const;
+};
+
+[[nodiscard]] nlohmann::ordered_json to_json(const BenchmarkResults& results);
+
+/// @param where names the text in messages: a file's name
+/// @throws InputError where it holds no results of a benchmark
+[[nodiscard]] BenchmarkResults results_from_json(const std::string& text, const std::string& where);
+
+/// Reads a `results.json`.
+/// @throws InputError where it cannot be read or holds no results
+[[nodiscard]] BenchmarkResults read_results(const std::string& path);
+
+/// Table 1 of what one engine reached behind `methods` (table_one).
+[[nodiscard]] Table table_one(const BenchmarkResults& results, const std::string& odometry,
+                              const std::vector<std::string>& methods, const std::string& baseline);
+
+/// What Table 1 leaves out: a row a run with its other errors, coverage, masks and speed.
+[[nodiscard]] Table details_table(const BenchmarkResults& results);
+
+}  // namespace stillpoint

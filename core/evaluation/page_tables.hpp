@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/evaluation/benchmark_results.hpp"
+
+namespace stillpoint {
+
+// Tables in pages, made from a benchmark's results. A Markdown page marks where one stands:
+//
+//   <!-- table: results/table1.json rpe methods=none,paper,stillpoint -->
+//   …
+//   <!-- end of table -->
+//
+// The first word names the results, from the page's folder; the second what is shown, a row a sequence and a
+// column a method:
+//   rpe rpe_deg ate rpe_frame   errors, m (rpe_deg: degrees); "lost" where less than half the frames have a
+//                               pose, and how many have one where not all do
+//   gain                        the share by which the RPE fell against the baseline behind the same engine
+//   iou precision recall        of masks
+//   right                       of the features removed, the share on what is dynamic
+//   ms p99 units                time a frame
+//   lost                        frames without a pose
+//   published                   Table 1 of the paper with our columns beside it
+//   made                        no table: what the results were made by, in a sentence
+// Choices: methods=A,B and odometry=A,B (both in the order of the columns; otherwise all there are);
+// sequences=A,B (a name, or its beginning followed by *); names=long keeps `generated:` before names.
+
+/// The page with every marked table made anew; all else as it was.
+/// @param where names the page in messages
+/// @param baseline the method that gains are over
+/// @param read gives the results that a table names
+/// @throws InputError in one sentence for a table that names what there is not, or has no end
+[[nodiscard]] std::string with_tables(const std::string& page, const std::string& where,
+                                      const std::string& baseline,
+                                      const std::function<BenchmarkResults(const std::string& file)>& read);
+
+}  // namespace stillpoint

@@ -1,0 +1,102 @@
+#include "core/media/image_codec.hpp"
+
+#include <spng.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "core/media/media_module.hpp"
+#include "core/text_file.hpp"
+
+namespace stillpoint {
+namespace {
+
+using Context = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
+
+/// Swaps red and blue, which PNG and OpenCV have in opposite order.
+void swap_colours(cv::Mat& image) {
+  if (image.channels() == 3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
+  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_RGBA2BGRA);
+}
+
+/// A PNG of 8 or 16 bits without palette or transparent colour; empty for all else.
+cv::Mat decode_plain_png(const std::vector<unsigned char>& bytes) {
+  const Context context(spng_ctx_new(0), spng_ctx_free);
+  spng_ihdr header{};
+  spng_trns transparent{};
+  if (!context || spng_set_png_buffer(context.get(), bytes.data(), bytes.size()) != 0 ||
+      spng_get_ihdr(context.get(), &header) != 0 || header.bit_depth < 8 ||
+      header.interlace_method != SPNG_INTERLACE_NONE || spng_get_trns(context.get(), &transparent) == 0)
+    return {};
+  int channels = 0;
+  if (header.color_type == SPNG_COLOR_TYPE_GRAYSCALE) channels = 1;
+  if (header.color_type == SPNG_COLOR_TYPE_TRUECOLOR) channels = 3;
+  if (header.color_type == SPNG_COLOR_TYPE_TRUECOLOR_ALPHA) channels = 4;
+  std::size_t size = 0;
+  // SPNG_FMT_PNG: as it is stored, 16 bits in the processor's order.
+  if (channels == 0 || spng_decoded_image_size(context.get(), SPNG_FMT_PNG, &size) != 0) return {};
+  cv::Mat image(static_cast<int>(header.height), static_cast<int>(header.width),
+                CV_MAKETYPE(header.bit_depth == 16 ? CV_16U : CV_8U, channels));
+  if (size != image.total() * image.elemSize() ||
+      spng_decode_image(context.get(), image.data, size, SPNG_FMT_PNG, 0) != 0)
+    return {};
+  swap_colours(image);
+  return image;
+}
+
+}  // namespace
+
+cv::Mat decode_pixels(const std::vector<unsigned char>& bytes) {
+  cv::Mat image = decode_plain_png(bytes);
+  return image.empty() ? media_module().decode(bytes) : image;
+}
+
+std::vector<unsigned char> encode_png(const cv::Mat& image, int level) {
+  const int channels = image.channels();
+  if (image.empty() || image.depth() > CV_16U || image.depth() == CV_8S || channels == 2 || channels > 4)
+    return {};
+  cv::Mat pixels = image.isContinuous() && channels == 1 ? image : image.clone();
+  swap_colours(pixels);
+  const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
+  spng_ihdr header{};
+  header.width = static_cast<std::uint32_t>(image.cols);
+  header.height = static_cast<std::uint32_t>(image.rows);
+  header.bit_depth = image.depth() == CV_16U ? 16 : 8;
+  header.color_type = channels == 1   ? SPNG_COLOR_TYPE_GRAYSCALE
+                      : channels == 3 ? SPNG_COLOR_TYPE_TRUECOLOR
+                                      : SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
+  if (!context || spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1) != 0 ||
+      spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, level) != 0 ||
+      (level <= 1 && spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB) != 0) ||
+      spng_set_ihdr(context.get(), &header) != 0 ||
+      spng_encode_image(context.get(), pixels.data, pixels.total() * pixels.elemSize(), SPNG_FMT_PNG,
+                        SPNG_ENCODE_FINALIZE) != 0)
+    return {};
+  int error = 0;
+  std::size_t size = 0;
+  const std::unique_ptr<void, void (*)(void*)> buffer(spng_get_png_buffer(context.get(), &size, &error),
+                                                      std::free);
+  if (!buffer || error != 0) return {};
+  const auto* first = static_cast<const unsigned char*>(buffer.get());
+  return {first, first + size};
+}
+
+std::vector<unsigned char> encode_jpeg(const cv::Mat& image, int quality) {
+  constexpr int kQuality = 1;  // cv::IMWRITE_JPEG_QUALITY
+  return media_module().encode(".jpg", image, {kQuality, quality});
+}
+
+bool save_image(const std::filesystem::path& path, const cv::Mat& image, int png_level) {
+  const std::string ending = lower_case(path.extension().string());
+  const std::vector<unsigned char> bytes =
+      ending == ".png" ? encode_png(image, png_level) : media_module().encode(ending, image, {});
+  if (bytes.empty()) return false;
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return static_cast<bool>(file.flush());
+}
+
+}  // namespace stillpoint

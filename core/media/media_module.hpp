@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace stillpoint {
+
+// OpenCV's codecs of images and videos bring some 240 libraries along, which take longer to load than a frame
+// does to process. So they live in a module of their own, loaded when something is to be read or written that
+// image_codec.hpp cannot do alone.
+
+/// A video being written by OpenCV.
+class VideoSink {
+ public:
+  virtual ~VideoSink() = default;
+  /// @param codec four letters
+  /// @returns whether there is an encoder, and the file could be begun
+  virtual bool open(const std::string& path, const std::string& codec, double frames_per_second,
+                    const cv::Size& size) = 0;
+  virtual void write(const cv::Mat& image) = 0;  ///< CV_8UC3 BGR
+  virtual void close() = 0;
+};
+
+/// What the module can do.
+class MediaModule {
+ public:
+  virtual ~MediaModule() = default;
+  /// cv::imdecode as it is stored (IMREAD_UNCHANGED); empty where it is no image.
+  [[nodiscard]] virtual cv::Mat decode(const std::vector<unsigned char>& bytes) const = 0;
+  /// cv::imencode. @param ending names the format: ".jpg"
+  [[nodiscard]] virtual std::vector<unsigned char> encode(const std::string& ending, const cv::Mat& image,
+                                                          const std::vector<int>& options) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<VideoSink> video() const = 0;
+  /// How many frames of a video can be read, at most `most`.
+  [[nodiscard]] virtual int readable_frames(const std::string& path, int most) const = 0;
+};
+
+/// The module, loaded at the first call.
+/// @throws InputError where it is not beside the program
+[[nodiscard]] const MediaModule& media_module();
+
+}  // namespace stillpoint

@@ -1,0 +1,80 @@
+#include "core/media/image_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/unit/temporary_folder.hpp"
+
+namespace stillpoint {
+namespace {
+
+cv::Mat noise(int type) {
+  cv::Mat image(37, 53, type);
+  cv::theRNG().state = 7;
+  cv::randu(image, 0, image.depth() == CV_16U ? 65536 : 256);
+  return image;
+}
+
+bool same_pixels(const cv::Mat& a, const cv::Mat& b) {
+  return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0.0;
+}
+
+class ImageCodec : public testing::TestWithParam<int> {};
+
+TEST_P(ImageCodec, ReadsBackWhatItWroteAsOpenCvDoes) {
+  const cv::Mat image = noise(GetParam());
+  for (const int level : {1, 3, 9}) {
+    const auto bytes = encode_png(image, level);
+    ASSERT_FALSE(bytes.empty());
+    EXPECT_TRUE(same_pixels(decode_pixels(bytes), image)) << level;
+    EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image)) << level;
+  }
+}
+
+TEST_P(ImageCodec, ReadsWhatOpenCvWrites) {
+  const cv::Mat image = noise(GetParam());
+  for (const char* ending : {".png", ".tiff"}) {
+    std::vector<unsigned char> bytes;
+    ASSERT_TRUE(cv::imencode(ending, image, bytes));
+    EXPECT_TRUE(same_pixels(decode_pixels(bytes), image)) << ending;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, ImageCodec,
+                         testing::Values(CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4));
+
+TEST(ImageCodecs, AViewIntoALargerImageIsWrittenAlone) {
+  const cv::Mat whole = noise(CV_8UC1), part = whole(cv::Rect(5, 6, 20, 10));
+  EXPECT_TRUE(same_pixels(decode_pixels(encode_png(part, 1)), part));
+}
+
+TEST(ImageCodecs, UnusualPngsAreReadByOpenCv) {
+  // One bit a pixel, which is spread to 0 and 255.
+  cv::Mat bits(8, 8, CV_8UC1, cv::Scalar(0));
+  bits(cv::Rect(2, 2, 3, 3)) = 255;
+  std::vector<unsigned char> bytes;
+  ASSERT_TRUE(cv::imencode(".png", bits, bytes, {cv::IMWRITE_PNG_BILEVEL, 1}));
+  EXPECT_TRUE(same_pixels(decode_pixels(bytes), bits));
+}
+
+TEST(ImageCodecs, WhatIsNoImageGivesNone) {
+  EXPECT_TRUE(decode_pixels({'n', 'o', 't', 'h', 'i', 'n', 'g'}).empty());
+  EXPECT_TRUE(encode_png(cv::Mat(), 1).empty());
+  EXPECT_TRUE(encode_png(cv::Mat(4, 4, CV_32FC1, cv::Scalar(0)), 1).empty());
+}
+
+TEST(ImageCodecs, AJpegIsNearAndAFileIsWhatItsNameSays) {
+  const TemporaryFolder folder;
+  const cv::Mat plain(40, 40, CV_8UC3, cv::Scalar(20, 120, 220));
+  EXPECT_LT(cv::norm(cv::imdecode(encode_jpeg(plain, 90), cv::IMREAD_COLOR), plain, cv::NORM_INF), 4.0);
+  for (const char* name : {"a.png", "a.jpg", "a.BMP"}) {
+    ASSERT_TRUE(save_image(folder.path(name), plain)) << name;
+    EXPECT_LT(cv::norm(cv::imread(folder.path(name)), plain, cv::NORM_INF), 4.0) << name;
+  }
+  EXPECT_FALSE(save_image(folder.path("nowhere/a.png"), plain));
+}
+
+}  // namespace
+}  // namespace stillpoint
