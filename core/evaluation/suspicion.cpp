@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/median.hpp"
 
 namespace stillpoint {
@@ -57,7 +58,7 @@ std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched) {
     normal += lever.transpose() * lever;
     right += lever.transpose() * (body_from_camera.linear() * b.translation() - a.translation());
   }
-  body_from_camera.translation() = normal.ldlt().solve(right);
+  body_from_camera.translation() = solve_ldlt(normal, right);
   return body_from_camera;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/motion/rgbd_view.hpp"
 #include "core/odometry/direct_level.hpp"
 
@@ -19,7 +20,7 @@ DirectLevel::Comparison descend(DirectLevel& level, const Camera& camera, int mo
   for (int i = 0; i < most_steps && current.in_view > 0; ++i) {
     DirectLevel::Equations n = level.equations(state, current);
     n.h.diagonal() += 1e-6 * n.h.diagonal() + Vector8d::Constant(1e-9);
-    const Vector8d step = -n.h.ldlt().solve(n.g);
+    const Vector8d step = -solve_ldlt(n.h, n.g);
     if (!step.allFinite()) break;
     DirectState next = state;
     // The step moves the reference's points; the target's pose takes its inverse.

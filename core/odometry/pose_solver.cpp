@@ -6,6 +6,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
+#include "core/geometry/normal_equations.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -166,7 +168,7 @@ int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, 
     ++steps;
     Matrix6d damped = current.h;
     damped.diagonal() += lambda * current.h.diagonal() + Vector6d::Constant(1e-9);
-    const Vector6d step = -damped.ldlt().solve(current.g);
+    const Vector6d step = -solve_ldlt(damped, current.g);
     if (!step.allFinite()) break;
     const Pose candidate = se3_exp(step) * pose;
     const NormalEquations next = problem.normal_equations(candidate, robust);

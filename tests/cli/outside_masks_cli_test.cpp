@@ -65,7 +65,7 @@ TEST_F(OutsideMasksCli, ScoresAreThoseOfAnyMask) {
 }
 
 TEST_F(OutsideMasksCli, WhatIsWrongWithSomeIsToldOnceAndMarked) {
-  fs::copy(folder_->path("film/mask"), folder_->path("some"), fs::copy_options::overwrite_existing);
+  fs::copy(folder_->path("film/mask"), folder_->path("some"), fs::copy_options::recursive);
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_->path("some"))) names.push_back(entry.path());
   std::sort(names.begin(), names.end());

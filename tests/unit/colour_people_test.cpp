@@ -74,7 +74,7 @@ cv::Mat man(int frame) {
   return (distance_about(a, at) * (1.0 - share) + distance_about(b, at) * share) > 0.0;
 }
 
-double share(const cv::Mat& part, const cv::Mat& whole) {
+double share_within(const cv::Mat& part, const cv::Mat& whole) {
   return static_cast<double>(cv::countNonZero(part & whole)) / cv::countNonZero(whole);
 }
 
@@ -88,8 +88,8 @@ TEST(ColourMotionOfPeople, TheWalkingManIsMaskedFromTheFourthFrameOnAndWhatStand
     const EpipolarTrace trace = detector.next(frame.colour, frame.timestamp);
     if (i < 3) continue;
     const cv::Mat truth = man(i);
-    EXPECT_GT(share(trace.mask, truth), 0.5) << i;
-    EXPECT_LT(share(trace.mask, ~truth), 0.02) << i;
+    EXPECT_GT(share_within(trace.mask, truth), 0.5) << i;
+    EXPECT_LT(share_within(trace.mask, ~truth), 0.02) << i;
   }
 }
 

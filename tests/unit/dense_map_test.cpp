@@ -13,12 +13,12 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kMapWidth = 160, kMapHeight = 120;
 constexpr double kWall = 2.0, kBoard = 1.0;  // m
 
 Camera small_camera() {
   Camera camera;
-  camera.width = kWidth, camera.height = kHeight;
+  camera.width = kMapWidth, camera.height = kMapHeight;
   camera.fx = camera.fy = 130.0;
   camera.cx = 79.5, camera.cy = 59.5;
   return camera;
@@ -30,7 +30,7 @@ cv::Vec3b wall_colour(double x, double y) {
   return odd ? cv::Vec3b(40, 80, 120) : cv::Vec3b(200, 160, 90);
 }
 
-struct Scene {
+struct MapScene {
   Frame frame;
   cv::Mat mask;
   Pose world_from_camera = Pose::Identity();
@@ -38,17 +38,17 @@ struct Scene {
 
 /// A wall before a camera that stands `right` m to the right, and a red board between columns `from` and
 /// `to`.
-Scene scene(int index, double right, int from, int to) {
+MapScene scene(int index, double right, int from, int to) {
   const Camera camera = small_camera();
-  Scene made;
+  MapScene made;
   made.world_from_camera.translation().x() = right;
   made.frame.index = index;
-  made.frame.gray = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(90));
-  made.frame.colour.create(kHeight, kWidth, CV_8UC3);
-  made.frame.depth.create(kHeight, kWidth, CV_32FC1);
-  made.mask = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  made.frame.gray = cv::Mat(kMapHeight, kMapWidth, CV_8UC1, cv::Scalar(90));
+  made.frame.colour.create(kMapHeight, kMapWidth, CV_8UC3);
+  made.frame.depth.create(kMapHeight, kMapWidth, CV_32FC1);
+  made.mask = cv::Mat::zeros(kMapHeight, kMapWidth, CV_8UC1);
+  for (int y = 0; y < kMapHeight; ++y)
+    for (int x = 0; x < kMapWidth; ++x) {
       const bool board = x >= from && x < to;
       const Eigen::Vector3d point = camera.back_project({x, y}, kWall);
       made.frame.depth.at<float>(y, x) = static_cast<float>(board ? kBoard : kWall);
@@ -62,7 +62,7 @@ Scene scene(int index, double right, int from, int to) {
 TEST(DenseMaps, HoldTheWallAndNothingOfTheBoard) {
   DenseMap map(small_camera(), {});
   for (int i = 0; i < 4; ++i) {
-    const Scene s = scene(i, 0.05 * i, 20 + 30 * i, 50 + 30 * i);
+    const MapScene s = scene(i, 0.05 * i, 20 + 30 * i, 50 + 30 * i);
     map.add(s.frame, s.world_from_camera, s.mask);
   }
   const std::vector<DensePoint> points = map.points();
@@ -78,7 +78,7 @@ TEST(DenseMaps, WithoutMasksTheBoardIsThere) {
   DenseMapOptions options;
   options.min_seen = 1;
   DenseMap map(small_camera(), options);
-  const Scene s = scene(0, 0.0, 20, 50);
+  const MapScene s = scene(0, 0.0, 20, 50);
   map.add(s.frame, s.world_from_camera, {});
   int red = 0;
   for (const DensePoint& point : map.points()) red += point.colour[2] > 200 ? 1 : 0;
@@ -87,7 +87,7 @@ TEST(DenseMaps, WithoutMasksTheBoardIsThere) {
 
 TEST(DenseMaps, WhatOneFrameAloneSawIsLeftOut) {
   DenseMap map(small_camera(), {});
-  const Scene a = scene(0, 0.0, 0, 0), b = scene(1, 0.0, 80, kWidth);
+  const MapScene a = scene(0, 0.0, 0, 0), b = scene(1, 0.0, 80, kMapWidth);
   map.add(a.frame, a.world_from_camera, a.mask);
   map.add(b.frame, b.world_from_camera, b.mask);
   for (const DensePoint& point : map.points()) ASSERT_LT(point.position.x(), 0.05F);
@@ -111,26 +111,26 @@ TEST(DenseMaps, AreWrittenWithNormalsAndColours) {
 TEST(FilledFrames, ShowTheWallWhereTheBoardWas) {
   BackgroundFiller filler(small_camera(), {});
   for (int i = 0; i < 4; ++i) {
-    const Scene s = scene(i, 0.05 * i, 20 + 30 * i, 50 + 30 * i);
+    const MapScene s = scene(i, 0.05 * i, 20 + 30 * i, 50 + 30 * i);
     filler.add(s.frame, s.world_from_camera, s.mask);
   }
-  const Scene wanted = scene(1, 0.05, 50, 80);
+  const MapScene wanted = scene(1, 0.05, 50, 80);
   const FilledFrame filled = filler.fill(wanted.frame, wanted.world_from_camera, wanted.mask);
   EXPECT_LT(filled.unknown, 0.01);
-  const Scene clean = scene(1, 0.05, 0, 0);
+  const MapScene clean = scene(1, 0.05, 0, 0);
   cv::Mat difference;
   cv::absdiff(filled.image, clean.frame.colour, difference);
   // All but the chequer's edges, a pixel to and fro.
   int off = 0;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) off += difference.at<cv::Vec3b>(y, x) != cv::Vec3b(0, 0, 0) ? 1 : 0;
-  EXPECT_LT(off, kWidth * kHeight / 10);
-  EXPECT_EQ(cv::countNonZero(filled.filled(cv::Rect(50, 0, 30, kHeight))), 30 * kHeight);
+  for (int y = 0; y < kMapHeight; ++y)
+    for (int x = 0; x < kMapWidth; ++x) off += difference.at<cv::Vec3b>(y, x) != cv::Vec3b(0, 0, 0) ? 1 : 0;
+  EXPECT_LT(off, kMapWidth * kMapHeight / 10);
+  EXPECT_EQ(cv::countNonZero(filled.filled(cv::Rect(50, 0, 30, kMapHeight))), 30 * kMapHeight);
 }
 
 TEST(FilledFrames, WhatNobodySawIsBlackAndCounted) {
   BackgroundFiller filler(small_camera(), {});
-  const Scene s = scene(0, 0.0, 50, 80);
+  const MapScene s = scene(0, 0.0, 50, 80);
   filler.add(s.frame, s.world_from_camera, s.mask);
   const FilledFrame filled = filler.fill(s.frame, s.world_from_camera, s.mask);
   EXPECT_GT(filled.unknown, 0.9);

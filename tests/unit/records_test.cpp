@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr int kFrames = 5;
+constexpr int kRecordedFrames = 5;
 
 /// A short run of a small sequence, and its records, written and read.
 class Records : public ::testing::Test {
@@ -57,7 +57,7 @@ class Records : public ::testing::Test {
     }
   }
 
-  SmallSequence sequence_{kFrames};
+  SmallSequence sequence_{kRecordedFrames};
   TemporaryFolder out_{"out"};
   Config config_;
   std::shared_ptr<const FrameSource> source_;
@@ -147,8 +147,8 @@ TEST_F(Records, WithoutTheirSequenceTheRestStaysUsable) {
   fs::remove_all(sequence_.path());
   const OpenedRun opened = open_run(run_folder());
   EXPECT_THAT(opened.no_images, HasSubstr(sequence_.path()));
-  EXPECT_EQ(opened.source->size(), kFrames);
-  EXPECT_EQ(opened.source->ground_truth().size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(opened.source->size(), kRecordedFrames);
+  EXPECT_EQ(opened.source->ground_truth().size(), static_cast<std::size_t>(kRecordedFrames));
   const Frame frame = opened.source->read(2);
   EXPECT_FALSE(frame.readable());
   EXPECT_EQ(frame.problem, opened.no_images);
@@ -174,7 +174,7 @@ TEST_F(Records, OfARunThatWasKilledOpenWithTheFramesTheyHold) {
   std::uint32_t header = 0;
   std::memcpy(&header, whole.data() + 8 + 4 + 1, sizeof(header));
   const std::size_t frames_at = kHead + header;
-  std::size_t least = kFrames, most = 0;
+  std::size_t least = kRecordedFrames, most = 0;
   for (const double share : {0.2, 0.5, 0.8, 0.97}) {
     const auto kept = static_cast<std::size_t>(share * static_cast<double>(whole.size() - frames_at));
     out_.write(records(), whole.substr(0, frames_at + kept));

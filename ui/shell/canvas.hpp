@@ -21,6 +21,9 @@ namespace stillpoint {
 
 class PanelChoices;
 
+/// ImGui lays new windows out over two frames, so what has changed is drawn this many times.
+inline constexpr int kSettlingFrames = 3;
+
 /// How the interface looks, in a window and in images alike.
 struct Look {
   ThemeName theme = ThemeName::kDark;

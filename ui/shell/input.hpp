@@ -101,6 +101,8 @@ struct Modifiers {
   bool operator==(const Modifiers&) const = default;
 };
 
+inline constexpr Modifiers kCtrl{.ctrl = true}, kShift{.shift = true};
+
 /// A key with its modifiers, as shortcuts are written: "Ctrl+Shift+P", "Space", "[".
 struct KeyChord {
   Key key = Key::kNone;

@@ -9,7 +9,6 @@ namespace stillpoint {
 namespace {
 
 constexpr double kFrameSeconds = 1.0 / 60.0;
-constexpr int kSettlingFrames = 3;
 constexpr int kSmallestSide = 16, kLargestSide = 16384;
 
 void require_size(int width, int height) {

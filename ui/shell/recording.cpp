@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kHead = "stillpoint recording";
 constexpr std::array<const char*, 3> kButtons{"left", "right", "middle"};
-constexpr int kLargestSide = 16384, kMostFrames = 100'000'000;
+constexpr int kLargestRecorded = 16384, kMostFrames = 100'000'000;
 constexpr double kLongestWait = 3600.0;  // s
 
 /// A line being read, word by word.
@@ -148,8 +148,8 @@ std::vector<RecordedEvent> read_event(const std::string& kind, Words& words) {
     return {Point{panel, x, words.number("y as a share", 0.0, 1.0)}};
   }
   if (kind == "size") {
-    const int width = words.whole("a width", 16, kLargestSide);
-    return {Resize{width, words.whole("a height", 16, kLargestSide)}};
+    const int width = words.whole("a width", 16, kLargestRecorded);
+    return {Resize{width, words.whole("a height", 16, kLargestRecorded)}};
   }
   if (kind == "screenshot") return {Screenshot{words.rest("a file's name")}};
   if (kind == "expect") {
@@ -226,8 +226,8 @@ bool read_start(const std::string& kind, Words& words, int line, RecordingStart&
   } else if (kind == "opened") {
     start.opened_from = words.rest("a folder or generated:KIND");
   } else if (kind == "size") {
-    start.size = {words.whole("a width", 16, kLargestSide), 0};
-    start.size[1] = words.whole("a height", 16, kLargestSide);
+    start.size = {words.whole("a width", 16, kLargestRecorded), 0};
+    start.size[1] = words.whole("a height", 16, kLargestRecorded);
   } else if (kind == "look") {
     start.theme = words.word("a theme");
     if (start.theme != "dark" && start.theme != "light")

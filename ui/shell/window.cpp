@@ -13,9 +13,6 @@
 namespace stillpoint {
 namespace {
 
-// ImGui lays new windows out over two frames, so something that changed is drawn this many times before
-// sleeping.
-constexpr int kSettlingFrames = 3;
 constexpr double kCaretBlinkSeconds = 0.25;
 constexpr double kLongestSleepSeconds = 60.0;
 

@@ -7,8 +7,6 @@
 namespace stillpoint {
 namespace {
 
-constexpr Modifiers kShift{.shift = true}, kCtrl{.ctrl = true};
-
 using Target = std::optional<int>;
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr Modifiers kCtrl{.ctrl = true}, kShift{.shift = true}, kCtrlShift{.ctrl = true, .shift = true};
+constexpr Modifiers kCtrlShift{.ctrl = true, .shift = true};
 
 }  // namespace
 

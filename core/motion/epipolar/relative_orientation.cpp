@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/geometry/se3.hpp"
 
 namespace stillpoint {
@@ -139,7 +140,7 @@ void refine(std::span<const BearingPair> pairs, double first_scale, double last_
     right.segment<3>(3) -= stiffness * motion.rate;
     normal.diagonal().head<3>().array() += 1e-9;
     normal.diagonal().tail<2>().array() += 1e-9 + 1e-4 * normal.diagonal().head<3>().maxCoeff();
-    const Vector8 change = normal.ldlt().solve(right);
+    const Vector8 change = solve_ldlt(normal, right);
     if (!change.allFinite()) return;
     motion.rotation = so3_exp(change.head<3>()) * motion.rotation;
     if (options.rate_sigma > 0.0) motion.rate += change.segment<3>(3);
@@ -231,7 +232,7 @@ Eigen::Matrix3d estimate_rotation(std::span<const BearingPair> pairs, double sig
       normal.noalias() += w * jacobian.transpose() * jacobian;
       right.noalias() += w * jacobian.transpose() * off;
     }
-    rotation = so3_exp(normal.ldlt().solve(right)) * rotation;
+    rotation = so3_exp(solve_ldlt(normal, right)) * rotation;
   }
   return rotation;
 }

@@ -10,6 +10,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/motion/residual_motion.hpp"
 
 namespace stillpoint {
@@ -146,7 +147,7 @@ Vector6d step_of(const std::vector<Patch>& patches, const Comparison& comparison
     }
     residual += kPixels;
   }
-  return hessian.ldlt().solve(gradient);
+  return solve_ldlt(hessian, gradient);
 }
 
 }  // namespace

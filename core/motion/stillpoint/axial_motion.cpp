@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/motion/stillpoint/depth_warp.hpp"
 #include "core/motion/stillpoint/superpixel_motion.hpp"
 
@@ -192,7 +193,7 @@ double texture_of(const std::vector<Seen>& pixels) {
     g += gray * at;
     squares += gray * gray;
   }
-  return std::max(0.0, squares - g.dot(h.ldlt().solve(g))) / static_cast<double>(pixels.size());
+  return std::max(0.0, squares - g.dot(solve_ldlt(h, g))) / static_cast<double>(pixels.size());
 }
 
 /// Whether the superpixel looks as it did somewhere about where it must have been, for it may have gone

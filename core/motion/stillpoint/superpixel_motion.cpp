@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/image_memory.hpp"
 #include "core/median.hpp"
 #include "core/motion/stillpoint/axial_motion.hpp"
@@ -209,7 +210,7 @@ Vector6d common_twist(const TwistTerms& terms) {
       h += weight * term.h;
       g += weight * term.g;
     }
-    twist = h.ldlt().solve(g);
+    twist = solve_ldlt(h, g);
   }
   return twist;
 }

@@ -21,7 +21,7 @@ struct MotionSegments {
   MergedClusters merged;
   std::vector<int> label;         ///< one each: its cluster after merging
   cv::Mat labels;                 ///< CV_8UC1, small: 1 + label of each pixel, 0 = none
-  int background = -1;            ///< the label with the largest area
+  int background = -1;            ///< the label whose motion explains the most pairs
   std::vector<int> rejoined;      ///< other labels that the background's motion explains
   std::vector<double> explained;  ///< one a label: share of its pairs that the background's motion explains
   cv::Mat mask;                   ///< CV_8UC1, small: 255 = dynamic

@@ -1,5 +1,5 @@
-// Method `wang2014`: trajectories of dense flow, clustered by their motion in space; all clusters but the
-// largest, and what fits it, are dynamic.
+// Method `wang2014`: trajectories of dense flow, clustered by their motion in space; the cluster that moves
+// as most trajectories do, and what fits its motion, is static, all others are dynamic.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -161,7 +161,7 @@ MethodInfo wang2014_method() {
   info.name = "wang2014";
   info.title = "Wang & Huang 2014";
   info.summary =
-      "Long trajectories of dense flow, clustered by their motion in space; the largest cluster is static.";
+      "Long trajectories of dense flow, clustered by their motion in space; static is what moves as most do.";
   info.citation =
       "Wang Y., Huang S.: Towards dense moving object segmentation based robust dense RGB-D SLAM in dynamic "
       "scenarios, ICARCV 2014, 1841-1846; segmentation after Ochs P., Malik J., Brox T., IEEE TPAMI 36(6), "

@@ -220,7 +220,7 @@ class Stages {
       dense.add_side({small_}, labels);
     }
     Stage& stage = log_.add("mask", kMask, "Mask",
-                            "What is neither the largest label nor fits its motion; holes are filled.");
+                            "What is neither the background's label nor fits its motion; holes are filled.");
     stage.ms = trace_.ms_mask;
     stage.overview = true;
     stage.figure("Mask", percent_set(trace_.mask), "%", 2);
@@ -243,7 +243,8 @@ class Stages {
       sentences.push_back(
           fmt::format("Flow brought label {} here, {} frames after the segmentation.", label, since));
     else if (label - 1 == segments->background)
-      sentences.push_back(fmt::format("Its label, {}, is the largest: the background.", label));
+      sentences.push_back(
+          fmt::format("Its label, {}, is the background: its motion explains most points.", label));
     else
       sentences.push_back(
           fmt::format("Its label is {}; the background's motion explains {:.0f} % of its points.", label,

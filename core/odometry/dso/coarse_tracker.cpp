@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/normal_equations.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -135,7 +137,8 @@ class Way {
       for (int d = 0; d < 8; ++d) h(d, d) = h(d, d) * (1.0 + damping) + 1e-9;
       const Vector8d scale = h.diagonal().cwiseSqrt().cwiseInverse();
       const Matrix8d scaled = scale.asDiagonal() * h * scale.asDiagonal();
-      const Vector8d change = -(scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * now.b));
+      const Vector8d change =
+          -(scale.asDiagonal() * solve_ldlt(scaled, Vector8d(scale.asDiagonal() * now.b)));
       if (!change.allFinite()) break;
       State moved = state;
       moved.frame_from_reference = normalised(se3_exp(change.head<6>()) * state.frame_from_reference);

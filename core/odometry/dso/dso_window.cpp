@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/odometry/row_blocks.hpp"
 
 namespace stillpoint {
@@ -114,7 +115,7 @@ class Linearisation {
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
     Eigen::VectorXd change = Eigen::VectorXd::Zero(size_);
-    change.tail(free) = -(scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b));
+    change.tail(free) = -(scale.asDiagonal() * solve_ldlt(scaled, Eigen::VectorXd(scale.asDiagonal() * b)));
     of_points.resize(parts_.size());
     for (std::size_t i = 0; i < parts_.size(); ++i)
       of_points[i] = -(parts_[i].b + parts_[i].by_frames.dot(change)) / parts_[i].h;

@@ -7,6 +7,8 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/normal_equations.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -145,7 +147,7 @@ SmallTurn turn_between(const cv::Mat& then, const cv::Mat& now, const Camera& fu
     if (count < 100) return {};
     turn.difference = squares / count;
     if (step == kSteps) break;
-    const Eigen::Vector4d change = -h.ldlt().solve(b);
+    const Eigen::Vector4d change = -solve_ldlt(h, b);
     if (!change.allFinite()) return {};
     turn.now_from_then = so3_exp(change.head<3>()) * turn.now_from_then;
     if (change.head<3>().norm() < kStill) break;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/normal_equations.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -89,7 +91,7 @@ class BundleStep {
     of_views = Eigen::VectorXd::Zero(6 * free);
     if (free > 0) {
       for (Eigen::Index i = 0; i < h.rows(); ++i) h(i, i) += damping * std::abs(h(i, i)) + 1e-9;
-      of_views = -h.ldlt().solve(b);
+      of_views = -solve_ldlt(h, b);
       if (!of_views.allFinite()) return false;
     }
     of_points.assign(parts.size(), Eigen::Vector3d::Zero());
@@ -225,7 +227,7 @@ PtamPose solve_ptam_pose(std::vector<PtamSight>& sights, const Pose& start, cons
       h.noalias() += w * j.transpose() * j;
       b.noalias() += w * j.transpose() * (scale * (camera.project(p) - sight.pixel));
     }
-    const Vector6d change = -h.ldlt().solve(b);
+    const Vector6d change = -solve_ldlt(h, b);
     if (!change.allFinite()) break;
     result.camera_from_world = normalised(se3_exp(change) * result.camera_from_world);
     ++result.iterations;

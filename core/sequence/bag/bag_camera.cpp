@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -37,7 +38,7 @@ double fit_radial(Camera& camera, const std::vector<double>& d) {
     const Eigen::Vector3d row(r * r2, r * r2 * r2, r * r2 * r2 * r2);
     a += row * row.transpose(), b += row * (r * (rational(r2) - 1));
   });
-  const Eigen::Vector3d k = a.ldlt().solve(b);
+  const Eigen::Vector3d k = solve_ldlt(a, b);
   camera.k1 = k[0], camera.k2 = k[1], camera.k3 = k[2];
   double worst = 0;
   each_place([&](double r2) {

@@ -13,12 +13,6 @@
 namespace stillpoint {
 namespace {
 
-bool has_any(const std::string& name, std::initializer_list<const char*> parts) {
-  const std::string small = lower_case(name);
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](const char* part) { return small.find(part) != std::string::npos; });
-}
-
 bool names_truth(const std::string& topic) {
   return has_any(topic, {"ground", "truth", "vicon", "mocap", "optitrack", "qualisys", "vrpn", "/gt", "_gt"});
 }

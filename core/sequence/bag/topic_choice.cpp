@@ -40,11 +40,6 @@ ImageTopic look_at(const MessageLog& log, std::size_t topic) {
   return image;
 }
 
-bool has_any(const std::string& name, std::initializer_list<const char*> parts) {
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](const char* part) { return name.find(part) != std::string::npos; });
-}
-
 /// How likely a topic is the colour images; below 0 it is not.
 int colour_score(const ImageTopic& image, const LoggedTopic& topic) {
   const std::string name = lower_case(topic.name);
@@ -187,6 +182,12 @@ class Chooser {
 };
 
 }  // namespace
+
+bool has_any(const std::string& name, std::initializer_list<const char*> parts) {
+  const std::string small = lower_case(name);
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const char* part) { return small.find(part) != std::string::npos; });
+}
 
 TopicChoice choose_topics(const MessageLog& log, const std::string& asked) {
   return Chooser(log, asked).choose();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ struct TopicChoice {
 /// The sensor_msgs/CameraInfo that belongs to a topic of images: the one that shares most of its name with
 /// it.
 [[nodiscard]] std::optional<std::size_t> info_beside(const MessageLog& log, std::size_t images);
+
+/// Whether the name of a topic or of a coordinate frame, in small letters, holds one of the parts.
+[[nodiscard]] bool has_any(const std::string& name, std::initializer_list<const char*> parts);
 
 /// A line a topic: name, type, messages, what it is read as.
 [[nodiscard]] std::vector<std::string> describe_topics(const MessageLog& log, const TopicChoice& choice,

@@ -25,7 +25,7 @@ std::vector<std::string> words_of(const std::string& text) {
 }
 
 /// What reading complains of.
-std::string complaint(const std::string& text) {
+std::string recording_complaint(const std::string& text) {
   try {
     (void)parse_recording(text, "a.txt");
   } catch (const InputError& error) {
@@ -94,10 +94,10 @@ TEST(Recording, SizeIsAStartBeforeTheFirstEventAndOneAfterIt) {
 }
 
 TEST(Recording, SaysWhatIsWrongAndWhere) {
-  EXPECT_THAT(complaint(""), HasSubstr("line 1: is no recording"));
-  EXPECT_THAT(complaint("hello\nidle\n"), HasSubstr("line 1: is no recording"));
-  EXPECT_THAT(complaint("stillpoint recording 7\n"), HasSubstr("line 1: is of another version"));
-  const auto of_line = [](const std::string& line) { return complaint(kHead + ("idle\n" + line)); };
+  EXPECT_THAT(recording_complaint(""), HasSubstr("line 1: is no recording"));
+  EXPECT_THAT(recording_complaint("hello\nidle\n"), HasSubstr("line 1: is no recording"));
+  EXPECT_THAT(recording_complaint("stillpoint recording 7\n"), HasSubstr("line 1: is of another version"));
+  const auto of_line = [](const std::string& line) { return recording_complaint(kHead + ("idle\n" + line)); };
   EXPECT_THAT(of_line("jump"), HasSubstr("a.txt, line 3: 'jump' is nothing that can happen"));
   EXPECT_THAT(of_line("wait soon"), HasSubstr("line 3: expected seconds"));
   EXPECT_THAT(of_line("wait -1"), HasSubstr("found '-1'"));
@@ -113,8 +113,9 @@ TEST(Recording, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(of_line("text hello"), HasSubstr("between quotes"));
   EXPECT_THAT(of_line("text \"\xC3\""), HasSubstr("not UTF-8"));
   EXPECT_THAT(of_line("size 0 0"), HasSubstr("a width from 16"));
-  EXPECT_THAT(complaint(std::string(kHead) + "look pink 1\n"), HasSubstr("line 2: expected dark or light"));
-  EXPECT_THAT(complaint(std::string(kHead) + "sequence many x\n"),
+  EXPECT_THAT(recording_complaint(std::string(kHead) + "look pink 1\n"),
+              HasSubstr("line 2: expected dark or light"));
+  EXPECT_THAT(recording_complaint(std::string(kHead) + "sequence many x\n"),
               HasSubstr("line 2: expected a number of frames"));
 }
 

@@ -16,7 +16,7 @@
 
 namespace stillpoint {
 
-inline constexpr int kFrames = 12;
+inline constexpr int kDebugFrames = 12;
 
 /// A session with its worker, whose views can be waited for.
 class StartedSession {
@@ -63,7 +63,7 @@ class SessionDebug : public ::testing::Test {
     return view->debug;
   }
 
-  SmallSequence folder_{kFrames};
+  SmallSequence folder_{kDebugFrames};
   std::shared_ptr<const FrameSource> source_ = open_sequence(folder_.path());
   Config config_;
 };
@@ -89,7 +89,7 @@ inline void write_masks(const SmallSequence& sequence) {
   std::string list;
   cv::Mat mask = cv::Mat::zeros(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1);
   mask(cv::Rect(40, 40, 60, 60)).setTo(255);
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kDebugFrames; ++i) {
     const std::string file = fmt::format("mask/{}.png", i);
     sequence.folder.write(file, mask);
     list += fmt::format("{:.4f} {}\n", SmallSequence::stamp(i), file);

@@ -12,7 +12,7 @@ TEST_F(SessionDebug, RequestsAreCarriedOutAtOnceWithoutAWorker) {
   EXPECT_EQ(s->view()->current->index, 5);
   EXPECT_EQ(s->view()->processed, 6);
   s->request(request::Play{true});
-  EXPECT_EQ(s->view()->current->index, kFrames - 1);
+  EXPECT_EQ(s->view()->current->index, kDebugFrames - 1);
   EXPECT_FALSE(s->view()->playing);
   s->request(request::GoTo{-7});
   EXPECT_EQ(s->view()->current->index, 0);
@@ -40,7 +40,7 @@ TEST_F(SessionDebug, PlayStopsAtABreakpointAndGoesOnFromIt) {
   s->request(request::Play{true});
   EXPECT_EQ(s->view()->current->index, 8);
   s->request(request::Play{true});
-  EXPECT_EQ(s->view()->current->index, kFrames - 1);
+  EXPECT_EQ(s->view()->current->index, kDebugFrames - 1);
   EXPECT_FALSE(debug(*s).stopped_by.has_value());
   EXPECT_THAT(debug(*s).breakpoints[1].hits, ElementsAre(5));
   EXPECT_THAT(debug(*s).breakpoints[2].hits, ElementsAre(7, 8));
@@ -102,17 +102,17 @@ TEST_F(SessionDebug, AGhostWithTheSameConfigIsTheSameRun) {
   for (const char* method : {"none", "paper", "stillpoint"}) {
     config_.run.method = method;
     const auto s = session();
-    s->request(request::GoTo{kFrames - 1});
+    s->request(request::GoTo{kDebugFrames - 1});
     s->request(request::AddGhost{config_, "same", 5});
     s->request(request::AddGhost{config_, "same from the first", 0});
     ASSERT_EQ(debug(*s).ghosts.size(), 2U);
     for (const GhostView& ghost : debug(*s).ghosts) {
       EXPECT_FALSE(ghost.busy);
       EXPECT_FALSE(ghost.diverged.has_value()) << method << " " << *ghost.diverged;
-      EXPECT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
+      EXPECT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kDebugFrames));
       EXPECT_EQ(run_hash(ghost.run->records), debug(*s).run_hash) << method;
       ASSERT_NE(ghost.current, nullptr);
-      EXPECT_EQ(ghost.current->index, kFrames - 1);
+      EXPECT_EQ(ghost.current->index, kDebugFrames - 1);
     }
     EXPECT_EQ(debug(*s).ghosts[0].from, 5);
     EXPECT_EQ(debug(*s).ghosts[1].from, 0);
@@ -136,7 +136,7 @@ TEST_F(SessionDebug, AGhostDivergesWhereItsConfigBegins) {
   EXPECT_EQ(debug(*s).ghosts[0].current->index, 10);
   // From its first frame on it equals a run that had this config alone.
   s->request(request::AddGhost{other, "fewer features", 0});
-  s->request(request::GoTo{kFrames - 1});
+  s->request(request::GoTo{kDebugFrames - 1});
   EXPECT_EQ(run_hash(debug(*s).ghosts[1].run->records), run_hash(run_sequence(*source_, other, {}).records));
   s->request(request::RemoveGhost{0});
   EXPECT_EQ(debug(*s).ghosts.size(), 1U);
@@ -149,14 +149,14 @@ TEST_F(SessionDebug, AGhostMayBeAnotherMethodFromTheMiddleOn) {
        {std::pair{"none", "stillpoint"}, {"stillpoint", "paper"}, {"paper", "none"}}) {
     config_.run.method = from;
     const auto s = session();
-    s->request(request::GoTo{kFrames - 1});
+    s->request(request::GoTo{kDebugFrames - 1});
     Config other = config_;
     other.run.method = to;
     s->request(request::AddGhost{other, to, 6});
     const GhostView ghost = debug(*s).ghosts[0];
     EXPECT_EQ(ghost.from, 6);
     EXPECT_EQ(ghost.run->name, to);
-    ASSERT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
+    ASSERT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kDebugFrames));
     for (const FrameRecord& record : ghost.run->records) EXPECT_TRUE(record.estimated) << record.index;
   }
 }

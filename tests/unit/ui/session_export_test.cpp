@@ -71,8 +71,8 @@ TEST_F(SessionDebug, ExportedFramesKeepTheirNumbers) {
 
 TEST_F(SessionDebug, ExportsGoOnBesideTheSessionAndCanBeStopped) {
   StartedSession s(session());
-  s->request_frame(kFrames - 1);
-  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.processed == kFrames; }));
+  s->request_frame(kDebugFrames - 1);
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.processed == kDebugFrames; }));
   const TemporaryFolder out;
   s->request(request::ExportSession{out.path("first")});
   s->request(request::ExportSession{out.path("second")});

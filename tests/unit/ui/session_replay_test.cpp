@@ -14,8 +14,8 @@ TEST_F(SessionDebug, TheHashIsTheBatchRunsHoweverOneCameThere) {
   const RunResult batch = run_sequence(*source_, config_, {});
   const auto s = session(true);
   std::mt19937 random(3);
-  for (int step = 0; step < 12; ++step) s->request(request::GoTo{static_cast<int>(random() % kFrames)});
-  s->request(request::GoTo{kFrames - 1});
+  for (int step = 0; step < 12; ++step) s->request(request::GoTo{static_cast<int>(random() % kDebugFrames)});
+  s->request(request::GoTo{kDebugFrames - 1});
   s->request(request::GoTo{0});
   EXPECT_EQ(debug(*s).run_hash, run_hash(batch.records));
 }
@@ -31,8 +31,8 @@ TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
     (void)run_sequence(*source_, config_, options);
     const auto s = session(true);
     std::mt19937 random(11);
-    std::vector<int> way = {3, 2, 1, 0, kFrames - 1, kFrames - 2};
-    for (int step = 0; step < 30; ++step) way.push_back(static_cast<int>(random() % kFrames));
+    std::vector<int> way = {3, 2, 1, 0, kDebugFrames - 1, kDebugFrames - 2};
+    for (int step = 0; step < 30; ++step) way.push_back(static_cast<int>(random() % kDebugFrames));
     int with_mask = 0;
     for (const int frame : way) {
       s->request(request::GoTo{frame});
@@ -54,7 +54,7 @@ TEST_F(SessionDebug, AnyFrameShowsTheRecordAndTheMaskOfABatchRun) {
 TEST_F(SessionDebug, APreviewsMotionStagesComeFirstAndAreThoseOfTheWhole) {
   config_.run.method = "stillpoint";
   ShownRunFixture at(*source_, config_);
-  for (int i = 0; i < kFrames; ++i) at.run.process(source_->read(i));
+  for (int i = 0; i < kDebugFrames; ++i) at.run.process(source_->read(i));
   for (const int index : {10, 4, 11}) {
     // Under the run's own config it is what the run had, and the whole what the motion stages were.
     const auto motion = at.run.motion_preview(index, config_);
@@ -108,9 +108,9 @@ TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   ReplayableRun track(*source_, config_);
   const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
-  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  for (int i = 0; i < kDebugFrames; ++i) results.push_back(track.process_next(read));
   int harmed = 0;
-  for (int index = 1; index < kFrames; ++index) {
+  for (int index = 1; index < kDebugFrames; ++index) {
     const FrameResult& first = results[static_cast<std::size_t>(index)];
     harmed += first.record.note.find("too little") != std::string::npos ? 1 : 0;
     ASSERT_TRUE(track.can_repeat_motion(index)) << index;
@@ -131,7 +131,7 @@ TEST_F(SessionDebug, MotionHadAgainFromRecordsIsTheSameToTheBit) {
   ReplayableRun track(*source_, config_);
   const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
-  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  for (int i = 0; i < kDebugFrames; ++i) results.push_back(track.process_next(read));
   const MotionStage describer(source_->camera(), config_);
   for (const int index : {11, 1, 7, 4, 5, 10}) {
     ASSERT_TRUE(track.can_repeat_motion(index)) << index;

@@ -13,7 +13,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kFrames = 12;
+constexpr int kSessionFrames = 12;
 
 Config config_of(const std::string& method) {
   Config config;
@@ -37,7 +37,7 @@ class SessionTest : public ::testing::TestWithParam<std::string> {
     return records;
   }
 
-  SmallSequence folder_{kFrames};
+  SmallSequence folder_{kSessionFrames};
   std::shared_ptr<const FrameSource> source_ = open_sequence(folder_.path());
   Config config_ = config_of(GetParam());
 };
@@ -46,13 +46,13 @@ TEST_P(SessionTest, EqualsABatchRunWhicheverWayOneGoes) {
   Session session(source_, config_);
   std::mt19937 random(5);
   for (int step = 0; step < 30; ++step) {
-    const int wanted = static_cast<int>(random() % kFrames);
+    const int wanted = static_cast<int>(random() % kSessionFrames);
     session.go_to(wanted);
     EXPECT_EQ(session.view()->current->index, wanted);
     ASSERT_NE(session.view()->current->record, nullptr);
     EXPECT_EQ(run_hash({*session.view()->current->record}), run_hash({session.record(wanted)}));
   }
-  session.go_to(kFrames - 1);
+  session.go_to(kSessionFrames - 1);
   const RunResult expected = batch();
   EXPECT_EQ(run_hash(records_of(session)), run_hash(expected.records));
   const auto view = session.view();
@@ -68,7 +68,7 @@ TEST_P(SessionTest, ReplayingAFrameGivesItsImagesAgain) {
   ReplayableRun track(*source_, config_, {.checkpoint_every = 5, .max_checkpoints = 2});
   const ReplayableRun::ReadFrame read = [this](int index) { return source_->read(index); };
   std::vector<FrameResult> results;
-  for (int i = 0; i < kFrames; ++i) results.push_back(track.process_next(read));
+  for (int i = 0; i < kSessionFrames; ++i) results.push_back(track.process_next(read));
   EXPECT_LE(track.checkpoints(), 2);
   for (const int index : {11, 0, 7, 4, 5}) {
     const FrameResult& first = results[static_cast<std::size_t>(index)];
@@ -86,9 +86,9 @@ TEST_P(SessionTest, ShowsTheMaskTheMethodUsedAfterManyOtherFrames) {
   Session session(source_, config_);
   session.go_to(3);
   const auto before = session.view()->current;
-  session.go_to(kFrames - 1);
+  session.go_to(kSessionFrames - 1);
   // Enough frames in between for what was kept of frame 3 to have gone.
-  for (int i = 4; i < kFrames; ++i) session.go_to(i);
+  for (int i = 4; i < kSessionFrames; ++i) session.go_to(i);
   session.go_to(3);
   const auto after = session.view()->current;
   ASSERT_EQ(before->mask.empty(), after->mask.empty());
@@ -118,7 +118,7 @@ TEST_P(SessionTest, TheWorkerComesToTheSame) {
   session.request_speed(1000);
   session.request_play(true);
   EXPECT_TRUE(
-      wait_for([](const SessionView& view) { return view.current->index == kFrames - 1 && !view.playing; }));
+      wait_for([](const SessionView& view) { return view.current->index == kSessionFrames - 1 && !view.playing; }));
   const RunResult expected = batch();
   ASSERT_EQ(session.view()->run->records.size(), expected.records.size());
   for (std::size_t i = 0; i < expected.records.size(); ++i) {

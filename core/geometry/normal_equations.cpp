@@ -1,0 +1,23 @@
+#include "core/geometry/normal_equations.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace stillpoint {
+
+template <int Size>
+Eigen::Matrix<double, Size, 1> solve_ldlt(const Eigen::Matrix<double, Size, Size>& h,
+                                          const Eigen::Matrix<double, Size, 1>& g) {
+  return h.ldlt().solve(g);
+}
+
+template Eigen::Matrix<double, 3, 1> solve_ldlt<3>(const Eigen::Matrix<double, 3, 3>&,
+                                                   const Eigen::Matrix<double, 3, 1>&);
+template Eigen::Matrix<double, 4, 1> solve_ldlt<4>(const Eigen::Matrix<double, 4, 4>&,
+                                                   const Eigen::Matrix<double, 4, 1>&);
+template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6, 6>&,
+                                                   const Eigen::Matrix<double, 6, 1>&);
+template Eigen::Matrix<double, 8, 1> solve_ldlt<8>(const Eigen::Matrix<double, 8, 8>&,
+                                                   const Eigen::Matrix<double, 8, 1>&);
+template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
+
+}  // namespace stillpoint

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace stillpoint {
+
+/// The solution x of h x = g by Cholesky's decomposition with pivots (LDL^T). Compiled once for each size: a file that
+/// decomposes by itself takes four seconds longer to compile.
+/// @param h symmetric and positive semidefinite @param g as many rows; sizes are 3, 4, 6, 8 or dynamic
+template <int Size>
+[[nodiscard]] Eigen::Matrix<double, Size, 1> solve_ldlt(const Eigen::Matrix<double, Size, Size>& h,
+                                                        const Eigen::Matrix<double, Size, 1>& g);
+
+}  // namespace stillpoint
