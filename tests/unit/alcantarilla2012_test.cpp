@@ -9,6 +9,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -299,7 +300,7 @@ TEST(Alcantarilla2012, ThePresetHoldsTheDefaultsAndSaysWhatIsUnknown) {
 }
 
 TEST(Alcantarilla2012, ARunGivesTheSameBytesWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 6, 1);
+  const auto source = rendered("walking_xyz", 6);
   Config config;
   config.run.method = "alcantarilla2012";
   config.run.threads = 1;

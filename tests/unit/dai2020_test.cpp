@@ -10,6 +10,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -347,7 +348,7 @@ TEST(Dai2020, ThePresetHoldsTheDefaults) {
 }
 
 TEST(Dai2020, ARunScoresFeaturesAndNoMaskWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 20, 1);
+  const auto source = rendered("walking_xyz", 20);
   Config config;
   config.run.method = "dai2020";
   config.run.threads = 1;

@@ -10,6 +10,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
@@ -17,11 +18,11 @@ namespace {
 /// Two frames of a generated sequence, and how they truly lie to each other.
 struct FramePair {
   FramePair(const char* kind, int from, int to) {
-    const auto source = make_generated_sequence(kind, to + 1, 1);
+    const auto source = rendered(kind, to + 1);
     camera = source->camera();
     const Frame frame = source->read(from), later = source->read(to);
-    reference.gray = frame.gray, reference.depth = frame.depth;
-    target.gray = later.gray, target.depth = later.depth;
+    reference.gray = frame.gray.clone(), reference.depth = frame.depth.clone();
+    target.gray = later.gray.clone(), target.depth = later.depth.clone();
     truth = source->truth(to).world_from_camera->inverse() * *source->truth(from).world_from_camera;
   }
 

@@ -15,17 +15,14 @@
 #include "core/run/run_hash.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
 
 constexpr int kFrames = 10;
 
-std::unique_ptr<FrameSource> people() {
-  OpenOptions open;
-  open.frames = kFrames;
-  return open_sequence("generated:walking_static", open);
-}
+std::shared_ptr<const FrameSource> people() { return rendered("walking_static", kFrames); }
 
 class EveryEngine : public testing::TestWithParam<std::string> {
  protected:

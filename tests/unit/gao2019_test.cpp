@@ -10,6 +10,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -339,7 +340,7 @@ TEST(Gao2019, ThePresetHoldsTheDefaults) {
 }
 
 TEST(Gao2019, ARunGivesTheSameBytesWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 8, 1);
+  const auto source = rendered("walking_xyz", 8);
   Config config;
   config.run.method = "gao2019";
   config.run.threads = 1;

@@ -9,6 +9,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -298,7 +299,7 @@ TEST(Lin2017, ThePresetHoldsTheDefaults) {
 }
 
 TEST(Lin2017, ARunScoresFeaturesAndNoMaskWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 8, 1);
+  const auto source = rendered("walking_xyz", 8);
   Config config;
   config.run.method = "lin2017";
   config.run.threads = 1;

@@ -6,6 +6,7 @@
 #include "core/motion/methods.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -33,7 +34,7 @@ class PatchySource final : public FrameSource {
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return source_->warnings(); }
 
  private:
-  std::unique_ptr<FrameSource> source_ = make_generated_sequence("walking_xyz", kFrames, 1);
+  std::shared_ptr<const FrameSource> source_ = rendered("walking_xyz", kFrames);
 };
 
 class Literature : public testing::TestWithParam<const char*> {};

@@ -14,6 +14,7 @@
 #include "core/motion/methods.hpp"
 #include "core/run/run_sequence.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
@@ -79,9 +80,7 @@ const MethodInfo& minimal_method() {
 }
 
 TEST(MotionMethods, AMinimalOneRunsAndIsInspectedAsAnyOther) {
-  OpenOptions open;
-  open.frames = 8;
-  const auto source = open_sequence("generated:walking_static", open);
+  const auto source = rendered("walking_static", 8);
   Config config;
   config.run.method = minimal_method().name;
   const RunResult run = run_sequence(*source, config);

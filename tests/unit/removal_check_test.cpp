@@ -7,6 +7,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
@@ -41,9 +42,7 @@ TEST(RemovalCheck, WithoutRemovalItIsWhatMethodNoneFinds) {
 }
 
 TEST(RemovalCheck, WithTheTrueMaskItIsWhatTheOracleFinds) {
-  OpenOptions options;
-  options.frames = 12;
-  const auto source = open_sequence("generated:walking_static", options);
+  const auto source = rendered("walking_static", 12);
   const auto run = run_sequence(*source, config_of("oracle", 1));
   bool differs = false;
   for (std::size_t i = 1; i < run.records.size(); ++i) {

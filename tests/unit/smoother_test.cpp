@@ -10,6 +10,7 @@
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
@@ -120,7 +121,7 @@ class LookingBackInARun : public ::testing::TestWithParam<const char*> {
     options.count = kFrames;
     return run_sequence(*source_, config, options);
   }
-  std::shared_ptr<const FrameSource> source_ = open_sequence("generated:walking_static");
+  std::shared_ptr<const FrameSource> source_ = rendered("walking_static", 0);
 };
 
 TEST_P(LookingBackInARun, ChangesNoFrameOnlyTheTrajectory) {
@@ -148,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, LookingBackInARun, ::testing::Values("stillpoi
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(LookingBackContinued, WithAnotherConfigThatDoesNotItLeavesPosesAsTheyAre) {
-  const auto source = open_sequence("generated:room");
+  const auto source = rendered("room", 0);
   Config config;
   config.run.method = "oracle";
   Odometry odometry(source->camera(), config);

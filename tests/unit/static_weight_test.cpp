@@ -5,6 +5,7 @@
 
 #include "core/odometry/odometry.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
@@ -57,9 +58,7 @@ struct MeanWeight {
 };
 
 MeanWeight mean_weight(const Config& config) {
-  OpenOptions options;
-  options.frames = 40;
-  const auto source = open_sequence("generated:sitting_static", options);
+  const auto source = rendered("sitting_static", 40);
   Odometry odometry(source->camera(), config);
   double sum[2] = {}, count[2] = {};
   for (int i = 0; i < source->size(); ++i) {

@@ -10,6 +10,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
 
 namespace stillpoint {
@@ -349,7 +350,7 @@ TEST(Wang2014, ThePresetHoldsTheDefaults) {
 }
 
 TEST(Wang2014, ARunIsTheSameWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 10, 1);
+  const auto source = rendered("walking_xyz", 10);
   Config config;
   config.run.method = "wang2014";
   config.run.threads = 1;

@@ -9,6 +9,7 @@
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/motion_scene.hpp"
 
 namespace stillpoint {
@@ -407,7 +408,7 @@ TEST(Yi2013, NoOtherFigureBearsItsFiguresNames) {
 }
 
 TEST(Yi2013, ARunGivesTheSameBytesWhateverTheThreads) {
-  const auto source = make_generated_sequence("walking_xyz", 6, 1);
+  const auto source = rendered("walking_xyz", 6);
   Config config;
   config.run.method = "yi2013";
   config.run.threads = 1;

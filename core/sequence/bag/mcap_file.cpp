@@ -16,12 +16,12 @@ constexpr std::uint64_t kRecordHead = 9;  // bytes: opcode and length
 constexpr std::uint64_t kChunkHead = 8 + 8 + 8 + 4 + 4 + 64 + 8;
 constexpr std::uint64_t kLargestRecord = 64 << 20;  // bytes, of records that are read whole
 enum Op : std::uint8_t {
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7
+  kMcapFooter = 2,
+  kMcapSchema = 3,
+  kMcapChannel = 4,
+  kMcapMessage = 5,
+  kMcapChunk = 6,
+  kMcapMessageIndex = 7
 };
 
 struct Channel {
@@ -71,7 +71,7 @@ class McapFile final : public ChunkedLog {
         return damaged(at, error.what());
       }
       if (there < size) return cut_off(file_.size());
-      if (op == kFooter) return;
+      if (op == kMcapFooter) return;
       at = data + size;
     }
     cut_off(file_.size());
@@ -95,8 +95,8 @@ class McapFile final : public ChunkedLog {
 
   void take(std::uint8_t op, std::uint64_t at, std::uint64_t size, bool is_cut) {
     const std::uint64_t data = at + kRecordHead;
-    if (op == kChunk) return take_chunk(data, size);
-    if (op == kMessage) {
+    if (op == kMcapChunk) return take_chunk(data, size);
+    if (op == kMcapMessage) {
       // A message that lies in no chunk is one of its own.
       if (is_cut) return;
       const Bytes head = file_.read(data, 2 + 4 + 8);
@@ -104,10 +104,10 @@ class McapFile final : public ChunkedLog {
       take_message(head, static_cast<std::uint32_t>(chunks_.size()) - 1, 0);
       return;
     }
-    if (is_cut || (op != kSchema && op != kChannel && op != kMessageIndex)) return;
+    if (is_cut || (op != kMcapSchema && op != kMcapChannel && op != kMcapMessageIndex)) return;
     if (size > kLargestRecord) throw MalformedBytes("claims a record too large");
     const Bytes bytes = file_.read(data, size);
-    if (op == kMessageIndex)
+    if (op == kMcapMessageIndex)
       take_index(bytes);
     else
       take_name(op, bytes);
@@ -148,7 +148,7 @@ class McapFile final : public ChunkedLog {
   void take_name(std::uint8_t op, ByteView bytes) {
     ByteReader reader(bytes);
     const auto id = reader.number<std::uint16_t>();
-    if (op == kSchema) {
+    if (op == kMcapSchema) {
       schemas_.try_emplace(id, plain_type(reader.text()));
     } else {
       Channel channel;
@@ -175,8 +175,8 @@ class McapFile final : public ChunkedLog {
         const std::uint64_t at = reader.at();
         const auto op = reader.number<std::uint8_t>();
         const ByteView data = reader.take(reader.number<std::uint64_t>());
-        if (op == kSchema || op == kChannel) take_name(op, data);
-        if (op == kMessage && with_messages) take_message(data, chunk, at);
+        if (op == kMcapSchema || op == kMcapChannel) take_name(op, data);
+        if (op == kMcapMessage && with_messages) take_message(data, chunk, at);
       }
     } catch (const MalformedBytes&) {  // it ends within a record, which is what cut_off has told
     }

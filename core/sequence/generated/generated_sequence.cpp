@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/sequence/generated/act.hpp"
@@ -64,6 +66,7 @@ class GeneratedSequence : public FrameSource {
     const double seconds = timestamp(index) - kEpoch;
     const Instant middle = instant(seconds);
     const Rendering ideal = expose(seconds, middle, 0.0);
+    keep(index, ideal);
 
     Frame frame;
     frame.index = index;
@@ -83,7 +86,8 @@ class GeneratedSequence : public FrameSource {
 
   [[nodiscard]] FrameTruth truth(int index) const override {
     const Instant middle = instant(timestamp(index) - kEpoch);
-    const Rendering ideal = cast_depth(act_.scene, camera_, middle);
+    Rendering ideal = kept(index);
+    if (ideal.depth.empty()) ideal = cast_depth(act_.scene, camera_, middle);
     FrameTruth truth;
     truth.world_from_camera = middle.world_from_camera;
     truth.depth = ideal.depth;
@@ -117,6 +121,17 @@ class GeneratedSequence : public FrameSource {
       whole.colour += cast_frame(act_.scene, camera_, one, {&one, 1}, 1.0).colour / count;
     }
     return whole;
+  }
+
+  /// A frame's depth and ids, for its truth, which is mostly asked for next. Empty where others came between.
+  [[nodiscard]] Rendering kept(int index) const {
+    const std::lock_guard lock(mutex_);
+    const auto& [whose, ideal] = kept_[static_cast<std::size_t>(index) % kept_.size()];
+    return whose == index ? ideal : Rendering();
+  }
+  void keep(int index, const Rendering& ideal) const {
+    const std::lock_guard lock(mutex_);
+    kept_[static_cast<std::size_t>(index) % kept_.size()] = {index, {{}, ideal.depth, ideal.id}};
   }
 
   [[nodiscard]] Instant instant(double seconds, double aside = 0.0) const {
@@ -159,6 +174,8 @@ class GeneratedSequence : public FrameSource {
   std::unique_ptr<const StereoMatcher> matcher_;  // null: depth is a sensor's own
   Trajectory ground_truth_;
   std::vector<std::string> warnings_;
+  mutable std::mutex mutex_;
+  mutable std::array<std::pair<int, Rendering>, 8> kept_;  // frames and their depth and ids, none at first
 };
 
 }  // namespace
