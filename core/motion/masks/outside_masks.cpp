@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <mutex>
 #include <opencv2/imgproc.hpp>
 
 #include "core/config.hpp"
@@ -65,33 +66,57 @@ void MasksConfig::list(ParameterTable& table) {
   table.number("grow_px", grow_px, 0, 0, 100, "px", "added to what is dynamic on all sides");
 }
 
+/// The sources, from the first time that somebody asks for them.
+struct OutsideMasks::Opened {
+  explicit Opened(const MasksConfig& config) : config(config) {}
+
+  [[nodiscard]] const std::vector<MaskFiles>& files() const {
+    std::call_once(once, [this] {
+      try {
+        for (const std::string& where : split_masks(config.sources))
+          sources.emplace_back(where,
+                               MaskReading{split_masks(config.labels), config.inverted, config.first_number});
+      } catch (const InputError& error) {
+        problem = error.what();
+        sources.clear();
+      }
+    });
+    return sources;
+  }
+
+  const MasksConfig config;
+  mutable std::once_flag once;
+  mutable std::vector<MaskFiles> sources;
+  mutable std::string problem;
+};
+
 OutsideMasks::OutsideMasks(const Config& config) {
   const auto& masks = config.of<MasksConfig>();
   intersect_ = masks.combine == "intersection";
   grow_px_ = masks.grow_px;
-  try {
-    for (const std::string& where : split_masks(masks.sources))
-      sources_.push_back(std::make_shared<const MaskFiles>(
-          where, MaskReading{split_masks(masks.labels), masks.inverted, masks.first_number}));
-  } catch (const InputError& error) {
-    problem_ = error.what();
-    sources_.clear();
-  }
+  if (!split_masks(masks.sources).empty()) opened_ = std::make_shared<const Opened>(masks);
+}
+
+std::string OutsideMasks::problem() const {
+  if (!any()) return {};
+  (void)opened_->files();
+  return opened_->problem;
 }
 
 std::vector<std::string> OutsideMasks::warnings() const {
   std::vector<std::string> all;
-  for (const auto& source : sources_)
-    all.insert(all.end(), source->warnings().begin(), source->warnings().end());
+  if (!any()) return all;
+  for (const MaskFiles& source : opened_->files())
+    all.insert(all.end(), source.warnings().begin(), source.warnings().end());
   return all;
 }
 
 std::shared_ptr<const OutsideMask> OutsideMasks::read(const Frame& frame) const {
   auto outside = std::make_shared<OutsideMask>();
-  outside->problem = problem_;
-  if (frame.gray.empty()) return outside;
-  for (const auto& files : sources_) {
-    FoundMask found = files->read(frame);
+  outside->problem = problem();
+  if (frame.gray.empty() || !any()) return outside;
+  for (const MaskFiles& files : opened_->files()) {
+    FoundMask found = files.read(frame);
     if (!found.problem.empty()) outside->problem += (outside->problem.empty() ? "" : "; ") + found.problem;
     if (!found.mask.empty()) {
       grow(found.mask, grow_px_);
@@ -101,7 +126,7 @@ std::shared_ptr<const OutsideMask> OutsideMasks::read(const Frame& frame) const 
         outside->mask =
             intersect_ ? cv::Mat(outside->mask & found.mask) : cv::Mat(outside->mask | found.mask);
     }
-    outside->sources.push_back({std::filesystem::path(files->where()).filename().string(), found.mask});
+    outside->sources.push_back({std::filesystem::path(files.where()).filename().string(), found.mask});
   }
   return outside;
 }

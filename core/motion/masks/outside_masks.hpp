@@ -11,7 +11,6 @@
 namespace stillpoint {
 
 struct Config;
-class MaskFiles;
 
 /// Masks that somebody else made: method `masks` removes by them alone, any other method with them.
 struct MasksConfig {
@@ -32,15 +31,17 @@ struct MasksConfig {
 /// The sources of a list, blanks about them left out.
 [[nodiscard]] std::vector<std::string> split_masks(const std::string& list);
 
-/// The masks a config names. A value; reading is const and safe from several threads at once.
+/// The masks a config names, opened when they are first asked for: a stage is made for every frame that is
+/// shown, and most read none. A value, whose copies share what was opened; reading is const and safe from
+/// several threads at once.
 class OutsideMasks {
  public:
-  /// What cannot be opened is kept as problem(), and told again of each frame.
   explicit OutsideMasks(const Config& config);
 
-  [[nodiscard]] bool any() const { return !sources_.empty() || !problem_.empty(); }
-  /// Why a source cannot be used, one sentence; empty when all is well.
-  [[nodiscard]] const std::string& problem() const { return problem_; }
+  /// Whether the config names some.
+  [[nodiscard]] bool any() const { return opened_ != nullptr; }
+  /// Why a source cannot be used, one sentence, told of each frame; empty when all is well.
+  [[nodiscard]] std::string problem() const;
   /// How the images were understood, where that could be doubted.
   [[nodiscard]] std::vector<std::string> warnings() const;
 
@@ -48,8 +49,8 @@ class OutsideMasks {
   [[nodiscard]] std::shared_ptr<const OutsideMask> read(const Frame& frame) const;
 
  private:
-  std::vector<std::shared_ptr<const MaskFiles>> sources_;
-  std::string problem_;
+  struct Opened;
+  std::shared_ptr<const Opened> opened_;  ///< null where none are named
   bool intersect_ = false;
   int grow_px_ = 0;
 };
