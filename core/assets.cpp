@@ -29,7 +29,7 @@ std::filesystem::path assets_folder() {
 }
 
 std::filesystem::path modules_folder() {
-  const auto beside = installed("lib/stillpoint");
+  const auto beside = installed("lib/stillpoint/modules");
   return beside.empty() ? STILLPOINT_BUILT_MODULES : beside;
 }
 
