@@ -1,5 +1,6 @@
-# What a desktop and a shell look for beside the program, and three Debian packages by `cpack`: stillpoint, which needs neither of
-# the others; libstillpoint, the archives; and libstillpoint-dev, with which programs are built on them.
+# What a desktop and a shell look for beside the program, and four Debian packages by `cpack`: stillpoint, which needs none of
+# the others; stillpoint-media, the module of codecs, with the 200 packages it brings along; libstillpoint, the archives; and
+# libstillpoint-dev, with which programs are built on them.
 set(desktop ${PROJECT_SOURCE_DIR}/assets/desktop)
 install(FILES ${desktop}/stillpoint.desktop DESTINATION share/applications COMPONENT program)
 install(FILES ${desktop}/stillpoint.svg DESTINATION share/icons/hicolor/scalable/apps COMPONENT program)
@@ -22,7 +23,7 @@ set(CPACK_PACKAGE_NAME stillpoint)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
-set(CPACK_COMPONENTS_ALL program library dev)
+set(CPACK_COMPONENTS_ALL program media library dev)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -36,11 +37,20 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Loaded by name, where dpkg-shlibdeps does not see them: the window's OpenGL, and its drivers.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libgl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS stillpoint-media)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "visual debugger for visual odometry in dynamic scenes
 Stillpoint runs RGB-D and stereo visual odometry on a sequence, takes out
 what is dynamic before the camera's motion is estimated, and shows frame by
 frame what was classified as dynamic, why, and whether removing it helped: in
 a window, as images, tables and pages.")
+
+set(CPACK_DEBIAN_MEDIA_PACKAGE_NAME stillpoint-media)
+set(CPACK_DEBIAN_MEDIA_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_MEDIA_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_MEDIA_PACKAGE_ENHANCES stillpoint)
+set(CPACK_DEBIAN_MEDIA_DESCRIPTION "visual odometry in dynamic scenes - videos and more image formats
+Stillpoint reads and writes PNG and JPEG by itself. This module has it write
+videos, and read TIFF, BMP, WebP and what else OpenCV reads.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libstillpoint)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)

@@ -10,13 +10,13 @@ extern "C" [[gnu::weak]] const char* stillpoint_prefix();
 namespace stillpoint {
 namespace {
 
-/// `folder` of the installed tree: that of the program, or that of the library. Empty where it is in neither.
-std::filesystem::path installed(const char* folder) {
+/// The installed tree: the program's, else the library's. Empty where neither is installed.
+std::filesystem::path installed_tree() {
   std::error_code none;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", none);
   const std::filesystem::path library = stillpoint_prefix != nullptr ? stillpoint_prefix() : "";
   for (const auto& prefix : {program.parent_path().parent_path(), library})
-    if (!prefix.empty() && std::filesystem::is_directory(prefix / folder, none)) return prefix / folder;
+    if (!prefix.empty() && std::filesystem::is_directory(prefix / "share/stillpoint", none)) return prefix;
   return {};
 }
 
@@ -24,13 +24,13 @@ std::filesystem::path installed(const char* folder) {
 
 std::filesystem::path assets_folder() {
   if (const char* chosen = std::getenv("STILLPOINT_ASSETS")) return chosen;
-  const auto beside = installed("share/stillpoint");
-  return beside.empty() ? STILLPOINT_SOURCE_ASSETS : beside;
+  const auto tree = installed_tree();
+  return tree.empty() ? std::filesystem::path(STILLPOINT_SOURCE_ASSETS) : tree / "share/stillpoint";
 }
 
 std::filesystem::path modules_folder() {
-  const auto beside = installed("lib/stillpoint/modules");
-  return beside.empty() ? STILLPOINT_BUILT_MODULES : beside;
+  const auto tree = installed_tree();
+  return tree.empty() ? std::filesystem::path(STILLPOINT_BUILT_MODULES) : tree / "lib/stillpoint/modules";
 }
 
 }  // namespace stillpoint

@@ -43,12 +43,12 @@ TEST(InstalledLibrary, AProgramOnItRunsAMethodOfItsOwn) {
   ASSERT_EQ(configure(folder, places::source() + "/tests/consumer"), 0) << folder.read("log");
   ASSERT_EQ(run_cmake(folder, "--build '" + folder.path("build") + "'"), 0) << folder.read("log");
 
-  // A JPEG is the module's affair, which has to be found; and so has the preset.
-  const CliResult result = CliProcess({folder.path("stages.jpg")}, folder.path("build/consumer")).wait();
+  // A TIFF is the module's affair, which has to be found; and so has the preset.
+  const CliResult result = CliProcess({folder.path("stages.tiff")}, folder.path("build/consumer")).wait();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out,
               testing::MatchesRegex("RPE 1 s 0\\.0[0-9]+ m, IoU 0\\.[0-9]+, stage 'Grey difference'\n"));
-  const std::string bytes = folder.read("stages.jpg");
+  const std::string bytes = folder.read("stages.tiff");
   const cv::Mat picture = decode_pixels({bytes.begin(), bytes.end()});
   EXPECT_EQ(picture.size(), cv::Size(1600, 900));
 }
