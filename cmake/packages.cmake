@@ -1,5 +1,5 @@
 # What a desktop and a shell look for beside the program, and four Debian packages by `cpack`: stillpoint, which needs none of
-# the others; stillpoint-media, the module of codecs, with the 200 packages it brings along; libstillpoint, the archives; and
+# the others; stillpoint-media, the module of codecs, with the 170 packages it brings along; libstillpoint, the archives; and
 # libstillpoint-dev, with which programs are built on them.
 set(desktop ${PROJECT_SOURCE_DIR}/assets/desktop)
 install(FILES ${desktop}/stillpoint.desktop DESTINATION share/applications COMPONENT program)
