@@ -19,6 +19,7 @@ void add_commands(CLI::App& app) {
   add_import_command(app);
   add_replay_command(app);
   add_config_command(app);
+  add_manual_command(app);
 }
 
 }  // namespace stillpoint

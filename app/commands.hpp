@@ -31,6 +31,7 @@ void add_export_command(CLI::App& app);
 void add_import_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
+void add_manual_command(CLI::App& app);
 
 /// Opens the window on the generated demo: what `stillpoint` alone does.
 void view_demo();

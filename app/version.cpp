@@ -9,6 +9,7 @@
 #include <iterator>
 #include <thread>
 
+#include "core/version.hpp"
 #include "stillpoint_commit.hpp"
 
 namespace stillpoint {

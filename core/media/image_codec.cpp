@@ -8,6 +8,7 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/media/jpeg_codec.hpp"
 #include "core/media/media_module.hpp"
 #include "core/text_file.hpp"
 
@@ -51,6 +52,7 @@ cv::Mat decode_plain_png(const std::vector<unsigned char>& bytes) {
 
 cv::Mat decode_pixels(const std::vector<unsigned char>& bytes) {
   cv::Mat image = decode_plain_png(bytes);
+  if (image.empty()) image = decode_plain_jpeg(bytes);
   return image.empty() ? media_module().decode(bytes) : image;
 }
 
@@ -85,14 +87,16 @@ std::vector<unsigned char> encode_png(const cv::Mat& image, int level) {
 }
 
 std::vector<unsigned char> encode_jpeg(const cv::Mat& image, int quality) {
-  constexpr int kQuality = 1;  // cv::IMWRITE_JPEG_QUALITY
-  return media_module().encode(".jpg", image, {kQuality, quality});
+  return encode_plain_jpeg(image, quality);
 }
 
 bool save_image(const std::filesystem::path& path, const cv::Mat& image, int png_level) {
   const std::string ending = lower_case(path.extension().string());
-  const std::vector<unsigned char> bytes =
-      ending == ".png" ? encode_png(image, png_level) : media_module().encode(ending, image, {});
+  constexpr int kJpegQuality = 95;  // OpenCV's own
+  const std::vector<unsigned char> bytes = ending == ".png" ? encode_png(image, png_level)
+                                           : ending == ".jpg" || ending == ".jpeg"
+                                               ? encode_jpeg(image, kJpegQuality)
+                                               : media_module().encode(ending, image, {});
   if (bytes.empty()) return false;
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

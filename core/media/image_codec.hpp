@@ -7,8 +7,8 @@
 
 namespace stillpoint {
 
-// Images as bytes. PNGs of the usual kinds go through libspng; all else through OpenCV's codecs
-// (media_module.hpp), which give the same pixels.
+// Images as bytes. PNGs of the usual kinds go through libspng, JPEGs through libjpeg; all else through
+// OpenCV's codecs (media_module.hpp), which give the same pixels.
 
 /// The pixels of an encoded image as they are stored: CV_8U or CV_16U with 1, 3 (BGR) or 4 (BGRA) channels,
 /// or what the format holds. The tag of orientation is ignored. Empty where the bytes are no image that can
@@ -20,6 +20,7 @@ namespace stillpoint {
 [[nodiscard]] std::vector<unsigned char> encode_png(const cv::Mat& image, int level);
 
 /// A JPEG. @param image CV_8UC1 or CV_8UC3 @param quality 0 to 100
+/// @returns nothing where it cannot be encoded
 [[nodiscard]] std::vector<unsigned char> encode_jpeg(const cv::Mat& image, int quality);
 
 /// Writes an image, in the format that the path's ending names.

@@ -16,8 +16,10 @@ const MediaModule& media_module() {
                           ? nullptr
                           : reinterpret_cast<const MediaModule& (*)()>(::dlsym(library, "stillpoint_media"));
     if (make == nullptr)
-      throw InputError(fmt::format("the module that reads and writes images and videos cannot be loaded ({})",
-                                   ::dlerror()));
+      throw InputError(
+          fmt::format("the module for videos, and for images other than PNG and JPEG, cannot be loaded ({}); "
+                      "among Debian packages it is stillpoint-media",
+                      ::dlerror()));
     return make();
   }();
   return module;

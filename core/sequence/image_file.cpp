@@ -144,6 +144,8 @@ ImageRead decode_image(const std::string& path, Bytes bytes) {
       if (fault.empty() && result.image.empty()) fault = "is no image that can be decoded";
     }
     if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);
+  } catch (const InputError& error) {
+    result.problem = fmt::format("{} cannot be decoded: {}", path, error.what());
   } catch (const std::exception& error) {
     result.image.release();
     result.problem = fmt::format("{} cannot be decoded", path);

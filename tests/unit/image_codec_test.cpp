@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
+#include "core/media/jpeg_codec.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -63,6 +65,36 @@ TEST(ImageCodecs, WhatIsNoImageGivesNone) {
   EXPECT_TRUE(decode_pixels({'n', 'o', 't', 'h', 'i', 'n', 'g'}).empty());
   EXPECT_TRUE(encode_png(cv::Mat(), 1).empty());
   EXPECT_TRUE(encode_png(cv::Mat(4, 4, CV_32FC1, cv::Scalar(0)), 1).empty());
+}
+
+TEST(ImageCodecs, JpegsAreReadAndWrittenAsByOpenCv) {
+  for (const int type : {CV_8UC1, CV_8UC3})
+    for (const int quality : {0, 50, 95, 100}) {
+      cv::Mat image = noise(type);
+      cv::GaussianBlur(image, image, {}, 1.5);
+      std::vector<unsigned char> theirs;
+      ASSERT_TRUE(cv::imencode(".jpg", image, theirs, {cv::IMWRITE_JPEG_QUALITY, quality}));
+      EXPECT_EQ(encode_jpeg(image, quality), theirs) << quality;
+      EXPECT_TRUE(same_pixels(decode_plain_jpeg(theirs), cv::imdecode(theirs, cv::IMREAD_UNCHANGED)))
+          << quality;
+    }
+  std::vector<unsigned char> progressive;
+  const cv::Mat image = noise(CV_8UC3);
+  ASSERT_TRUE(cv::imencode(".jpg", image, progressive, {cv::IMWRITE_JPEG_PROGRESSIVE, 1}));
+  EXPECT_TRUE(same_pixels(decode_plain_jpeg(progressive), cv::imdecode(progressive, cv::IMREAD_UNCHANGED)));
+}
+
+TEST(ImageCodecs, ADamagedJpegIsLeftToOpenCv) {
+  std::vector<unsigned char> bytes = encode_jpeg(noise(CV_8UC3), 90);
+  ASSERT_FALSE(bytes.empty());
+  const std::size_t whole = bytes.size();
+  bytes.resize(whole / 2);
+  EXPECT_TRUE(decode_plain_jpeg(bytes).empty());
+  bytes.resize(12);
+  EXPECT_TRUE(decode_plain_jpeg(bytes).empty());
+  EXPECT_TRUE(decode_plain_jpeg({0xFF, 0xD8, 0xFF}).empty());
+  EXPECT_TRUE(encode_jpeg(noise(CV_16UC1), 90).empty());
+  EXPECT_TRUE(encode_jpeg(cv::Mat(), 90).empty());
 }
 
 TEST(ImageCodecs, AJpegIsNearAndAFileIsWhatItsNameSays) {
