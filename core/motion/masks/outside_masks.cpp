@@ -68,7 +68,7 @@ void MasksConfig::list(ParameterTable& table) {
 
 /// The sources, from the first time that somebody asks for them.
 struct OutsideMasks::Opened {
-  explicit Opened(const MasksConfig& config) : config(config) {}
+  explicit Opened(const MasksConfig& named) : config(named) {}
 
   [[nodiscard]] const std::vector<MaskFiles>& files() const {
     std::call_once(once, [this] {
