@@ -1,5 +1,5 @@
 # What Debian wants of a package's files, done to those that CPack is about to pack: a component a folder.
-set(desktop "${CMAKE_CURRENT_LIST_DIR}/../assets/desktop")
+set(desktop "${CMAKE_CURRENT_LIST_DIR}/../../assets/desktop")
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   set(root "${CPACK_TEMPORARY_DIRECTORY}/${component}/usr")
