@@ -101,6 +101,11 @@ std::vector<BenchmarkResult> earlier_runs(const BenchmarkArguments& arguments, c
   const std::filesystem::path path = std::filesystem::path(arguments.out) / kResultsName;
   if (!std::filesystem::exists(path)) return {};
   const BenchmarkResults earlier = read_results(path.string());
+  if (earlier.commit != made_here().commit)
+    throw InputError(
+        fmt::format("{}: was made by another build (commit {}), so that --resume cannot go on with "
+                    "it; --force begins anew",
+                    path.string(), earlier.commit));
   if (earlier.config != shared_config(config))
     throw InputError(
         fmt::format("{}: was made with other parameters, so that --resume cannot go on with it; "
@@ -202,7 +207,7 @@ void benchmark(BenchmarkArguments arguments) {
   BenchmarkResults results = made_here();
   results.config = shared_config(config);
   if (arguments.resume) results.runs = earlier_runs(arguments, config);
-  std::set<std::string> taken;
+  std::set<std::string> taken, names;
   const std::vector<std::string> places = expanded_sequences(arguments.sequences);
   for (std::size_t i = 0; i < sources.size() && !stop_requested(); ++i) {
     const auto& source = sources[i];
@@ -210,9 +215,12 @@ void benchmark(BenchmarkArguments arguments) {
     if (!arguments.out.empty()) origin = origin_of(*source, places[i], arguments.frames.options(config));
     const auto runs = runs_folder(arguments.out, source->name(), taken);
     const int frames = frames_of(*source, arguments.frames.frames);
+    std::string name = source->name();  // numbered where several sequences share it
+    for (int number = 2; !names.insert(name).second; ++number)
+      name = fmt::format("{} {}", source->name(), number);
     for (const std::string& engine : arguments.engines)
       for (const std::string& method : arguments.methods) {
-        const BenchmarkResult* known = results.find(source->name(), engine, method);
+        const BenchmarkResult* known = results.find(name, engine, method);
         if (stop_requested() || (known != nullptr && known->frames == frames)) continue;
         if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
         set_parameter(config, "run.odometry=" + engine);
@@ -221,6 +229,7 @@ void benchmark(BenchmarkArguments arguments) {
             run_and_keep(*source, config, frames, runs, arguments.force || arguments.resume, origin);
         if (!report) continue;
         results.runs.push_back(result_of(*report));
+        results.runs.back().sequence = name;
         // After each run, so that an interrupted benchmark keeps what it has.
         if (!arguments.out.empty()) write_tables(results, arguments);
       }

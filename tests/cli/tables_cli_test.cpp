@@ -44,6 +44,23 @@ TEST(BenchmarkResume, MakesOnlyTheRunsThatAreNotThere) {
   expect_one_sentence(run_cli(more), "was made with other parameters");
 }
 
+TEST(BenchmarkTwins, TwoSequencesOfOneNameAreBothRun) {
+  const SmallSequence sequence(3);
+  for (const char* twin : {"a/twin", "b/twin"}) {
+    std::filesystem::create_directories(sequence.path(twin));
+    for (const char* part : {"rgb", "depth", "rgb.txt", "depth.txt", "groundtruth.txt", "camera.toml"})
+      std::filesystem::copy(sequence.path(part), sequence.path(std::string(twin) + "/" + part),
+                            std::filesystem::copy_options::recursive);
+  }
+  const CliResult result = run_cli({"benchmark", sequence.path("a/twin"), sequence.path("b/twin"),
+                                    "--methods", "none", "--out", sequence.path("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto runs = nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs");
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].at("sequence"), "twin");
+  EXPECT_EQ(runs[1].at("sequence"), "twin 2");
+}
+
 TEST(TablesCommand, MakesAPagesTablesOfItsResultsAndSaysWhereTheyDiffer) {
   const SmallSequence sequence(4);
   ASSERT_EQ(
