@@ -6,6 +6,7 @@
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "core/check/findings.hpp"
+#include "core/check/time_calibration.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/geometry/trajectory_file.hpp"
@@ -58,6 +59,9 @@ void check(const CheckArguments& arguments) {
     for (Finding& finding : check_odometry(*source, kOdometryFrames)) findings.push_back(std::move(finding));
     for (Finding& finding : check_camera(*source, kCameraFrames)) findings.push_back(std::move(finding));
   }
+  const TimeCalibration times = arguments.estimate.empty()
+                                    ? calibrate_time(*source, Config(), {.frames = 90, .tries = 1, .runs = 1})
+                                    : TimeCalibration();
   if (!arguments.estimate.empty()) check_estimate(arguments, *source, findings);
   const Camera& camera = source->camera();
   if (arguments.json) {
@@ -81,6 +85,8 @@ void check(const CheckArguments& arguments) {
         source->has_masks() ? "yes" : "none",
         source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
     for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);
+    if (arguments.estimate.empty())
+      for (const std::string& line : to_lines(times, camera)) fmt::print("  time      {}\n", line);
     for (const Finding& finding : findings) fmt::print("  {:<9} {}\n", finding.about, finding.sentence);
     fmt::print("{}\n", findings.empty() ? "no findings" : fmt::format("{} finding(s)", findings.size()));
   }

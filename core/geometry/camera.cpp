@@ -28,12 +28,23 @@ Camera with_distortion(Camera camera, double k1, double k2, double p1, double p2
 }
 
 /// The first Kinect's and the Xtion's colour sensor, which TUM's and Bonn's sequences were filmed with, takes
-/// most of the time between frames to read an image. Of freiburg1's it was measured (assets/cameras has how);
-/// of the others it is assumed.
-constexpr double kFreiburg1Readout = 0.023, kAssumedReadout = 0.030;  // s
+/// most of the time between frames to read an image. Of freiburg1's and freiburg3's it was measured
+/// (assets/cameras has how); of the others it is assumed.
+constexpr double kAssumedReadout = 0.030;  // s
 
 Camera with_readout(Camera camera, double readout_s = kAssumedReadout) {
   camera.readout_s = readout_s;
+  return camera;
+}
+
+Camera with_depth_delay(Camera camera, double delay_s) {
+  camera.depth_delay_s = delay_s;
+  return camera;
+}
+
+Camera with_freiburg1_times(Camera camera) {
+  camera.readout_s = 0.025, camera.depth_readout_s = 0.033;
+  camera.stamp_delay_s = -0.007, camera.depth_delay_s = -0.028;
   return camera;
 }
 
@@ -131,12 +142,11 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
 const std::vector<Camera>& known_cameras() {
   // freiburg2's depth reads about 4 % short at 5000 per metre; 5208 is what ORB-SLAM2 uses.
   static const std::vector<Camera> cameras = {
-      with_readout(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989),
-                                   0.262383, -0.953104, -0.005358, 0.002628, 1.163314),
-                   kFreiburg1Readout),
+      with_freiburg1_times(with_distortion(make("freiburg1", 517.306408, 516.469215, 318.643040, 255.313989),
+                                           0.262383, -0.953104, -0.005358, 0.002628, 1.163314)),
       with_readout(with_distortion(make("freiburg2", 520.908620, 521.007327, 325.141442, 249.701764, 5208.0),
                                    0.231222, -0.784899, -0.003257, -0.000105, 0.917205)),
-      with_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6)),
+      with_depth_delay(with_readout(make("freiburg3", 535.4, 539.2, 320.1, 247.6), 0.0325), -0.032),
       make("icl_nuim", 481.20, 480.00, 319.50, 239.50),
       with_readout(with_distortion(make("bonn", 542.822841, 542.576870, 315.593520, 237.756098), 0.039903,
                                    -0.099343, -0.000730, -0.000144, 0.0)),
@@ -180,6 +190,7 @@ std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
 namespace {
 
 constexpr double kLongestBaseline = 100.0;  // m
+constexpr double kLongestTime = 0.2;        // s, of readouts and delays
 
 /// The camera of a TOML file. @param parse gives its table
 Camera camera_from_toml(const std::string& path, const std::function<toml::table()>& parse) {
@@ -192,6 +203,7 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
   }
   Camera camera;
   camera.name = path;
+  double depth_readout_s = 0.0;
   const std::pair<const char*, double*> reals[] = {{"fx", &camera.fx},
                                                    {"fy", &camera.fy},
                                                    {"cx", &camera.cx},
@@ -203,6 +215,9 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
                                                    {"k3", &camera.k3},
                                                    {"depth_scale", &camera.depth_scale},
                                                    {"readout_s", &camera.readout_s},
+                                                   {"stamp_delay_s", &camera.stamp_delay_s},
+                                                   {"depth_readout_s", &depth_readout_s},
+                                                   {"depth_delay_s", &camera.depth_delay_s},
                                                    {"baseline_m", &camera.baseline_m}};
   const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
   for (auto&& [key, node] : table) {
@@ -237,8 +252,14 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
                     path));
   if (camera.fx <= 0 || camera.fy <= 0 || camera.depth_scale <= 0)
     throw InputError(fmt::format("{}: fx, fy and depth_scale must be above 0", path));
-  if (std::abs(camera.readout_s) > 0.2)
-    throw InputError(fmt::format("{}: readout_s is given in seconds, from -0.2 to 0.2", path));
+  if (table.contains("depth_readout_s")) camera.depth_readout_s = depth_readout_s;
+  for (const auto& [name, seconds] :
+       {std::pair("readout_s", camera.readout_s),
+        std::pair("depth_readout_s", camera.depth_readout_s.value_or(0.0)),
+        std::pair("stamp_delay_s", camera.stamp_delay_s), std::pair("depth_delay_s", camera.depth_delay_s)})
+    if (std::abs(seconds) > kLongestTime)
+      throw InputError(fmt::format("{}: {} is given in seconds, from {:g} to {:g}", path, name, -kLongestTime,
+                                   kLongestTime));
   if (camera.baseline_m < 0 || camera.baseline_m > kLongestBaseline)
     throw InputError(
         fmt::format("{}: baseline_m is given in metres, from 0 to {:g}", path, kLongestBaseline));

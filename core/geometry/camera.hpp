@@ -26,8 +26,12 @@ struct Camera {
   double fx = 525.0, fy = 525.0, cx = 319.5, cy = 239.5;  ///< px
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;          ///< distortion, OpenCV's order and meaning
   double depth_scale = 5000.0;                            ///< depth image units a metre
-  double readout_s = 0.0;  ///< s from the first row's exposure to the last one's; 0 = global shutter. Stamps
-                           ///< are the middle row's
+  double readout_s = 0.0;  ///< s from the first row's exposure to the last one's, negative where the last is
+                           ///< taken first; 0 = global shutter
+  double stamp_delay_s = 0.0;  ///< s from a colour image's stamp to the moment its middle row was taken,
+                               ///< which is the frame's time: poses are of that moment
+  std::optional<double> depth_readout_s{};  ///< the same of depth images; nothing = as colour's
+  double depth_delay_s = 0.0;  ///< s from a depth image's stamp to the moment its middle row was measured
   double baseline_m =
       0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
   double depth_sigma_per_m2 = 0.0;  ///< 1/m, of a stereo pair: its depths z have standard deviation this z²
@@ -54,6 +58,21 @@ struct Camera {
 
   /// The baseline (m) whose disparity stands for depth in px: a stereo pair's own, otherwise `sensor`.
   [[nodiscard]] double baseline_or(double sensor) const { return is_stereo() ? baseline_m : sensor; }
+
+  /// When a row of colour is taken: s after the middle row.
+  [[nodiscard]] double row_time(double row) const { return ((row + 0.5) / height - 0.5) * readout_s; }
+
+  /// How long (s) after colour depth is measured, in a row of both. @param lag_s from the frame's time to
+  /// depth's stamp
+  [[nodiscard]] double depth_lag(double lag_s, double row) const {
+    const double lag = lag_s + depth_delay_s;
+    return depth_readout_s ? lag + ((row + 0.5) / height - 0.5) * (*depth_readout_s - readout_s) : lag;
+  }
+
+  /// Whether depth is measured at another moment than colour in any row.
+  [[nodiscard]] bool depth_is_late(double lag_s) const {
+    return lag_s + depth_delay_s != 0.0 || (depth_readout_s && *depth_readout_s != readout_s);
+  }
 
   /// 3x3 intrinsic matrix, CV_64F.
   [[nodiscard]] cv::Matx33d matrix() const;
@@ -95,7 +114,8 @@ struct Camera {
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
 /// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
-/// readout_s, baseline_m; or, by the file's ending, from YAML (camera_yaml.hpp).
+/// readout_s, stamp_delay_s, depth_readout_s, depth_delay_s, baseline_m; or, by the file's ending, from YAML
+/// (camera_yaml.hpp).
 /// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);

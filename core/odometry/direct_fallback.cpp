@@ -154,8 +154,8 @@ bool DirectFallback::degraded_for_long() const {
   return degraded_frames_ >= kLong;
 }
 
-void DirectFallback::remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask, double lag,
-                              const Vector6d& velocity) {
+void DirectFallback::remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask,
+                              std::optional<double> lag, const Vector6d& velocity) {
   if (!enabled_ || !record.estimated || !image.has_depth()) return;
   DirectReference reference;
   reference.frame_index = image.index;

@@ -44,7 +44,7 @@ class DirectFallback {
 
   /// Keeps the frame to align later ones with. @param mask what is dynamic in it; @param lag s, of its depth
   /// @param velocity of the camera in it, a second
-  void remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask, double lag,
+  void remember(const Frame& image, const FrameRecord& record, const cv::Mat& mask, std::optional<double> lag,
                 const Vector6d& velocity);
   void drop_images();
   /// @param next index of the frame that comes next

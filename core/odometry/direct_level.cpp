@@ -80,7 +80,7 @@ bool DirectLevel::place(const Eigen::Vector3d& in_target, const Vector6d& veloci
   Eigen::Vector2d pixel = camera_.has_distortion() ? camera_.distort(camera_.project(p)) : camera_.project(p);
   if (camera_.readout_s != 0.0) {
     // Where its row, exposed before or after the middle one, shows it.
-    const double after_middle = ((pixel.y() + 0.5) / camera_.height - 0.5) * camera_.readout_s;
+    const double after_middle = camera_.row_time(pixel.y());
     p += after_middle * (velocity.head<3>() + velocity.tail<3>().cross(p));
     if (p.z() < kNearestAligned) return false;
     pixel = camera_.has_distortion() ? camera_.distort(camera_.project(p)) : camera_.project(p);

@@ -103,9 +103,7 @@ std::vector<PatchPoint> choose_patches(const DirectReference& reference, const C
     }
 
   std::vector<cv::Point2f> undistorted = camera.undistort(pixels);
-  std::vector<float> depths = reference.lag == 0.0 ? depth_at(pixels, depth)
-                                                   : depth_at(pixels, undistorted, depth, camera,
-                                                              se3_exp(reference.velocity * reference.lag));
+  std::vector<float> depths = depth_at(pixels, undistorted, depth, camera, reference.velocity, reference.lag);
   if (rolling_shutter) correct_rolling_shutter(camera, reference.velocity, pixels, undistorted, depths);
   for (std::size_t i = 0; i < chosen.size(); ++i)
     chosen[i].point = camera.back_project({undistorted[i].x, undistorted[i].y}, depths[i]);

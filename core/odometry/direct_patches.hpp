@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/config.hpp"
@@ -14,9 +15,9 @@ namespace stillpoint {
 /// is computed from them before a frame needs it.
 struct DirectReference {
   int frame_index = 0;
-  cv::Mat gray;                          ///< CV_8UC1
-  cv::Mat depth;                         ///< CV_32FC1, m
-  double lag = 0.0;                      ///< s, of depth after colour, as far as it is to be corrected
+  cv::Mat gray;                 ///< CV_8UC1
+  cv::Mat depth;                ///< CV_32FC1, m
+  std::optional<double> lag{};  ///< s, from the frame's time to depth's stamp; nothing: not to be corrected
   Vector6d velocity = Vector6d::Zero();  ///< of the camera, a second, while the frame was taken
   cv::Mat moving;  ///< CV_8UC1, small, non-zero where anything of a block moves; empty when nothing does
   int reference_keyframe = -1;  ///< its pose hangs on this keyframe's, as the map is adjusted under it

@@ -80,27 +80,32 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Ma
 
 std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
                             const std::vector<cv::Point2f>& undistorted, const cv::Mat& depth,
-                            const Camera& camera, const Pose& then_from_now) {
+                            const Camera& camera, const Vector6d& velocity, std::optional<double> lag_s) {
   std::vector<float> result = depth_at(pixels, depth);
-  if (depth.empty()) return result;
+  if (depth.empty() || !lag_s || !camera.depth_is_late(*lag_s)) return result;
+  const auto then_from_now = [&, whole = se3_exp(velocity * camera.depth_lag(*lag_s, 0.0)),
+                              by_row = camera.depth_readout_s.has_value()](std::size_t i) -> Pose {
+    return by_row ? se3_exp(velocity * camera.depth_lag(*lag_s, static_cast<double>(pixels[i].y))) : whole;
+  };
   // The first reading is near enough to tell where the point was seen then; distortion is the same over so
   // few pixels.
   std::vector<cv::Point2f> then(pixels);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
     const Eigen::Vector2d now(undistorted[i].x, undistorted[i].y);
-    const Eigen::Vector3d p = then_from_now * camera.back_project(now, result[i]);
+    const Eigen::Vector3d p = then_from_now(i) * camera.back_project(now, result[i]);
     if (p.z() <= 0) continue;
     const Eigen::Vector2d shift = camera.project(p) - now;
     then[i] += cv::Point2f(static_cast<float>(shift.x()), static_cast<float>(shift.y()));
   }
   const std::vector<float> measured = depth_at(then, depth);
-  const Pose now_from_then = then_from_now.inverse();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
     const cv::Point2f pixel = undistorted[i] + then[i] - pixels[i];
     const double z =
-        measured[i] > 0 ? (now_from_then * camera.back_project({pixel.x, pixel.y}, measured[i])).z() : 0.0;
+        measured[i] > 0
+            ? (then_from_now(i).inverse() * camera.back_project({pixel.x, pixel.y}, measured[i])).z()
+            : 0.0;
     result[i] = z > 0 ? static_cast<float>(z) : 0.0F;
   }
   return result;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/camera.hpp"
@@ -53,10 +54,13 @@ struct FeatureSet {
 [[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels, const cv::Mat& depth);
 
 /// The same from a depth image taken a moment before or after, when the camera stood elsewhere: each pixel is
-/// looked up where its point was seen then, and its depth brought back to now.
+/// looked up where its point was seen then, and its depth brought back to when colour's row was taken.
 /// @param pixels in the image as it is; @param undistorted the same ones as a pinhole would see them
+/// @param velocity of the camera, a second; @param lag_s from the frame's time to depth's stamp; nothing =
+/// depth is taken as it is, its camera's delay and readout included
 [[nodiscard]] std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
                                           const std::vector<cv::Point2f>& undistorted, const cv::Mat& depth,
-                                          const Camera& camera, const Pose& then_from_now);
+                                          const Camera& camera, const Vector6d& velocity,
+                                          std::optional<double> lag_s);
 
 }  // namespace stillpoint

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -26,8 +27,9 @@ struct TrackerFrame {
   cv::Mat weight;  ///< CV_32FC1: 0 = removed or not seen by the camera, to 1; empty: all count whole
   /// Of map points that the method judged one by one; those not in it count whole.
   std::unordered_map<int, float> point_weight{};
-  bool cull_dynamic = false;             ///< map points on what the method removes are to leave the map
-  double depth_lag = 0.0;                ///< s, of depth after colour
+  bool cull_dynamic = false;  ///< map points on what the method removes are to leave the map
+  std::optional<double>
+      depth_lag{};  ///< s, from the frame's time to depth's stamp; nothing: not to be corrected
   Vector6d velocity = Vector6d::Zero();  ///< of the camera, a second, as far as known before the frame
   std::function<Vector6d(const Pose&)> velocity_to{};  ///< … as it is when the frame was taken from a pose
   double stereo_per_m2 = 0.0;                          ///< 1/m: Camera::depth_sigma_per_m2

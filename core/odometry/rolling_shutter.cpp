@@ -24,8 +24,7 @@ void correct_rolling_shutter(const Camera& camera, const Vector6d& velocity,
   const double usual = median_depth(depth);
   const Eigen::Vector3d linear = velocity.head<3>(), angular = velocity.tail<3>();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const double after_middle =
-        ((static_cast<double>(pixels[i].y) + 0.5) / camera.height - 0.5) * camera.readout_s;
+    const double after_middle = camera.row_time(static_cast<double>(pixels[i].y));
     const Eigen::Vector3d p = camera.back_project({undistorted[i].x, undistorted[i].y},
                                                   depth[i] > 0 ? static_cast<double>(depth[i]) : usual);
     // To first order: over a few hundredths of a second no camera turns far.

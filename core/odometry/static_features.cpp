@@ -32,9 +32,7 @@ TrackedFrame StaticFeatures::select(const Frame& frame, const PreparedFrame& pre
   all.keypoints = found.keypoints;
   all.descriptors = found.descriptors;
   all.undistorted = prepared.undistorted;
-  const double lag = depth_lag(frame);
-  all.depth = lag == 0.0 ? depth_at(pixels, frame.depth)
-                         : depth_at(pixels, all.undistorted, frame.depth, camera_, se3_exp(velocity * lag));
+  all.depth = depth_at(pixels, all.undistorted, frame.depth, camera_, velocity, depth_lag(frame));
   if (tracking_.correct_rolling_shutter)
     correct_rolling_shutter(camera_, velocity, pixels, all.undistorted, all.depth);
 
@@ -65,11 +63,14 @@ TrackedFrame StaticFeatures::select(const Frame& frame, const PreparedFrame& pre
 }
 
 bool StaticFeatures::depend_on_velocity(const Frame& frame) const {
-  return (camera_.readout_s != 0.0 && tracking_.correct_rolling_shutter) || depth_lag(frame) != 0.0;
+  const auto lag = depth_lag(frame);
+  return (camera_.readout_s != 0.0 && tracking_.correct_rolling_shutter) ||
+         (lag && camera_.depth_is_late(*lag));
 }
 
-double StaticFeatures::depth_lag(const Frame& frame) const {
-  return tracking_.correct_depth_lag && frame.has_depth() ? frame.depth_timestamp - frame.timestamp : 0.0;
+std::optional<double> StaticFeatures::depth_lag(const Frame& frame) const {
+  if (!tracking_.correct_depth_lag || !frame.has_depth()) return std::nullopt;
+  return frame.depth_timestamp - frame.timestamp;
 }
 
 bool StaticFeatures::too_few_places(const TrackedFrame& frame) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/motion_method.hpp"
@@ -25,8 +27,8 @@ class StaticFeatures {
 
   /// Whether what is selected depends on how fast the camera goes.
   [[nodiscard]] bool depend_on_velocity(const Frame& frame) const;
-  /// s, of depth after colour, as far as it is to be corrected.
-  [[nodiscard]] double depth_lag(const Frame& frame) const;
+  /// s, from the frame's time to depth's stamp; nothing where it is not to be corrected.
+  [[nodiscard]] std::optional<double> depth_lag(const Frame& frame) const;
   /// Whether so little of the view is left that it tells no room from a dynamic object.
   [[nodiscard]] bool too_few_places(const TrackedFrame& frame) const;
 

@@ -74,6 +74,9 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
   if (const std::string stereo = to_text(origin.stereo); !stereo.empty()) json["stereo"] = stereo;
   json["fingerprint"] = origin.fingerprint;
   visit_camera(origin.camera, [&json](const char* name, const auto& value) { json["camera"][name] = value; });
+  if (origin.camera.depth_readout_s) json["camera"]["depth_readout_s"] = *origin.camera.depth_readout_s;
+  if (origin.camera.stamp_delay_s != 0) json["camera"]["stamp_delay_s"] = origin.camera.stamp_delay_s;
+  if (origin.camera.depth_delay_s != 0) json["camera"]["depth_delay_s"] = origin.camera.depth_delay_s;
   if (origin.camera.is_stereo()) {
     json["camera"]["baseline_m"] = origin.camera.baseline_m;
     json["camera"]["depth_sigma_per_m2"] = origin.camera.depth_sigma_per_m2;
@@ -100,6 +103,10 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   json.at("fingerprint").get_to(origin.fingerprint);
   const nlohmann::json& camera = json.at("camera");
   visit_camera(origin.camera, [&camera](const char* name, auto& value) { camera.at(name).get_to(value); });
+  if (camera.contains("depth_readout_s"))
+    origin.camera.depth_readout_s = camera.at("depth_readout_s").get<double>();
+  origin.camera.stamp_delay_s = camera.value("stamp_delay_s", 0.0);
+  origin.camera.depth_delay_s = camera.value("depth_delay_s", 0.0);
   origin.camera.baseline_m = camera.value("baseline_m", 0.0);
   origin.camera.depth_sigma_per_m2 = camera.value("depth_sigma_per_m2", 0.0);
   return origin;

@@ -233,14 +233,16 @@ void ListedSequence::question_convention() {
                     folder_));
 }
 
-double ListedSequence::timestamp(int index) const { return entry(index).colour.timestamp; }
+double ListedSequence::timestamp(int index) const {
+  return entry(index).colour.timestamp + camera_.stamp_delay_s;
+}
 
 Frame ListedSequence::read(int index) const {
   const Entry& listed = entry(index);
   Frame frame;
   frame.index = index;
   frame.name = std::filesystem::path(listed.colour.file).stem().string();
-  frame.timestamp = listed.colour.timestamp;
+  frame.timestamp = timestamp(index);
   const ImageRead image = input_->image(listed.colour.file);
   frame.problem = image.problem;
   if (image.image.empty()) return frame;
@@ -284,9 +286,9 @@ void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
 FrameTruth ListedSequence::truth(int index) const {
   const Entry& listed = entry(index);
   FrameTruth truth;
-  truth.world_from_camera = interpolate(ground_truth_, listed.colour.timestamp, kTruthMaxGap);
+  truth.world_from_camera = interpolate(ground_truth_, timestamp(index), kTruthMaxGap);
   if (!truth.world_from_camera)
-    if (const auto near = nearest_pose(ground_truth_, listed.colour.timestamp, kAssociationTolerance))
+    if (const auto near = nearest_pose(ground_truth_, timestamp(index), kAssociationTolerance))
       truth.world_from_camera = ground_truth_[*near].world_from_camera;
   if (listed.mask && has_masks_) {
     const ImageRead mask = input_->image(listed.mask->file);

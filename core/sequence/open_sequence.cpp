@@ -104,7 +104,7 @@ std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenO
   constexpr std::string_view kGenerated = "generated:";
   if (where.starts_with(kGenerated))
     return make_generated_sequence(where.substr(kGenerated.size()), options.frames, options.seed,
-                                   options.stereo);
+                                   options.stereo, options.camera);
   auto recorded = open_recorded(where, options);
   if (options.frames < 0)
     throw InputError(fmt::format("{}: expected a number of frames, not {}", where, options.frames));

@@ -179,6 +179,8 @@ std::string camera_text(const Camera& c) {
       "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ndepth_scale = {}\nreadout_s = {}\n",
       c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale,
       c.readout_s);
+  if (c.depth_readout_s) text += fmt::format("depth_readout_s = {}\n", *c.depth_readout_s);
+  if (c.depth_delay_s != 0.0) text += fmt::format("depth_delay_s = {}\n", c.depth_delay_s);
   if (c.is_stereo()) text += fmt::format("baseline_m = {}\n", c.baseline_m);
   return text;
 }

@@ -235,8 +235,8 @@ TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {
 TEST(FeatureSet, DepthTakenFromElsewhereIsWarpedToNow) {
   // The depth image was taken 2 cm to the left and 5 cm farther back, of a wall that slopes.
   const Camera camera = camera_by_name("freiburg3");
-  Pose then_from_now = Pose::Identity();
-  then_from_now.translation() = Eigen::Vector3d(0.02, 0, 0.05);
+  const Vector6d velocity{0.2, 0, 0.5, 0, 0, 0};
+  constexpr double kLag = 0.1;
   const auto plane_depth = [](double x) { return 2.0 / (1.0 - 0.3 * x); };  // z = 2 + 0.3 X, by x = X / z
   cv::Mat depth(480, 640, CV_32FC1);
   // The wall in coordinates of then: z - 0.05 = 2 + 0.3 (X - 0.02).
@@ -246,9 +246,18 @@ TEST(FeatureSet, DepthTakenFromElsewhereIsWarpedToNow) {
       depth.at<float>(v, u) = static_cast<float>((2.05 - 0.3 * 0.02) / (1.0 - 0.3 * x));
     }
   for (const cv::Point2f pixel : {cv::Point2f(100, 100), cv::Point2f(320, 240), cv::Point2f(500, 400)}) {
-    const float z = depth_at({pixel}, {pixel}, depth, camera, then_from_now).front();
+    const float z = depth_at({pixel}, {pixel}, depth, camera, velocity, kLag).front();
     EXPECT_NEAR(z, plane_depth((pixel.x - camera.cx) / camera.fx), 0.002);
     EXPECT_GT(std::abs(depth_at({pixel}, depth).front() - z), 0.03) << "without being carried it is off";
+    EXPECT_EQ(depth_at({pixel}, {pixel}, depth, camera, velocity, std::nullopt), depth_at({pixel}, depth));
+    // Depth's own delay and readout do what the stamps do.
+    Camera late = camera;
+    late.depth_delay_s = kLag;
+    EXPECT_EQ(depth_at({pixel}, {pixel}, depth, late, velocity, 0.0).front(), z);
+    late.depth_delay_s = 0.0;
+    late.depth_readout_s = 2 * kLag;  // by which the row is late if it is the image's last
+    const double at_row = kLag * 2 * ((static_cast<double>(pixel.y) + 0.5) / camera.height - 0.5);
+    EXPECT_EQ(depth_at({pixel}, {pixel}, depth, late, velocity, kLag - at_row).front(), z);
   }
 }
 

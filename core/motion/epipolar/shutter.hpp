@@ -36,7 +36,7 @@ class AngularVelocities {
 
 /// When each row is taken, s after the middle one. @param row px of `camera`'s image
 [[nodiscard]] inline double after_middle(const Camera& camera, float row) {
-  return ((static_cast<double>(row) + 0.5) / camera.height - 0.5) * camera.readout_s;
+  return camera.row_time(static_cast<double>(row));
 }
 
 /// Carries points to where a frame taken all at once, at its middle row, would show them, as if the camera

@@ -24,8 +24,7 @@ cv::Mat usable_pixels(const TrackerFrame& frame, double farthest_m) {
 /// Depth of pixels at colour's time, m; 0 = none.
 std::vector<float> depths_of(const TrackerFrame& frame, const std::vector<cv::Point2f>& pixels,
                              const Camera& camera) {
-  if (frame.depth_lag == 0.0) return depth_at(pixels, frame.depth);
-  return depth_at(pixels, pixels, frame.depth, camera, se3_exp(frame.velocity * frame.depth_lag));
+  return depth_at(pixels, pixels, frame.depth, camera, frame.velocity, frame.depth_lag);
 }
 
 }  // namespace

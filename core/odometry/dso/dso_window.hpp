@@ -55,9 +55,7 @@ class DsoTransfer {
   [[nodiscard]] std::optional<Place> operator()(double u, double v, double inverse_depth) const;
 
  private:
-  [[nodiscard]] double after_middle(double row) const {
-    return ((row + 0.5) / camera_.height - 0.5) * camera_.readout_s;
-  }
+  [[nodiscard]] double after_middle(double row) const { return camera_.row_time(row); }
   const Camera& camera_;
   Pose target_from_host_;
   Vector6d host_velocity_, target_velocity_;

@@ -68,11 +68,8 @@ void PtamTracker::add_keyframe(const TrackerFrame& frame, const Pose& camera_fro
   };
   const auto depth_of = [&](const Eigen::Vector2d& pixel) {
     const std::vector<cv::Point2f> at{{static_cast<float>(pixel.x()), static_cast<float>(pixel.y())}};
-    const std::vector<float> depth =
-        frame.depth_lag == 0.0
-            ? depth_at(at, frame.depth)
-            : depth_at(at, at, frame.depth, camera, se3_exp(frame.velocity * frame.depth_lag));
-    return static_cast<double>(depth.front());
+    return static_cast<double>(
+        depth_at(at, at, frame.depth, camera, frame.velocity, frame.depth_lag).front());
   };
 
   // What was found here is measured by this keyframe too.
@@ -111,7 +108,7 @@ void PtamTracker::add_keyframe(const TrackerFrame& frame, const Pose& camera_fro
       New one_more;
       one_more.in_camera = camera.back_project(pixel, depth);
       // As the middle row's time has it.
-      const double after = ((pixel.y() + 0.5) / camera.height - 0.5) * camera.readout_s;
+      const double after = camera.row_time(pixel.y());
       one_more.in_camera -=
           after * (frame.velocity.head<3>() + frame.velocity.tail<3>().cross(one_more.in_camera));
       if (one_more.in_camera.z() < 0.1) continue;

@@ -75,7 +75,7 @@ void PtamTracker::place(const Vector6d& velocity, const Pose& camera_from_world,
   const Eigen::Vector2d middle = camera.project(p);
   seen.expected = middle;
   if (camera.readout_s != 0.0) {
-    const double after = ((middle.y() + 0.5) / camera.height - 0.5) * camera.readout_s;
+    const double after = camera.row_time(middle.y());
     const Eigen::Vector3d then = p + after * (velocity.head<3>() + velocity.tail<3>().cross(p));
     if (then.z() > kNearest) seen.expected = camera.project(then);
   }

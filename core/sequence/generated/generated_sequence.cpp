@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -31,14 +32,20 @@ double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 class GeneratedSequence : public FrameSource {
  public:
   /// @param stereo null: depth is a sensor's own
-  GeneratedSequence(std::string_view kind, int frames, unsigned seed, const StereoOptions* stereo)
-      : name_(fmt::format("generated:{}{}", kind, stereo != nullptr ? kStereoEnding : "")),
+  GeneratedSequence(std::string_view kind, std::string_view endings, int frames, unsigned seed,
+                    const SensorTiming& timing, const StereoOptions* stereo)
+      : name_(fmt::format("generated:{}{}", kind, endings)),
         camera_(camera_by_name("generated")),
         frames_(frames),
         act_(make_act(kind, seed, frames / kFrameRate)),
         motion_(act_.camera, seed),
         sensor_(seed),
         right_sensor_(hash(seed, 0x51DEu)) {
+    camera_.readout_s = timing.readout_s;
+    camera_.depth_readout_s = timing.depth_readout_s;
+    camera_.depth_delay_s = timing.depth_delay_s;
+    if (timing.exposure_s) act_.exposure = *timing.exposure_s;
+    filming_ = camera_;
     if (stereo != nullptr) {
       camera_.baseline_m = kBaseline;
       matcher_ = std::make_unique<const StereoMatcher>(camera_, *stereo);
@@ -64,8 +71,7 @@ class GeneratedSequence : public FrameSource {
 
   [[nodiscard]] Frame read(int index) const override {
     const double seconds = timestamp(index) - kEpoch;
-    const Instant middle = instant(seconds);
-    const Rendering ideal = expose(seconds, middle, 0.0);
+    const Rendering ideal = film_colour(seconds, 0.0);
     keep(index, ideal);
 
     Frame frame;
@@ -75,11 +81,12 @@ class GeneratedSequence : public FrameSource {
     frame.colour = sensor_.colour(ideal.colour, index, seconds);
     cv::cvtColor(frame.colour, frame.gray, cv::COLOR_BGR2GRAY);
     if (matcher_) {
-      const Rendering right = expose(seconds, instant(seconds, kBaseline), kBaseline);
+      const Rendering right = film_colour(seconds, kBaseline);
       matcher_->match(frame, right_sensor_.colour(right.colour, index, seconds));
       return frame;
     }
-    sensor_.depth(ideal, dropout(middle), camera_, index)
+    const Rendering measured = filming_.depth_is_late(0.0) ? film_depth(seconds) : ideal;
+    sensor_.depth(measured, dropout(instant(seconds)), camera_, index)
         .convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     return frame;
   }
@@ -87,7 +94,10 @@ class GeneratedSequence : public FrameSource {
   [[nodiscard]] FrameTruth truth(int index) const override {
     const Instant middle = instant(timestamp(index) - kEpoch);
     Rendering ideal = kept(index);
-    if (ideal.depth.empty()) ideal = cast_depth(act_.scene, camera_, middle);
+    if (ideal.depth.empty())
+      ideal = film([&](const Camera& camera, double row) {
+        return cast_depth(act_.scene, camera, instant(timestamp(index) - kEpoch + filming_.row_time(row)));
+      });
     FrameTruth truth;
     truth.world_from_camera = middle.world_from_camera;
     truth.depth = ideal.depth;
@@ -101,10 +111,57 @@ class GeneratedSequence : public FrameSource {
     return truth;
   }
 
+  /// Tells these times in place of the true ones.
+  void pretend(const Camera& timing_of) {
+    camera_.readout_s = timing_of.readout_s;
+    camera_.depth_readout_s = timing_of.depth_readout_s;
+    camera_.depth_delay_s = timing_of.depth_delay_s;
+  }
+
  private:
+  /// What a sensor sees whose rows are taken one after the other: bands of the image, each by itself.
+  /// @param look what a camera sees whose image is a band, and whose middle row is that row of the whole one
+  template <typename Look>
+  [[nodiscard]] Rendering film(const Look& look) const {
+    if (filming_.readout_s == 0.0 && !filming_.depth_is_late(0.0))
+      return look(filming_, 0.5 * filming_.height - 0.5);
+    constexpr int kBand = 8;     // rows: at 30 ms for an image half a band is 0.25 ms
+    constexpr int kBeyond = 14;  // rows above and below, for what moves into the band while it is exposed
+    Rendering whole;
+    for (int top = 0; top < filming_.height; top += kBand) {
+      const int rows = std::min(kBand, filming_.height - top);
+      Camera band = filming_;
+      band.height = rows + 2 * kBeyond;
+      band.cy -= top - kBeyond;
+      const Rendering seen = look(band, top + 0.5 * rows - 0.5);
+      const auto put = [&](const cv::Mat& from, cv::Mat& to) {
+        if (from.empty()) return;
+        if (to.empty()) to.create(filming_.height, filming_.width, from.type());
+        from.rowRange(kBeyond, kBeyond + rows).copyTo(to.rowRange(top, top + rows));
+      };
+      put(seen.colour, whole.colour);
+      put(seen.depth, whole.depth);
+      put(seen.id, whole.id);
+    }
+    return whole;
+  }
+  [[nodiscard]] Rendering film_colour(double seconds, double aside) const {
+    return film([&](const Camera& camera, double row) {
+      const double now = seconds + filming_.row_time(row);
+      return expose(camera, now, instant(now, aside), aside);
+    });
+  }
+  [[nodiscard]] Rendering film_depth(double seconds) const {
+    return film([&](const Camera& camera, double row) {
+      const double now = seconds + filming_.row_time(row) + filming_.depth_lag(0.0, row);
+      return cast_depth(act_.scene, camera, instant(now));
+    });
+  }
+
   /// What the camera sees while it exposes. Four instants do for a little blur; more is made of whole images.
   /// @param aside m, to the right of the sequence's camera
-  [[nodiscard]] Rendering expose(double seconds, const Instant& middle, double aside) const {
+  [[nodiscard]] Rendering expose(const Camera& camera, double seconds, const Instant& middle,
+                                 double aside) const {
     constexpr double kMostBlur = 24.0, kStep = 1.5;  // px
     const auto at = [&](int k, int count) {
       return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count, aside);
@@ -112,13 +169,13 @@ class GeneratedSequence : public FrameSource {
     const std::array<Instant, 4> few = {at(0, 4), at(1, 4), at(2, 4), at(3, 4)};
     const double blurred = blur(few.front(), few.back());
     if (blurred <= kMostBlur || act_.camera.handling != Handling::kShaken)
-      return cast_frame(act_.scene, camera_, middle, few, std::min(kMostBlur, blurred));
+      return cast_frame(act_.scene, camera, middle, few, std::min(kMostBlur, blurred));
     const int count = std::min(40, static_cast<int>(std::ceil(4.0 / 3.0 * blurred / kStep)));
-    Rendering whole = cast_depth(act_.scene, camera_, middle);
+    Rendering whole = cast_depth(act_.scene, camera, middle);
     whole.colour = cv::Mat::zeros(whole.depth.size(), CV_32FC3);
     for (int k = 0; k < count; ++k) {
       const Instant one = at(k, count);
-      whole.colour += cast_frame(act_.scene, camera_, one, {&one, 1}, 1.0).colour / count;
+      whole.colour += cast_frame(act_.scene, camera, one, {&one, 1}, 1.0).colour / count;
     }
     return whole;
   }
@@ -166,7 +223,8 @@ class GeneratedSequence : public FrameSource {
   }
 
   std::string name_;
-  Camera camera_;
+  Camera camera_;   // as it is told
+  Camera filming_;  // as it is
   int frames_;
   Act act_;
   CameraMotion motion_;
@@ -180,19 +238,58 @@ class GeneratedSequence : public FrameSource {
 
 }  // namespace
 
+namespace {
+
+/// @param endings ":readout_s=0.02:…", or nothing
+/// @throws InputError for a name or a number that is none
+SensorTiming timing_from(std::string_view endings) {
+  constexpr double kLongest = 0.1;  // s
+  SensorTiming timing;
+  while (!endings.empty()) {
+    endings.remove_prefix(1);
+    const std::string_view ending = endings.substr(0, endings.find(':'));
+    endings.remove_prefix(ending.size());
+    const std::size_t equals = std::min(ending.find('='), ending.size());
+    const std::string_view name = ending.substr(0, equals);
+    const std::string number(ending.substr(std::min(equals + 1, ending.size())));
+    char* end = nullptr;
+    const double seconds = std::strtod(number.c_str(), &end);
+    const bool known =
+        name == "readout_s" || name == "depth_readout_s" || name == "depth_delay_s" || name == "exposure_s";
+    if (!known || number.empty() || *end != '\0' || !(std::abs(seconds) <= kLongest) ||
+        (name == "exposure_s" && seconds <= 0))
+      throw InputError(fmt::format(
+          "generated sequences are KIND, KIND:stereo, or KIND with :readout_s=, :depth_readout_s=, "
+          ":depth_delay_s= or :exposure_s= and a number of seconds up to {:g}, not ':{}'",
+          kLongest, ending));
+    if (name == "readout_s") timing.readout_s = seconds;
+    if (name == "depth_readout_s") timing.depth_readout_s = seconds;
+    if (name == "depth_delay_s") timing.depth_delay_s = seconds;
+    if (name == "exposure_s") timing.exposure_s = seconds;
+  }
+  return timing;
+}
+
+}  // namespace
+
 const std::vector<std::string>& generated_kinds() { return act_kinds(); }
 const std::vector<std::string>& hard_generated_kinds() { return hard_act_kinds(); }
 
 std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames, unsigned seed,
-                                                     const StereoOptions& stereo) {
+                                                     const StereoOptions& stereo,
+                                                     const std::optional<Camera>& timing_of) {
   if (frames < 0 || frames > kMostFrames)
     throw InputError(fmt::format(
         "{} frames cannot be generated: the number goes from 1 to {}, or 0 for the kind's own length", frames,
         kMostFrames));
-  const bool is_stereo = kind.ends_with(kStereoEnding);
-  if (is_stereo) kind.remove_suffix(kStereoEnding.size());
-  return std::make_unique<GeneratedSequence>(kind, frames == 0 ? kOwnLength : frames, seed,
-                                             is_stereo ? &stereo : nullptr);
+  const std::string_view endings = kind.substr(std::min(kind.find(':'), kind.size()));
+  kind.remove_suffix(endings.size());
+  const bool is_stereo = endings == kStereoEnding;
+  auto sequence = std::make_unique<GeneratedSequence>(kind, endings, frames == 0 ? kOwnLength : frames, seed,
+                                                      is_stereo ? SensorTiming() : timing_from(endings),
+                                                      is_stereo ? &stereo : nullptr);
+  if (timing_of && !is_stereo) sequence->pretend(*timing_of);
+  return sequence;
 }
 
 }  // namespace stillpoint

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,15 @@ namespace stillpoint {
 /// What ends the name of a kind that is filmed by a stereo pair: "walking_xyz:stereo".
 inline constexpr std::string_view kStereoEnding = ":stereo";
 
+/// When the sensor of a generated sequence takes what. Written behind a kind as `:name=seconds`, by these
+/// names: "room:readout_s=0.02:depth_delay_s=-0.01".
+struct SensorTiming {
+  double readout_s = 0.0;                   ///< as Camera has it: rows are taken one after the other
+  std::optional<double> depth_readout_s{};  ///< … of depth; nothing = as colour's
+  double depth_delay_s = 0.0;          ///< from a depth image's stamp, which is colour's, to its middle row
+  std::optional<double> exposure_s{};  ///< of colour; nothing = the kind's own
+};
+
 /// A sequence filmed in a furnished room by ray casting: 640x480 at 30 Hz through camera `generated` and a
 /// Kinect-like sensor (generated/sensor.hpp), with exact poses and masks.
 ///
@@ -27,18 +37,21 @@ inline constexpr std::string_view kStereoEnding = ":stereo";
 /// what a 16-bit depth image at 5000 a metre gives back, so that a sequence written to a folder reads the
 /// same.
 ///
-/// Poses and masks are those at the middle of the exposure. The moving mask holds people whole, also while
-/// they stand or sit (they belong to what is dynamic in the sequence, and never keep quite still), the cart
-/// that is pushed, and small things (mug, stick) while they move faster than 5 mm/s here or a frame before or
-/// after. Furniture, chairs and shadows are not moving.
+/// Poses are those at the middle of the exposure of the middle row, masks those of what the image shows. The
+/// moving mask holds people whole, also while they stand or sit (they belong to what is dynamic in the
+/// sequence, and never keep quite still), the cart that is pushed, and small things (mug, stick) while they
+/// move faster than 5 mm/s here or a frame before or after. Furniture, chairs and shadows are not moving.
 /// KIND:stereo is the same scene filmed by a stereo pair: the left image is that of KIND to the byte, the
 /// right one is filmed 0.12 m beside it, with noise and exposure of its own, and depth comes of matching the
 /// two.
+/// @param kind with its endings, `:stereo` or those of SensorTiming; a rolling shutter is filmed in bands of
+/// 8 rows
 /// @param frames how many; 0 = the kind's own length, 300.
-/// @throws InputError for an unknown kind, naming the kinds, and for a number of frames below 0 or above
-/// 100,000.
-[[nodiscard]] std::unique_ptr<FrameSource> make_generated_sequence(std::string_view kind, int frames,
-                                                                   unsigned seed,
-                                                                   const StereoOptions& stereo = {});
+/// @param timing_of whose readouts and delay camera() is to have in place of the true ones
+/// @throws InputError for an unknown kind, naming the kinds, for a number of frames below 0 or above 100,000,
+/// and for a time that is none.
+[[nodiscard]] std::unique_ptr<FrameSource> make_generated_sequence(
+    std::string_view kind, int frames, unsigned seed, const StereoOptions& stereo = {},
+    const std::optional<Camera>& timing_of = {});
 
 }  // namespace stillpoint

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/sequence/source.hpp"
+
+namespace stillpoint {
+
+/// A time as a sequence's own frames tell it.
+struct TimeEstimate {
+  double seconds = 0.0;
+  double sigma_s = 0.0;  ///< standard deviation; of blocks of ten frames, so that what they share counts
+  bool told = false;     ///< the stretch has motion enough; otherwise `seconds` is what the camera had
+};
+
+/// When a camera takes the rows of its images, by the odometry's own residuals.
+struct TimeCalibration {
+  TimeEstimate readout, depth_readout, depth_delay;    ///< as Camera has them
+  int first_frame = 0, frames = 0;                     ///< the stretch it was measured on
+  int observations = 0;                                ///< of map points in its frames
+  double noise_px = 0.0;                             ///< of their pixels, robust
+  int runs = 0;                                        ///< of the odometry over the stretch
+  std::string why_not;  ///< one sentence where nothing was told; empty otherwise
+
+  [[nodiscard]] bool told() const { return readout.told || depth_readout.told || depth_delay.told; }
+  /// The camera with the times that were told.
+  [[nodiscard]] Camera applied_to(Camera camera) const;
+};
+
+/// "colour's readout 22.9 ± 0.3 ms (30.0)", …: a line a time, in brackets what the camera has.
+[[nodiscard]] std::vector<std::string> to_lines(const TimeCalibration& times, const Camera& camera);
+
+struct TimeStretch {
+  int frames = 150;  ///< at most, in one stretch
+  int tries = 3;     ///< stretches, one after the other, until one has motion enough for the readout
+  int runs = 4;      ///< of the odometry over a stretch, at most
+};
+
+/// Colour's readout and its direction, depth's own readout, and how late depth is, without ground truth:
+/// where the residuals of the odometry are least. The configured method tracks a stretch; its map points, and
+/// where its frames saw them, then give poses and times together by Gauss-Newton (poses eliminated by their
+/// Schur complement, motion between frames quadratic in time), and the stretch is tracked again under these
+/// times until they stand. Depth is compared with the plane of inverse depth about a feature, moved to where
+/// the point was seen when its row was measured.
+/// @param source with depth; its camera's times are the start
+[[nodiscard]] TimeCalibration calibrate_time(const FrameSource& source, const Config& config,
+                                             const TimeStretch& stretch = {});
+
+}  // namespace stillpoint
