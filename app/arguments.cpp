@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "app/progress.hpp"
+#include "core/check/time_calibration.hpp"
 #include "core/error.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/motion/masks/outside_masks.hpp"
@@ -90,6 +91,10 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
       "What a folder's ground truth means by a pose: as-written, inverse, w-first, mirrored-x, "
       "mirrored-y (ICL-NUIM), mirrored-z, bonn");
   command.add_flag("--invert-masks", inverted_masks, "White in a folder's masks is what stands still");
+  command.add_flag(
+      "--calibrate-time", calibrate_time,
+      "Measure the camera's readouts and depth's delay by the sequence's own frames first, and go by "
+      "them (`stillpoint check` prints them)");
   command.add_option(
       "--topics", topics,
       "Of a bag: colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC, any of them, none but colour "
@@ -102,7 +107,8 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
 
 bool SequenceArguments::given() const {
   return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
-         depth_offset_s != 0 || !truth.empty() || inverted_masks || !topics.empty() || !stereo.empty();
+         depth_offset_s != 0 || !truth.empty() || inverted_masks || calibrate_time || !topics.empty() ||
+         !stereo.empty();
 }
 
 namespace {
@@ -118,6 +124,7 @@ void visit_reading(Arguments& arguments, Visit visit) {
   visit("depth_offset", arguments.depth_offset_s);
   visit("truth", arguments.truth);
   visit("invert_masks", arguments.inverted_masks);
+  visit("calibrate_time", arguments.calibrate_time);
   visit("topics", arguments.topics);
   visit("stereo", arguments.stereo);
 }
@@ -199,7 +206,14 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   }
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
-  return source;
+  if (!calibrate_time) return source;
+  const TimeCalibration times = stillpoint::calibrate_time(*source, config);
+  for (const std::string& line : to_lines(times, source->camera()))
+    std::fprintf(stderr, "stillpoint: time: %s\n", line.c_str());
+  if (!times.told()) return source;
+  OpenOptions as_measured = options(config);
+  as_measured.camera = times.applied_to(source->camera());
+  return open_sequence(where, as_measured);
 }
 
 PoseConvention convention_argument(const char* option, const std::string& name) {

@@ -62,8 +62,9 @@ struct SequenceArguments {
   double depth_offset_s = 0.0;
   std::string truth;  ///< a PoseConvention's name; empty = as written
   bool inverted_masks = false;
-  std::string topics;  ///< of a bag, as OpenOptions has them; empty = as they are found
-  std::string stereo;  ///< of stereo pairs, as stereo_options_from reads it; empty = as a rule
+  std::string topics;           ///< of a bag, as OpenOptions has them; empty = as they are found
+  bool calibrate_time = false;  ///< measure the camera's times first, and use them
+  std::string stereo;           ///< of stereo pairs, as stereo_options_from reads it; empty = as a rule
 
   /// @param frames_option what sets `frames`, where --frames means something else
   void add_to(CLI::App& command, const char* frames_option = "--frames");

@@ -23,6 +23,19 @@ struct CheckArguments {
   SequenceArguments frames;
 };
 
+nlohmann::ordered_json to_json(const TimeCalibration& times) {
+  nlohmann::ordered_json json;
+  const auto add = [&json](const char* name, const std::optional<TimeEstimate>& estimate) {
+    json[name] = estimate && estimate->told
+                     ? nlohmann::ordered_json{{"seconds", estimate->seconds}, {"sigma", estimate->sigma_s}}
+                     : nlohmann::ordered_json();
+  };
+  add("readout", times.readout), add("depth_readout", times.depth_readout);
+  add("depth_delay", times.depth_delay), add("after_truth", times.after_truth);
+  if (!times.why_not.empty()) json["why_not"] = times.why_not;
+  return json;
+}
+
 /// An estimate beside the sequence's ground truth.
 void check_estimate(const CheckArguments& arguments, const FrameSource& source,
                     std::vector<Finding>& findings) {
@@ -72,6 +85,7 @@ void check(const CheckArguments& arguments) {
     json["depth_scale"] = camera.depth_scale;
     if (camera.is_stereo()) json["baseline_m"] = camera.baseline_m;
     if (!source->contents().empty()) json["topics"] = source->contents();
+    if (arguments.estimate.empty()) json["time"] = to_json(times);
     json["findings"] = nlohmann::json(findings);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {

@@ -131,6 +131,8 @@ void TrackingConfig::list(ParameterTable& table) {
                "Levenberg-Marquardt steps a round of eq. (5)");
   table.number("refine_rounds", refine_rounds, 4, 1, 10, "rounds",
                "rounds of eq. (5), outliers told apart again after each");
+  table.flag("adaptive_kernel", adaptive_kernel, false,
+             "a loss whose shape is taken from the residuals (Barron's) in place of Huber's");
   table.flag("correct_rolling_shutter", correct_rolling_shutter, true,
              "carries features to where their frame's middle row would show them");
   table.flag("correct_depth_lag", correct_depth_lag, true,

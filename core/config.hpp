@@ -45,6 +45,7 @@ struct TrackingConfig {
   double pnp_threshold_px;
   int refine_iterations;
   int refine_rounds;
+  bool adaptive_kernel;
   bool correct_rolling_shutter;
   bool correct_depth_lag;
   bool seek_consensus;

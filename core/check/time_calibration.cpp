@@ -108,6 +108,7 @@ std::optional<DepthPlane> plane_about(const cv::Mat& depth, const Eigen::Vector2
 /// What one run of the odometry over the stretch leaves: bundle adjustment's problem.
 struct Stretch {
   std::vector<SeenFrame> frames;
+  Trajectory poses;
   std::vector<Vector3> points;  ///< m, world
   int observations = 0;
 };
@@ -142,6 +143,7 @@ Stretch track(const FrameSource& source, const Camera& camera, Config config, in
   std::map<double, Pose> poses;
   for (const StampedPose& pose : run.trajectory) poses[pose.timestamp] = pose.world_from_camera;
 
+  stretch.poses = run.trajectory;
   for (const FrameRecord& record : run.records) {
     const auto pose = poses.find(record.timestamp);
     if (!record.estimated || pose == poses.end()) continue;
@@ -514,10 +516,12 @@ TimeCalibration calibrate_stretch(const FrameSource& source, const Config& confi
   const Times before = times_of(camera);
   std::array<bool, kTimes> sought{true, true, true};
   Times sigma = Times::Constant(1.0);
+  Trajectory poses;
   while (result.runs < stretch.runs) {
     Stretch tracked = track(source, camera, config, first, count);
     ++result.runs;
     result.observations = tracked.observations;
+    poses = tracked.poses;
     if (static_cast<int>(tracked.frames.size()) < kFewestFrames) {
       result.why_not = fmt::format("of {} frames from frame {} on, {} could be tracked", count, first,
                                    tracked.frames.size());
@@ -547,6 +551,7 @@ TimeCalibration calibrate_stretch(const FrameSource& source, const Config& confi
       settled = settled && std::abs(change[k]) <= std::max(kSettled, kSettledSigmas * sigma[k]);
     if (settled) break;
   }
+  if (!poses.empty()) result.after_truth = delay_beside_truth(source.ground_truth(), poses);
   const Times times = times_of(camera);
   TimeEstimate* const estimates[] = {&result.readout, &result.depth_readout, &result.depth_delay};
   for (int k = 0; k < kTimes; ++k) {
@@ -561,6 +566,47 @@ TimeCalibration calibrate_stretch(const FrameSource& source, const Config& confi
 }
 
 }  // namespace
+
+std::optional<TimeEstimate> delay_beside_truth(const Trajectory& truth, const Trajectory& estimate) {
+  constexpr std::size_t kApart = 15, kPairsInBlock = 20;  // poses
+  constexpr double kGap = 0.05, kDifference = 0.002;      // s: between truth's poses; for derivatives
+  constexpr double kMostTold = 5e-3, kFarthest = 0.05;    // s
+  constexpr double kMetresARadian = 1.0;                  // rotation beside translation: a point 1 m away
+  constexpr int kSteps = 10;
+  // How two motions over the same poses differ, truth read `delay` later.
+  const auto difference = [&](std::size_t i, double delay) -> std::optional<Vector6d> {
+    const auto a = interpolate(truth, estimate[i].timestamp + delay, kGap),
+               b = interpolate(truth, estimate[i + kApart].timestamp + delay, kGap);
+    if (!a || !b) return std::nullopt;
+    Vector6d error = se3_log((a->inverse() * *b).inverse() * estimate[i].world_from_camera.inverse() *
+                             estimate[i + kApart].world_from_camera);
+    error.tail<3>() *= kMetresARadian;
+    return error;
+  };
+  TimeEstimate result;
+  for (int step = 0; step < kSteps; ++step) {
+    double h = 0.0, g = 0.0, noise = 0.0;
+    std::size_t pairs = 0;
+    std::vector<double> blocks;
+    for (std::size_t i = 0; i + kApart < estimate.size(); ++i) {
+      const auto before = difference(i, result.seconds - kDifference),
+                 after = difference(i, result.seconds + kDifference);
+      if (!before || !after) continue;
+      const Vector6d slope = (*after - *before) / (2.0 * kDifference), error = 0.5 * (*after + *before);
+      if (pairs++ % kPairsInBlock == 0) blocks.push_back(0.0);
+      h += slope.squaredNorm(), g += slope.dot(error), noise += error.squaredNorm();
+      blocks.back() += slope.dot(error);
+    }
+    if (pairs < 2 * kPairsInBlock || h <= 0) return std::nullopt;
+    double scatter = 0.0;
+    for (const double block : blocks) scatter += block * block;
+    result.sigma_s = std::sqrt(std::max(scatter, h * noise / (6.0 * static_cast<double>(pairs)))) / h;
+    result.seconds -= g / h;
+    if (!(std::abs(result.seconds) < kFarthest)) return std::nullopt;
+  }
+  result.told = result.sigma_s < kMostTold;
+  return result.told ? std::optional(result) : std::nullopt;
+}
 
 Camera TimeCalibration::applied_to(Camera camera) const {
   if (readout.told) {
@@ -587,6 +633,10 @@ std::vector<std::string> to_lines(const TimeCalibration& times, const Camera& ca
                                       1e3 * estimate.seconds, 1e3 * estimate.sigma_s, camera.name, ms)
                         : fmt::format("{} is not told by these frames; {:.1f} ms stand", name, ms));
   }
+  if (times.after_truth)
+    lines.push_back(
+        fmt::format("beside ground truth, poses are of {:.1f} ± {:.1f} ms after their frames' times",
+                    1e3 * times.after_truth->seconds, 1e3 * times.after_truth->sigma_s));
   lines.push_back(fmt::format("over frames {} to {}, {} observations, which miss by {:.3f} px",
                               times.first_frame, times.first_frame + times.frames - 1, times.observations,
                               times.noise_px));

@@ -18,12 +18,15 @@ struct TimeEstimate {
 
 /// When a camera takes the rows of its images, by the odometry's own residuals.
 struct TimeCalibration {
-  TimeEstimate readout, depth_readout, depth_delay;    ///< as Camera has them
-  int first_frame = 0, frames = 0;                     ///< the stretch it was measured on
-  int observations = 0;                                ///< of map points in its frames
-  double noise_px = 0.0;                             ///< of their pixels, robust
-  int runs = 0;                                        ///< of the odometry over the stretch
-  std::string why_not;  ///< one sentence where nothing was told; empty otherwise
+  TimeEstimate readout, depth_readout, depth_delay;  ///< as Camera has them
+  /// How long after its frame's time a pose fits the ground truth best, where there is any: what stamps mean,
+  /// and how the clocks of camera and motion capture stand. For reading: nothing is moved by it.
+  std::optional<TimeEstimate> after_truth;
+  int first_frame = 0, frames = 0;  ///< the stretch it was measured on
+  int observations = 0;             ///< of map points in its frames
+  double noise_px = 0.0;            ///< of their pixels, robust
+  int runs = 0;                     ///< of the odometry over the stretch
+  std::string why_not;              ///< one sentence where nothing was told; empty otherwise
 
   [[nodiscard]] bool told() const { return readout.told || depth_readout.told || depth_delay.told; }
   /// The camera with the times that were told.
@@ -38,6 +41,12 @@ struct TimeStretch {
   int tries = 3;     ///< stretches, one after the other, until one has motion enough for the readout
   int runs = 4;      ///< of the odometry over a stretch, at most
 };
+
+/// How long (s) after their stamps poses fit the ground truth best: the time under which motions over half a
+/// second differ least, by Gauss-Newton, truth interpolated; nothing where too few poses have truth, or the
+/// path is too even to tell to 5 ms.
+[[nodiscard]] std::optional<TimeEstimate> delay_beside_truth(const Trajectory& truth,
+                                                             const Trajectory& estimate);
 
 /// Colour's readout and its direction, depth's own readout, and how late depth is, without ground truth:
 /// where the residuals of the odometry are least. The configured method tracks a stretch; its map points, and

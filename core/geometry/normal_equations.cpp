@@ -1,6 +1,9 @@
 #include "core/geometry/normal_equations.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 namespace stillpoint {
 
@@ -19,5 +22,11 @@ template Eigen::Matrix<double, 6, 1> solve_ldlt<6>(const Eigen::Matrix<double, 6
 template Eigen::Matrix<double, 8, 1> solve_ldlt<8>(const Eigen::Matrix<double, 8, 8>&,
                                                    const Eigen::Matrix<double, 8, 1>&);
 template Eigen::VectorXd solve_ldlt<Eigen::Dynamic>(const Eigen::MatrixXd&, const Eigen::VectorXd&);
+
+double largest_deviation(const Eigen::Matrix3d& covariance) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+}
 
 }  // namespace stillpoint

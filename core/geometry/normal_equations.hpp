@@ -11,4 +11,7 @@ template <int Size>
 [[nodiscard]] Eigen::Matrix<double, Size, 1> solve_ldlt(const Eigen::Matrix<double, Size, Size>& h,
                                                         const Eigen::Matrix<double, Size, 1>& g);
 
+/// The largest standard deviation in any direction: the root of the covariance's largest eigenvalue.
+[[nodiscard]] double largest_deviation(const Eigen::Matrix3d& covariance);
+
 }  // namespace stillpoint

@@ -119,10 +119,14 @@ bool DirectFallback::refine(const Frame& image, const LocalMap& map, const Track
     frame.camera_from_world =
         fused(refined.camera_from_world, Matrix6d(refined.information / (noise * noise)), directly,
               aligned->information, record.direct.share);
+    refined.information = refined.information / (noise * noise) + aligned->information;
   } else {
     frame.camera_from_world = directly;
     record.direct.share = 1.0;
+    refined.information = aligned->information;
   }
+  refined.noise = 1.0;
+  record.pose_covariance = refined.covariance();
   return true;
 }
 

@@ -104,6 +104,8 @@ struct MotionFigure {
 /// the only difference. Nothing else depends on it.
 struct RemovalCheck {
   std::optional<Pose> nothing_removed;  ///< world_from_camera; nothing where it was not or cannot be solved
+  /// Standard deviation of that position in the direction least known, m; 0 where it is not told.
+  double nothing_removed_sigma_m = 0.0;
   std::optional<Pose> truth_removed;  ///< … with the features that truly move taken out, where that is known
 };
 
@@ -130,6 +132,9 @@ struct FrameRecord {
   int inliers = 0;      ///< … that agree with the pose
   double rms_px = 0.0;  ///< reprojection, inliers; NaN by an engine that measures brightness instead
   int refine_iterations = 0;
+  /// Of a left perturbation of camera_from_world: m², rad², translation first, in camera coordinates; zero
+  /// where no solver told it.
+  Matrix6d pose_covariance = Matrix6d::Zero();
 
   bool keyframe = false;
   int new_points = 0, fused_points = 0, culled_points = 0, culled_keyframes = 0;

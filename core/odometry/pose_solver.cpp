@@ -7,6 +7,7 @@
 #include <opencv2/core/eigen.hpp>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/odometry/adaptive_kernel.hpp"
 
 namespace stillpoint {
 namespace {
@@ -54,6 +55,15 @@ class PoseProblem {
     }
   }
 
+  /// How many numbers the sums go over, each as far as it counts.
+  [[nodiscard]] double rows() const {
+    double rows = 0.0;
+    for (const Block& block : blocks_)
+      for (std::size_t k = 0; k < kLanes; ++k)
+        rows += block.used[k] * (block.depth_weight[k] > 0 ? 3.0 : 2.0);
+    return rows;
+  }
+
   /// Marks the observations whose χ² is within so many times its bound; returns how many.
   int mark_inliers(const Pose& camera_from_world, double gate, std::vector<std::uint8_t>& inlier) const {
     int inliers = 0;
@@ -69,13 +79,19 @@ class PoseProblem {
   }
 
   /// Gauss-Newton's equations by a left perturbation, translation first. With `robust`, Huber's weights.
+  /// … or, with an adaptive kernel, that one's.
   [[nodiscard]] NormalEquations normal_equations(const Pose& camera_from_world, bool robust) const {
     std::array<Lanes, 27> sums{};  // upper triangle of h row by row, then g
     Lanes costs{};
     for (const Block& block : blocks_) {
       const Residual r = residual(block, camera_from_world);
       Lanes weight = r.in_front * block.used, cost = r.chi2;
-      if (robust)
+      if (robust && kernel_)
+        for (std::size_t k = 0; k < kLanes; ++k) {
+          cost[k] = 2.0 * kernel_->cost(r.chi2[k]);
+          weight[k] *= kernel_->weight(r.chi2[k]);
+        }
+      else if (robust)
         for (std::size_t k = 0; k < kLanes; ++k)
           if (r.chi2[k] > block.bound[k]) {
             const double share = std::sqrt(block.bound[k] / r.chi2[k]);
@@ -93,6 +109,17 @@ class PoseProblem {
     for (int row = 0; row < 6; ++row) n.g[row] = total(sums[entry++]);
     n.cost = total(costs);
     return n;
+  }
+
+  /// Takes the shape of loss under which the residuals are likeliest, for the sums that are robust.
+  void adapt_kernel(const Pose& camera_from_world) {
+    std::vector<double> squares;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Residual r = residual(blocks_[b], camera_from_world);
+      for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k)
+        if (r.in_front[k] > 0 && blocks_[b].used[k] > 0) squares.push_back(r.chi2[k]);
+    }
+    kernel_ = AdaptiveKernel::likeliest(squares);
   }
 
  private:
@@ -156,6 +183,7 @@ class PoseProblem {
   const Camera& camera_;
   std::size_t count_;
   std::vector<Block> blocks_;
+  std::optional<AdaptiveKernel> kernel_;  // none: Huber's
 };
 
 /// Levenberg-Marquardt over the inliers; returns the number of steps taken.
@@ -187,6 +215,15 @@ int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, 
 
 }  // namespace
 
+Matrix6d PoseRefinement::covariance() const {
+  Matrix6d covariance;
+  for (int i = 0; i < 6; ++i) covariance.col(i) = solve_ldlt(information, Vector6d(Vector6d::Unit(i)));
+  // Each column is solved by itself; of their halves that should be the same the mean.
+  covariance = Matrix6d(0.5 * noise * noise * (covariance + covariance.transpose()));
+  const bool told = covariance.allFinite() && covariance.diagonal().minCoeff() > 0;
+  return told ? covariance : Matrix6d(Matrix6d::Zero());
+}
+
 PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
                            const Pose& initial_camera_from_world, const TrackingConfig& config,
                            double start_gate) {
@@ -206,6 +243,7 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.
     const bool robust = round < 2;
     Pose pose = result.camera_from_world;
+    if (robust && config.adaptive_kernel) problem.adapt_kernel(pose);
     result.iterations += levenberg_marquardt(problem, robust, config.refine_iterations, pose);
     result.camera_from_world = pose;
     result.inliers = problem.mark_inliers(pose, 1.0, result.inlier);
@@ -227,7 +265,9 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     result.rms_px = std::sqrt(after / result.inliers);
     result.rms_before_px = std::sqrt(before / result.inliers);
   }
-  result.information = problem.normal_equations(result.camera_from_world, false).h;
+  const NormalEquations last = problem.normal_equations(result.camera_from_world, false);
+  result.information = last.h;
+  result.noise = std::sqrt(last.cost / std::max(1.0, problem.rows() - 6.0));
   result.camera_from_world = normalised(result.camera_from_world);
   return result;
 }

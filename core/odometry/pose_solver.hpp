@@ -36,6 +36,11 @@ struct PoseRefinement {
   double rms_before_px = 0.0;               ///< of the final inliers, under the initial pose
   double rms_px = 0.0;                      ///< … and under the refined one
   Matrix6d information = Matrix6d::Zero();  ///< JᵀWJ at the end, translation first
+  double noise = 1.0;  ///< standard deviations by which the inliers miss, in the unit of their sigma_px
+
+  /// Of a left perturbation of camera_from_world, by the inliers' own noise: m², rad², translation first;
+  /// zero where they do not tell.
+  [[nodiscard]] Matrix6d covariance() const;
 };
 
 /// eq. (5): minimises ½ Σ ‖u_i − (1/s) K exp(ξ^) P_i‖² over ξ ∈ se(3), robustly (Huber), from an initial

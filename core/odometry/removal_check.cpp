@@ -2,6 +2,8 @@
 
 #include <future>
 
+#include "core/geometry/normal_equations.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -16,11 +18,16 @@ MotionResult weights_of(const MotionResult& motion) {
 }
 
 /// The steps of FeatureOdometry::track_frame as far as the pose, on copies.
-std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, const PreparedFrame& prepared,
-                                    const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
+/// A pose, and how well it is known.
+struct SolvedPose {
+  std::optional<Pose> world_from_camera;
+  double sigma_m = 0.0;
+};
+SolvedPose solve_with_mask(BeforeFrame before, const Frame& image, const PreparedFrame& prepared,
+                           const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
   FrameSolver& solver = before.solver;
   const LocalMap& map = before.mapper.map();
-  FrameRecord unused;
+  FrameRecord unused;  // but for the covariance
   FrameSolver::FirstPose first = solver.predict(image, map);
   if (solver.needs_first_pose(image)) {
     first = solver.first_pose(image, prepared, mask, map, before.motion_settled, unused);
@@ -29,8 +36,9 @@ std::optional<Pose> solve_with_mask(BeforeFrame before, const Frame& image, cons
                                           solver.path().last().reference_keyframe);
   }
   const FrameSolver::Solution solution = solver.solve(image, prepared, mask, weights, first, map, unused);
-  if (!solution.found()) return std::nullopt;
-  return solution.frame.camera_from_world.inverse();
+  if (!solution.found()) return {};
+  return {solution.frame.camera_from_world.inverse(),
+          largest_deviation(unused.pose_covariance.topLeftCorner<3, 3>())};
 }
 
 }  // namespace
@@ -43,12 +51,14 @@ RemovalCheck check_removal(const BeforeFrame& before, const Frame& image, const 
     return solve_with_mask(before, image, prepared, mask, weights, judged_by_pose);
   };
   RemovalCheck check;
-  std::future<std::optional<Pose>> told;
+  std::future<SolvedPose> told;
   if (known_mask.size() == image.gray.size())
     told = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
                       [&] { return solve(known_mask); });
-  check.nothing_removed = solve({});
-  if (told.valid()) check.truth_removed = told.get();
+  const SolvedPose all = solve({});
+  check.nothing_removed = all.world_from_camera;
+  check.nothing_removed_sigma_m = all.sigma_m;
+  if (told.valid()) check.truth_removed = told.get().world_from_camera;
   return check;
 }
 

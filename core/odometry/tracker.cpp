@@ -177,6 +177,7 @@ PoseRefinement Tracker::refine_by_local_map(const LocalMap& map, TrackedFrame& f
   record.matches = static_cast<int>(matches.size());
   record.inliers = refined.inliers;
   record.rms_px = refined.rms_px;
+  record.pose_covariance = refined.covariance();
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const auto f = static_cast<std::size_t>(matches[i].feature);
     frame.points[f] = refined.inlier[i] ? matches[i].point : kNone;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/odometry/engines.hpp"
 
 namespace stillpoint {
@@ -27,6 +28,12 @@ const RelativeError* motion_error(const std::vector<RelativeError>& errors, cons
       std::lower_bound(errors.begin(), errors.end(), record.timestamp - kSameTime,
                        [](const RelativeError& error, double stamp) { return error.to_timestamp < stamp; });
   return at != errors.end() && at->to_timestamp < record.timestamp + kSameTime ? &*at : nullptr;
+}
+
+/// @param block 0 = position, 3 = rotation
+double sigma_of(const FrameRecord& record, int block) {
+  const double sigma = largest_deviation(record.pose_covariance.block<3, 3>(block, block));
+  return record.estimated && sigma > 0 ? sigma : kUnknownFigure;
 }
 
 double rpe_frame(const MeasuredFrame& row, double RelativeError::*part) {
@@ -156,6 +163,15 @@ std::vector<FrameFigure> all_figures() {
         .old_name = "step_told"},
        [](const MeasuredFrame& r) { return r.removal->oracle_m; },
        true},
+      {{.name = "widened",
+        .help = "the position's standard deviation, as many times as with nothing removed: information that "
+                "removal cost",
+        .digits = 3,
+        .worse = high,
+        .title = "Position σ, by removal",
+        .column = "sigma_by_removal"},
+       [](const MeasuredFrame& r) { return r.removal->widened; },
+       true},
       {{.name = "hurt", .unit = truth, .help = "removal made the step worse", .digits = 0},
        [](const MeasuredFrame& r) { return flag(r.removal->hurt); },
        true},
@@ -220,6 +236,22 @@ std::vector<FrameFigure> all_figures() {
        [](const MeasuredFrame& r) {
          return r.record.inliers > 0 ? of_pose(r, r.record.rms_px) : kUnknownFigure;
        }},
+      {{.name = "position_sigma",
+        .unit = metres,
+        .help = "standard deviation of the position in the direction least known, by the pose's covariance",
+        .digits = 6,
+        .worse = high,
+        .title = "Position, σ",
+        .column = "position_sigma_m"},
+       [](const MeasuredFrame& r) { return sigma_of(r.record, 0); }},
+      {{.name = "rotation_sigma",
+        .unit = degrees,
+        .help = "standard deviation of the rotation about the axis least known",
+        .digits = 6,
+        .worse = high,
+        .title = "Rotation, σ",
+        .column = "rotation_sigma_deg"},
+       [](const MeasuredFrame& r) { return to_degrees(sigma_of(r.record, 3)); }},
       count("refine_iterations", "Refinement steps", "", "steps the refinement of the pose took",
             [](const MeasuredFrame& r) { return double(r.record.refine_iterations); }),
       is_status("wide_search", "the motion model's window was too small",

@@ -78,6 +78,10 @@ void transfer_motion_figures(ByteReader& from, std::vector<MotionFigure>& figure
   }
 }
 
+/// What was read above the diagonal holds below it.
+void mirror(Matrix6d& symmetric, int row, int column) { symmetric(column, row) = symmetric(row, column); }
+void mirror(const Matrix6d&, int, int) {}
+
 template <typename Archive, typename Record>
 void transfer_fields(Archive& archive, Record& r) {
   archive(r.index);
@@ -94,10 +98,15 @@ void transfer_fields(Archive& archive, Record& r) {
                       &r.inliers, &r.refine_iterations, &r.new_points, &r.fused_points, &r.culled_points,
                       &r.culled_keyframes, &r.map_points, &r.map_keyframes, &r.bundle_iterations})
     archive(*count);
-  for (auto* figure :
-       {&r.mask_share, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px, &r.ms.motion, &r.ms.features,
-        &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total, &r.ms.stereo})
+  for (auto* figure : {&r.mask_share, &r.rms_px, &r.bundle_rms_before_px, &r.bundle_rms_px, &r.ms.motion,
+                       &r.ms.features, &r.ms.matching, &r.ms.pose, &r.ms.mapping, &r.ms.bundle, &r.ms.total,
+                       &r.ms.stereo, &r.removal_check.nothing_removed_sigma_m})
     archive(*figure);
+  for (int row = 0; row < 6; ++row)  // of a symmetric matrix
+    for (int column = row; column < 6; ++column) {
+      archive(r.pose_covariance(row, column));
+      mirror(r.pose_covariance, row, column);
+    }
   archive(r.keyframe);
   for (auto* pose :
        {&r.prior_pose, &r.motion_pose, &r.removal_check.nothing_removed, &r.removal_check.truth_removed})

@@ -28,7 +28,7 @@ namespace stillpoint {
 // run's hash. Each chunk is handed to the system at once: a run that is killed leaves its frames, and is read
 // without what the end would have told.
 
-inline constexpr std::uint32_t kRecordsVersion = 7;
+inline constexpr std::uint32_t kRecordsVersion = 8;
 inline constexpr const char* kRecordsName = "records.bin";
 
 /// Writes records.bin while a run goes on. A frame that cannot be written, because the disk is full, does not

@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/median.hpp"
 
 namespace stillpoint {
@@ -17,6 +18,12 @@ constexpr double kSigmas = 3.0;
 double step_error(const Pose& true_step, const Pose& before, const std::optional<Pose>& now) {
   if (!now) return std::numeric_limits<double>::quiet_NaN();
   return (true_step.inverse() * (before.inverse() * *now)).translation().norm();
+}
+
+double widening(const FrameRecord& record) {
+  const double kept = largest_deviation(record.pose_covariance.topLeftCorner<3, 3>()),
+               all = record.removal_check.nothing_removed_sigma_m;
+  return kept > 0 && all > 0 ? kept / all : std::numeric_limits<double>::quiet_NaN();
 }
 
 void judge(std::vector<RemovalError>& errors) {
@@ -55,6 +62,7 @@ std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records
          .with_removal_m = error(now.estimated ? std::optional(now.world_from_camera) : std::nullopt),
          .without_removal_m = error(now.removal_check.nothing_removed),
          .oracle_m = error(now.removal_check.truth_removed),
+         .widened = widening(now),
          .hurt = false,
          .helped = false});
   }

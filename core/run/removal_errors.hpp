@@ -15,8 +15,9 @@ struct RemovalError {
   double with_removal_m = 0.0;
   double without_removal_m = 0.0;
   double oracle_m = 0.0;  ///< with the true mask
-  bool hurt = false;      ///< removal made it worse by more than the noise of such steps
-  bool helped = false;    ///< … better by more than that
+  double widened = 0.0;  ///< the position's largest standard deviation, as many times as with nothing removed
+  bool hurt = false;     ///< removal made it worse by more than the noise of such steps
+  bool helped = false;   ///< … better by more than that
 };
 
 /// Did removal help? One entry a frame that was checked (run.check_removal) and whose pose and the one before

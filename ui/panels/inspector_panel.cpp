@@ -27,11 +27,26 @@ std::string label_of(std::string name) {
   return name;
 }
 
+/// "freiburg1; rows over 25.0 ms, depth's over 33.0 ms, depth 28.0 ms before its stamp, …"
+std::string camera_text(const Camera& camera) {
+  std::string text = camera.name;
+  if (camera.readout_s != 0) text += fmt::format("; rows over {:.1f} ms", 1e3 * camera.readout_s);
+  if (camera.depth_readout_s) text += fmt::format(", depth's over {:.1f} ms", 1e3 * *camera.depth_readout_s);
+  if (camera.depth_delay_s != 0)
+    text += fmt::format(", depth {:.1f} ms {} its stamp", 1e3 * std::abs(camera.depth_delay_s),
+                        camera.depth_delay_s < 0 ? "before" : "after");
+  if (camera.stamp_delay_s != 0)
+    text += fmt::format(", frame {:.1f} ms {} its image's stamp", 1e3 * std::abs(camera.stamp_delay_s),
+                        camera.stamp_delay_s < 0 ? "before" : "after");
+  return text;
+}
+
 Rows record_rows(const SessionView& session, const FrameRecord& r) {
   Rows rows{
       {"Frame", fmt::format("{} of {}", r.index, session.frame_count)},
       {"Time", fmt::format("{:.3f} s", r.timestamp - series_start(session))},
       {"Stamp", fmt::format("{:.4f} s", r.timestamp)},
+      {"Camera", camera_text(session.camera)},
       {"Status", std::string(to_string(r.status))},
       {"Note", remarks_on(r).empty() ? "–" : remarks_on(r)},
       {"Position", position_text(r.world_from_camera)},

@@ -1,9 +1,12 @@
 #include "ui/panels/scene_of_session.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
@@ -107,6 +110,29 @@ void add_errors(const TrajectoryEvaluation& evaluation, const Pose& world_from_e
   data.error_scale_m = round;
 }
 
+/// Where the frame's position may lie, by its covariance: the three ellipses through the axes of its
+/// ellipsoid.
+void add_uncertainty(const FrameRecord& record, const Pose& world_from_camera, SceneData& data) {
+  constexpr int kSteps = 48;
+  constexpr double kSigmas = 20.0;  // one would be thinner than a line: a millimetre, in a room
+  const Eigen::Matrix3d covariance = record.pose_covariance.topLeftCorner<3, 3>();
+  if (covariance.isZero(0.0)) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const Eigen::Matrix3d world_axes = world_from_camera.linear() * axes.eigenvectors() *
+                                     axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * kSigmas;
+  ScenePath path{.name = "position, 20 σ", .role = Role::kCursor, .width_px = 1.4F};
+  for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)}) {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kSteps;
+      path.positions.push_back((world_from_camera.translation() + std::cos(angle) * world_axes.col(a) +
+                                std::sin(angle) * world_axes.col(b))
+                                   .cast<float>());
+    }
+    path.positions.push_back(broken());
+  }
+  data.paths.push_back(std::move(path));
+}
+
 /// The features the current frame's mask removed, where depth says they are.
 void add_removed(const SessionView& session, const Pose& world_from_camera, SceneData& data) {
   for (const FeatureRecord& feature : session.current->record->features) {
@@ -174,6 +200,8 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
   const FrameRecord* record = session.current->record;
   if (record != nullptr && record->estimated) {
     data.current = world * record->world_from_camera;
+    add_uncertainty(*record, *data.current, data);
+    scene.frames_of_path.resize(data.paths.size());
     data.current_image = picture_of(session.current->frame);
     if (layers.points) add_removed(session, *data.current, data);
   }
