@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/sequence/folder_camera.hpp"
+#include "core/sequence/rgbd/rgbd_input.hpp"
 #include "core/sequence/sequence_input.hpp"
 #include "core/sequence/stereo/stereo_input.hpp"
 
@@ -55,6 +56,7 @@ std::unique_ptr<SequenceInput> make_folder_input(std::unique_ptr<FileStore> file
                                                  const OpenOptions& options) {
   if (!has_image_lists(*files))
     if (auto stereo = make_stereo_input(files, options)) return stereo;
+  if (auto rgbd = make_rgbd_input(files, options)) return rgbd;
   return std::make_unique<FolderInput>(std::move(files), options);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sequence/depth_registration.hpp"
 #include "core/sequence/folder_lists.hpp"
 #include "core/sequence/image_survey.hpp"
 #include "core/sequence/sequence_input.hpp"
@@ -57,14 +58,18 @@ class ListedSequence final : public FrameSource {
   void join_masks(const ImageList& masks);
   int join(const ImageList& list, Part part);
   [[nodiscard]] cv::Size choose_camera();
+  void begin_registration();
   void begin_stereo();
   void survey_stereo();
-  void survey_depth_images(cv::Size colour);
+  void survey_depth_images();
+  /// What depth images must be of.
+  [[nodiscard]] DepthSize depth_size() const;
   void question_scale(const DepthSurvey& survey);
   void survey_mask_images(cv::Size colour);
   void question_convention();
   [[nodiscard]] ImagePaths sample(Part part, std::size_t count) const;
   void read_depth(const Entry& entry, Frame& frame) const;
+  void register_depth(const std::string& path, Frame& frame) const;
   void read_right(const Entry& entry, Frame& frame) const;
   [[nodiscard]] ImageReader reader() const;
   [[nodiscard]] std::string path_of(const std::string& file) const { return input_->path_of(file); }
@@ -79,7 +84,8 @@ class ListedSequence final : public FrameSource {
   Camera camera_;
   Trajectory ground_truth_;
   bool is_stereo_ = false, has_depth_ = false, has_masks_ = false;
-  std::optional<StereoMatcher> matcher_;  // of stereo pairs
+  std::optional<StereoMatcher> matcher_;           // of stereo pairs
+  std::optional<DepthRegistration> registration_;  // of depth images that are not registered
   MaskCoding mask_coding_ = MaskCoding::bright;
   std::map<FramePart, std::string> why_not_;
   std::vector<std::string> warnings_;

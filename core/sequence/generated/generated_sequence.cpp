@@ -28,7 +28,7 @@ constexpr double kEpoch = 1000.0;                        // s, the first frame's
 /// Stamps are whole microseconds, so that six decimals in a file give them back exactly.
 double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
-class GeneratedSequence : public FrameSource {
+class GeneratedSequence : public FrameSource, public FilmedScene {
  public:
   /// @param stereo null: depth is a sensor's own
   GeneratedSequence(std::string_view kind, int frames, unsigned seed, const StereoOptions* stereo)
@@ -99,6 +99,17 @@ class GeneratedSequence : public FrameSource {
         truth.moving.at<std::uint8_t>(y, x) = id >= fixed && middle.actors[id - fixed].moving ? 255 : 0;
       }
     return truth;
+  }
+
+  [[nodiscard]] cv::Mat depth_seen_by(const DepthCamera& depth, int index) const override {
+    const double seconds = timestamp(index) - kEpoch;
+    Instant there = instant(seconds);
+    there.world_from_camera = there.world_from_camera * depth.colour_from_depth;
+    const Rendering ideal = cast_depth(act_.scene, depth.camera, there);
+    cv::Mat metres;
+    sensor_.depth(ideal, dropout(there), depth.camera, index)
+        .convertTo(metres, CV_32F, 1.0 / depth.camera.depth_scale);
+    return metres;
   }
 
  private:
