@@ -69,6 +69,7 @@ bool holds_sequence(const fs::path& folder) {
 void clear_sequence(const fs::path& folder) {
   for (const std::string& name : text_files()) fs::remove(folder / name);
   for (const fs::path& file : rgbd_files_in(folder)) fs::remove(file);
+  remove_rgbd_folders(folder);
   for (const std::string& name : image_folders()) {
     if (!fs::is_directory(folder / name)) continue;
     std::vector<fs::path> images;
@@ -288,7 +289,6 @@ void remove_sequence(const fs::path& folder) {
   std::error_code ignored;  // what others put there meanwhile stays, and the folder with it
   clear_sequence(folder);
   for (const std::string& name : image_folders()) fs::remove(folder / name, ignored);
-  remove_rgbd_folders(folder);
   for (const char* name : {"mav0/cam0", "mav0/cam1", "mav0/state_groundtruth_estimate0", "mav0"})
     fs::remove(folder / name, ignored);
   fs::remove(folder, ignored);

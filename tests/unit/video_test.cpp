@@ -144,6 +144,9 @@ void make_variable(const std::string& path) {
   const std::string changed = big_endian_bytes(2) + big_endian_bytes(10) + big_endian_bytes(step) +
                               big_endian_bytes(count - 10) + big_endian_bytes(3 * step);
   bytes.replace(table + 8, 12, changed);
+  // The edit list says how much of the track is shown.
+  if (const std::size_t edits = bytes.rfind("elst"); edits != std::string::npos && edits < table)
+    bytes.replace(edits + 12, 4, big_endian_bytes(3 * big_endian_at(bytes, edits + 12)));
   for (const char* box : {"moov", "trak", "mdia", "minf", "stbl", "stts"}) {
     const std::size_t at = bytes.rfind(box) - 4;
     bytes.replace(at, 4, big_endian_bytes(big_endian_at(bytes, at) + 8));

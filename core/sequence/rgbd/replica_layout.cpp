@@ -49,11 +49,11 @@ ImageList results_with(const FileStore& folder, const char* start) {
 
 std::optional<RgbdRecording> read_replica(const FileStore& folder, const OpenOptions& options) {
   if (!folder.is_folder(kResults)) return std::nullopt;
-  const ImageList colours = results_with(folder, "frame");
+  ImageList colours = results_with(folder, "frame");
   if (colours.entries.empty()) return std::nullopt;
   RgbdRecording recording;
   recording.unit = StampUnit::frames;
-  recording.lists = numbered_images(folder, colours, results_with(folder, "depth"));
+  recording.lists = numbered_images(folder, std::move(colours), results_with(folder, "depth"));
   recording.camera = given_camera_or(folder, options, [&] { return replica_camera(folder); });
   FolderTruth& truth = recording.truth.emplace();
   if (!folder.is_file(kTrajectory)) return recording;

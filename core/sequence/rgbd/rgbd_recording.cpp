@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -43,14 +43,13 @@ Camera given_camera_or(const FileStore& folder, const OpenOptions& options,
   return own();
 }
 
-FolderLists numbered_images(const FileStore& folder, const ImageList& colours, const ImageList& depths) {
-  for (const ImageList* list : {&colours, &depths})
-    if (list->entries.empty())
-      throw InputError(
-          fmt::format("{}: has no {} images", folder.place(), list == &colours ? "colour" : "depth"));
+FolderLists numbered_images(const FileStore& folder, ImageList colours, ImageList depths) {
   FolderLists lists;
-  lists.colours = colours;
-  lists.depths = depths;
+  lists.colours = std::move(colours);
+  if (depths.entries.empty())
+    lists.warnings.push_back(fmt::format("{}: has no depth images", folder.place()));
+  else
+    lists.depths = std::move(depths);
   return lists;
 }
 

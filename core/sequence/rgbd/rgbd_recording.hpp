@@ -67,9 +67,9 @@ extern const RgbdLayout kUnregisteredLayout;  ///< the TUM layout with a depth c
 [[nodiscard]] Camera given_camera_or(const FileStore& folder, const OpenOptions& options,
                                      const std::function<Camera()>& own);
 
-/// Colour and depth images, each by the number in its name. @throws InputError where one of them has none
-[[nodiscard]] FolderLists numbered_images(const FileStore& folder, const ImageList& colours,
-                                          const ImageList& depths);
+/// Colour and depth images, each stamped by the number in its name. Where there are no depth images it is
+/// told.
+[[nodiscard]] FolderLists numbered_images(const FileStore& folder, ImageList colours, ImageList depths);
 
 /// The 4x4 matrix of a text file, row by row; 3x3 ones are filled up. May hold what is not finite.
 /// @throws InputError for a file that cannot be read or is none

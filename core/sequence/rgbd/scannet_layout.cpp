@@ -47,6 +47,7 @@ Camera scannet_camera(const FileStore& folder, const FolderLists& lists) {
   Camera camera = camera_of_matrix(folder, kColour, first_size(folder, lists.colours));
   // Colour images that were made smaller on exporting keep the matrix of what was filmed.
   if (!is_near_middle(camera)) camera.width = kScanNetColour.width, camera.height = kScanNetColour.height;
+  if (!lists.depths) return camera;
   DepthCamera depth;
   depth.camera = camera_of_matrix(folder, kDepth, first_size(folder, *lists.depths));
   depth.colour_from_depth = place_of(folder, "intrinsic/extrinsic_color.txt").inverse() *
@@ -56,12 +57,13 @@ Camera scannet_camera(const FileStore& folder, const FolderLists& lists) {
 }
 
 std::optional<RgbdRecording> read_scannet(const FileStore& folder, const OpenOptions& options) {
-  if (!folder.is_folder("color") || !folder.is_folder("depth") ||
-      !(folder.is_folder("intrinsic") || folder.is_folder("pose")))
+  if (has_image_lists(folder) || !(folder.is_folder("intrinsic") || folder.is_folder("pose")))
     return std::nullopt;
+  ImageList colours = images_of(folder, "color");
+  if (colours.entries.empty()) return std::nullopt;
   RgbdRecording recording;
   recording.unit = StampUnit::frames;
-  recording.lists = numbered_images(folder, images_of(folder, "color"), images_of(folder, "depth"));
+  recording.lists = numbered_images(folder, std::move(colours), images_of(folder, "depth"));
   recording.camera =
       given_camera_or(folder, options, [&] { return scannet_camera(folder, *recording.lists); });
   recording.truth = read_pose_files(folder, recording.lists->colours, "pose", [](const ListEntry& image) {

@@ -20,11 +20,11 @@ ImageList images_ending(const FileStore& folder, const char* end) {
 }
 
 std::optional<RgbdRecording> read_seven_scenes(const FileStore& folder, const OpenOptions& options) {
-  const ImageList colours = images_ending(folder, kColourEnd);
+  ImageList colours = images_ending(folder, kColourEnd);
   if (colours.entries.empty()) return std::nullopt;
   RgbdRecording recording;
   recording.unit = StampUnit::frames;
-  recording.lists = numbered_images(folder, colours, images_ending(folder, kDepthEnd));
+  recording.lists = numbered_images(folder, std::move(colours), images_ending(folder, kDepthEnd));
   recording.camera = given_camera_or(folder, options, [&] {
     Camera camera;
     camera.name = "7-scenes";
