@@ -4,8 +4,11 @@
 // Redwood's scenes have the trajectory and no JSON: the camera is PrimeSense's default.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <span>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
@@ -77,49 +80,69 @@ Camera open3d_camera(const FileStore& folder, const std::string& name, std::vect
   }
 }
 
-/// @throws InputError for a file that is none
-Trajectory read_log(const FileStore& folder, const std::string& name, std::vector<std::string>& warnings) {
-  const std::string path = folder.path_of(name);
+/// The pose of a block of five lines; nothing where it has none.
+std::optional<Pose> pose_of_block(std::span<const TextLine> block) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Constant(std::nan(""));
+  for (int row = 0; row < 4; ++row) {
+    const auto columns = split_columns(block[static_cast<std::size_t>(row) + 1].text);
+    for (int k = 0; k < 4 && columns.size() == 4; ++k)
+      matrix(row, k) = parse_number(columns[static_cast<std::size_t>(k)]).value_or(std::nan(""));
+  }
+  return rigid_pose(matrix);
+}
+
+/// Poses at the stamps of the images whose places they name.
+FolderTruth read_log(const FileStore& folder, const std::string& name, const ImageList& images) {
+  constexpr std::size_t kLines = 5;  // a pose
+  FolderTruth truth;
+  truth.path = folder.path_of(name);
   const auto lines = text_lines(folder.read_text(name));
-  Trajectory poses;
   std::string first_bad;
-  std::size_t blocks = 0;
-  for (std::size_t at = 0; at + 5 <= lines.size(); at += 5, ++blocks) {
-    if (!is_log_head(lines[at].text))
-      throw InputError(fmt::format("{}:{}: found {}, expected the three numbers that begin a pose", path,
-                                   lines[at].number, in_quotes(lines[at].text)));
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Constant(std::nan(""));
-    for (int row = 0; row < 4; ++row) {
-      const auto columns = split_columns(lines[at + 1 + static_cast<std::size_t>(row)].text);
-      for (int k = 0; k < 4 && columns.size() == 4; ++k)
-        matrix(row, k) = parse_number(columns[static_cast<std::size_t>(k)]).value_or(std::nan(""));
+  double last = -1.0;
+  for (std::size_t at = 0; at + kLines <= lines.size(); at += kLines) {
+    if (!is_log_head(lines[at].text)) {
+      truth.why_not = fmt::format("{}:{}: found {}, expected the three numbers that begin a pose", truth.path,
+                                  lines[at].number, in_quotes(lines[at].text));
+      truth.poses.clear();
+      return truth;
     }
     const double place = parse_number(split_columns(lines[at].text).front()).value_or(-1.0);
-    const auto pose = rigid_pose(matrix);
-    if (!pose && first_bad.empty())
-      first_bad = fmt::format("{}:{}: is no rigid motion, and costs its pose", path, lines[at].number);
-    if (pose && place >= 0 && (poses.empty() || place > poses.back().timestamp))
-      poses.push_back({place, *pose});
+    const auto pose = pose_of_block(std::span(lines).subspan(at, kLines));
+    if (pose && place > last && place < static_cast<double>(images.entries.size())) {
+      truth.poses.push_back({images.entries[static_cast<std::size_t>(place)].timestamp, *pose});
+      last = place;
+    } else if (first_bad.empty()) {
+      first_bad =
+          pose ? fmt::format("{}:{}: {} is the place of no image, or out of order; the pose was skipped",
+                             truth.path, lines[at].number, place)
+               : fmt::format("{}:{}: is no rigid motion, and costs its pose", truth.path, lines[at].number);
+    }
   }
-  if (poses.empty()) throw InputError(fmt::format("{}: holds no pose", path));
-  if (!first_bad.empty()) warnings.push_back(first_bad);
-  if (lines.size() % 5 != 0)
-    warnings.push_back(
-        fmt::format("{}:{}: the last pose was cut short and skipped", path, lines.back().number));
-  if (poses.size() < blocks)
-    warnings.push_back(fmt::format("{}: {} of its {} poses were read", path, poses.size(), blocks));
-  return poses;
+  if (!first_bad.empty()) truth.warnings.push_back(first_bad);
+  if (lines.size() % kLines != 0)
+    truth.warnings.push_back(
+        fmt::format("{}:{}: the last pose was cut short and skipped", truth.path, lines.back().number));
+  if (truth.poses.empty()) truth.why_not = fmt::format("{}: holds no pose of an image", truth.path);
+  return truth;
+}
+
+/// The folder of colour images: Open3D's readers', or a name of Redwood's scenes.
+std::optional<std::string> colour_folder(const FileStore& folder) {
+  for (const char* name : {"color", "image", "rgb"})
+    if (folder.is_folder(name)) return name;
+  return std::nullopt;
 }
 
 std::optional<RgbdRecording> read_open3d(const FileStore& folder, const OpenOptions& options) {
-  if (has_image_lists(folder) || !folder.is_folder("depth")) return std::nullopt;
-  if (!folder.is_folder("color") && !folder.is_folder("image") && !folder.is_folder("rgb"))
-    return std::nullopt;
-  const auto json = intrinsic_json(folder);
-  const auto log = trajectory_log(folder);
+  const auto colour = colour_folder(folder);
+  if (!colour || has_image_lists(folder)) return std::nullopt;
+  const auto json = intrinsic_json(folder), log = trajectory_log(folder);
   if (!json && !log) return std::nullopt;
+  ImageList colours = images_of(folder, *colour);
+  if (colours.entries.empty()) return std::nullopt;
   RgbdRecording recording;
-  std::vector<std::string> warnings;
+  recording.lists = numbered_images(folder, std::move(colours), images_of(folder, "depth"));
+  std::vector<std::string>& warnings = recording.lists->warnings;
   recording.camera = given_camera_or(folder, options, [&] {
     if (json) return open3d_camera(folder, *json, warnings);
     Camera camera = camera_by_name("ros_default");
@@ -130,15 +153,8 @@ std::optional<RgbdRecording> read_open3d(const FileStore& folder, const OpenOpti
                     folder.place()));
     return camera;
   });
-  FolderTruth& truth = recording.truth.emplace();
-  truth.warnings = warnings;
-  if (!log) return recording;
-  truth.path = folder.path_of(*log);
-  try {
-    truth.poses = read_log(folder, *log, truth.warnings);
-  } catch (const InputError& error) {
-    truth.why_not = error.what();
-  }
+  recording.truth.emplace();
+  if (log) recording.truth = read_log(folder, *log, recording.lists->colours);
   return recording;
 }
 

@@ -55,14 +55,8 @@ class RgbdInput final : public SequenceInput {
   [[nodiscard]] FolderTruth poses_of_images(const std::vector<double>& stamps, StampUnit unit) const {
     const FolderTruth& read = *recording_.truth;
     if (read.poses.empty()) return read;
-    Trajectory poses;
-    for (const StampedPose& pose : read.poses) {
-      if (recording_.lists) {
-        poses.push_back({pose.timestamp * seconds_per(unit, options_.frame_rate), pose.world_from_camera});
-      } else if (const auto place = static_cast<std::size_t>(pose.timestamp); place < stamps.size()) {
-        poses.push_back({stamps[place], pose.world_from_camera});
-      }
-    }
+    Trajectory poses = read.poses;
+    for (StampedPose& pose : poses) pose.timestamp *= seconds_per(unit, options_.frame_rate);
     FolderTruth truth = settle_truth(read.path, std::move(poses), stamps, StampUnit::seconds,
                                      options_.frame_rate, options_.truth);
     truth.warnings.insert(truth.warnings.begin(), read.warnings.begin(), read.warnings.end());

@@ -25,8 +25,7 @@ struct RgbdRecording {
   std::optional<FolderLists> lists;  ///< nothing: as folder_lists.hpp finds them
   std::optional<StampUnit> unit;     ///< of the stamps of `lists`; nothing: they tell it themselves
   std::optional<Camera> camera;      ///< with its depth camera; nothing: as folder_camera.hpp finds it
-  /// Poses by image, with `path`, `warnings` and `why_not`: a pose's stamp is its image's in `lists`, or,
-  /// where there are none, the image's place, from 0. Nothing: as folder_truth.hpp finds it.
+  /// Poses at the stamps of images of `lists`, in the unit of those. Nothing: as folder_truth.hpp finds it.
   std::optional<FolderTruth> truth;
   Pose body_from_camera = Pose::Identity();  ///< of the body whose poses the truth has, from the camera
   std::string no_truth;                      ///< why what is there cannot be used, one sentence

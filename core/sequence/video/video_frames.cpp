@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kKeptBytes = std::size_t{128} << 20;
 constexpr std::size_t kFewestKept = 8;
-constexpr double kUsualRate = 30.0;  // Hz, where the file names none that can be
+constexpr std::size_t kMostHeldBack = 16;  // frames, of H.264 and H.265
+constexpr double kUsualRate = 30.0;        // Hz, where the file names none that can be
 
 double usual_step(const VideoReader& reader) {
   const double rate = reader.frame_rate();
@@ -26,20 +27,15 @@ VideoFrames::VideoFrames(std::string path, int most, const std::function<void(do
   if (!reader_->open(path_)) throw InputError(fmt::format("{}: is no video that can be decoded", path_));
   const double step = usual_step(*reader_);
   const int by_head = reader_->frames_by_head();
-  int mended = 0;
   while ((most == 0 || static_cast<int>(stamps_.size()) < most) && reader_->next()) {
-    double stamp = reader_->seconds();
-    if (!std::isfinite(stamp) || (!stamps_.empty() && stamp <= stamps_.back())) {
-      stamp = stamps_.empty() ? 0.0 : stamps_.back() + step;
-      ++mended;
-    }
-    stamps_.push_back(stamp);
+    stamps_.push_back(reader_->seconds());
     if (progress && by_head > 0 && stamps_.size() % 32 == 0)
       progress(std::min(
           1.0, static_cast<double>(stamps_.size()) / (most > 0 ? std::min(most, by_head) : by_head)));
   }
   next_ = static_cast<int>(stamps_.size());
   if (stamps_.empty()) throw InputError(fmt::format("{}: none of its frames can be decoded", path_));
+  const int mended = settle(step);
   if (mended > 0)
     warnings_.push_back(fmt::format(
         "{}: {} of its {} frames are stamped no later than the one before; they were taken {:.1f} ms later",
@@ -51,6 +47,26 @@ VideoFrames::VideoFrames(std::string path, int most, const std::function<void(do
     warnings_.push_back(
         fmt::format("{}: is cut off or damaged: its head says {} frames, and {} can be decoded", path_,
                     by_head, stamps_.size()));
+}
+
+int VideoFrames::settle(double step) {
+  // The frames that a decoder held back until the file's end come without a stamp, as 0.
+  std::size_t stamped = stamps_.size();
+  while (stamped > 1 && stamps_[stamped - 1] == 0.0) --stamped;
+  if (stamps_.size() - stamped > kMostHeldBack) stamped = stamps_.size();
+  if (!std::isfinite(stamps_.front())) stamps_.front() = 0.0;
+  int mended = 0;
+  double last_step = step;
+  for (std::size_t i = 1; i < stamps_.size(); ++i) {
+    const double later = stamps_[i] - stamps_[i - 1];
+    if (std::isfinite(later) && later > 0) {
+      last_step = later;
+      continue;
+    }
+    stamps_[i] = stamps_[i - 1] + (i < stamped ? step : last_step);
+    mended += i < stamped ? 1 : 0;
+  }
+  return mended;
 }
 
 void VideoFrames::keep(int index, const cv::Mat& image) const {

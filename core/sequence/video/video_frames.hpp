@@ -38,6 +38,8 @@ class VideoFrames {
     int index;
     cv::Mat image;
   };
+  /// Makes the stamps increase. @param step s, for a frame without a sensible one @returns how many are told
+  int settle(double step);
   void keep(int index, const cv::Mat& image) const;
 
   std::string path_;
