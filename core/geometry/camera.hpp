@@ -35,8 +35,8 @@ struct Camera {
   double baseline_m =
       0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
   double depth_sigma_per_m2 = 0.0;  ///< 1/m, of a stereo pair: its depths z have standard deviation this z²
-  /// Of depth images that are not registered to this camera's; null = they are. What a sequence gives as its
-  /// camera has none: its depth is registered when it is read.
+  /// Of depth images that are stored as another camera sees them; null = they are registered to this one's.
+  /// Frames come with registered depth either way.
   std::shared_ptr<const DepthCamera> depth_camera{};
 
   [[nodiscard]] bool has_distortion() const;

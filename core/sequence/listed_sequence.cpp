@@ -167,9 +167,8 @@ ImagePaths ListedSequence::sample(Part part, std::size_t count) const {
 }
 
 void ListedSequence::begin_registration() {
-  const std::shared_ptr<const DepthCamera> depth = std::move(camera_.depth_camera);
-  camera_.depth_camera.reset();
-  if (depth && has_depth_ && !is_stereo_) registration_.emplace(*depth, camera_);
+  if (!has_depth_ || is_stereo_) camera_.depth_camera.reset();
+  if (camera_.depth_camera) registration_.emplace(*camera_.depth_camera, camera_);
 }
 
 DepthSize ListedSequence::depth_size() const {

@@ -237,7 +237,7 @@ void write_lists(const FrameSource& source, const fs::path& folder, const std::v
     return;
   }
   if (layout == SequenceLayout::tum || layout == SequenceLayout::left_right) {
-    write_text_file(folder / "camera.toml", camera_text(source.camera()));
+    write_text_file(folder / "camera.toml", camera_text(registered_camera(source)));
     if (!source.ground_truth().empty())
       write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
   }
@@ -265,6 +265,12 @@ SequenceLayout layout_of(const FrameSource& source, const WriteOptions& options)
 }
 
 }  // namespace
+
+Camera registered_camera(const FrameSource& source) {
+  Camera camera = source.camera();
+  camera.depth_camera.reset();
+  return camera;
+}
 
 std::string camera_text(const Camera& c) {
   std::string text = fmt::format(

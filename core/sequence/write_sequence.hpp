@@ -50,6 +50,9 @@ struct WrittenSequence {
 WrittenSequence write_sequence(const FrameSource& source, const std::filesystem::path& folder,
                                const WriteOptions& options = {});
 
+/// The camera of a sequence's frames as they come, whose depth is registered.
+[[nodiscard]] Camera registered_camera(const FrameSource& source);
+
 /// A camera as camera.toml has it, with its depth camera.
 [[nodiscard]] std::string camera_text(const Camera& camera);
 

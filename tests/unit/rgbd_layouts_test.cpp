@@ -6,12 +6,15 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/media/image_codec.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/sequence_origin.hpp"
+#include "core/sequence/fingerprint.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/rgbd/rgbd_recording.hpp"
@@ -192,6 +195,31 @@ TEST_P(EveryRgbdLayout, GivesTheTumFoldersRun) {
     const Pose off = plain.trajectory[i].world_from_camera.inverse() * read.trajectory[i].world_from_camera;
     EXPECT_LT(off.translation().norm(), 0.01) << i;  // m
   }
+}
+
+/// A finished run opens its sequence by what it wrote down of it.
+TEST_P(EveryRgbdLayout, IsFoundAgainByItsRun) {
+  const std::string where = miniature(GetParam()).string();
+  const auto source = open(*GetParam());
+  const auto json = to_json(origin_of(*source, where, options_of(*GetParam())), "");
+  const SequenceOrigin origin = origin_from_json(nlohmann::json::parse(json.dump()));
+  OpenOptions again;
+  again.camera = origin.camera;
+  again.truth = origin.truth;
+  EXPECT_EQ(sequence_fingerprint(*open_sequence(origin.where, again)), origin.fingerprint);
+}
+
+/// What is exported of a sequence is a folder of its own, with registered depth.
+TEST_P(EveryRgbdLayout, IsWrittenAsATumFolderThatReadsTheSame) {
+  const TemporaryFolder folder;
+  const auto source = open(*GetParam());
+  write_sequence(*source, folder.path(), {.force = true});
+  const auto written = open_sequence(folder.path());
+  ASSERT_EQ(written->size(), kFrames);
+  EXPECT_EQ(written->camera().depth_camera, nullptr);
+  const Frame a = source->read(1), b = written->read(1);
+  EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0);
+  EXPECT_LT(cv::norm(a.depth, b.depth, cv::NORM_INF), 0.5 / source->camera().depth_scale + 1e-6);
 }
 
 TEST_P(EveryRgbdLayout, OpensAsAnArchive) {

@@ -15,7 +15,7 @@ RgbdNames bonn_names(int, double seconds) {
 }
 
 void write_bonn(const WrittenRgbd& written) {
-  Camera camera = written.source.camera();
+  Camera camera = registered_camera(written.source);
   camera.name = "bonn";
   write_text_file(written.folder / "camera.toml", camera_text(camera));
   write_tum_texts(written, bonn_names, "rgb.txt", "depth.txt");

@@ -32,7 +32,7 @@ RgbdNames icl_names(int index, double) {
 }
 
 void write_icl(const WrittenRgbd& written) {
-  write_text_file(written.folder / "camera.toml", camera_text(written.source.camera()));
+  write_text_file(written.folder / "camera.toml", camera_text(registered_camera(written.source)));
   std::string pairs;
   Trajectory poses;
   for (int i = 0; i < written.frames; ++i) {

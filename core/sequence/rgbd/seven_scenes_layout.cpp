@@ -45,7 +45,7 @@ std::optional<RgbdRecording> read_seven_scenes(const FileStore& folder, const Op
 std::string stem(int index) { return fmt::format("frame-{:06}", index); }
 
 void write_seven_scenes(const WrittenRgbd& written) {
-  Camera camera = written.source.camera();
+  Camera camera = registered_camera(written.source);
   camera.depth_scale = kMillimetreScale;
   write_text_file(written.folder / "camera.toml", camera_text(camera));
   for (int i = 0; i < written.frames; ++i)

@@ -14,7 +14,7 @@ RgbdNames unregistered_names(int, double seconds) {
 }
 
 void write_unregistered(const WrittenRgbd& written) {
-  Camera camera = written.source.camera();
+  Camera camera = registered_camera(written.source);
   camera.depth_scale = kMillimetreScale;
   camera.depth_camera = std::make_shared<const DepthCamera>(miniature_depth_camera());
   write_text_file(written.folder / "camera.toml", camera_text(camera));
