@@ -33,13 +33,13 @@ class ZBuffer {
   /// A triangle with its sides and corners. Either side may face the camera.
   void draw(const Seen& a, const Seen& b, const Seen& c) {
     const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    const auto [left, right] = std::minmax({a.x, b.x, c.x});
-    const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
+    const double left = std::min(a.x, std::min(b.x, c.x)), right = std::max(a.x, std::max(b.x, c.x));
+    const double top = std::min(a.y, std::min(b.y, c.y)), bottom = std::max(a.y, std::max(b.y, c.y));
     if (!(std::abs(area) > kFlat) || !(right - left < kLargestDrawn) || !(bottom - top < kLargestDrawn))
       return;
     const double share = 1.0 / area;
-    const int x0 = first(left), x1 = last(right, inverse_.cols), y0 = first(top),
-              y1 = last(bottom, inverse_.rows);
+    const int x0 = first(left, inverse_.cols), x1 = last(right, inverse_.cols);
+    const int y0 = first(top, inverse_.rows), y1 = last(bottom, inverse_.rows);
     for (int y = y0; y <= y1; ++y) {
       float* const row = inverse_.ptr<float>(y);
       for (int x = x0; x <= x1; ++x) {
@@ -65,18 +65,22 @@ class ZBuffer {
 
  private:
   static constexpr double kFlat = 1e-9, kSeam = 1e-7;
-  // Pixel centres lie at whole numbers.
-  static int first(double from) { return std::max(0, static_cast<int>(std::ceil(from - kSeam))); }
+  // Pixel centres lie at whole numbers. (std::ceil and std::floor are calls of the C library.)
+  static int first(double from, int count) {
+    const double inside = std::clamp(from - kSeam, 0.0, static_cast<double>(count));
+    const int whole = static_cast<int>(inside);
+    return whole + (inside > whole ? 1 : 0);
+  }
   static int last(double to, int count) {
-    return std::min(count - 1, static_cast<int>(std::floor(to + kSeam)));
+    return static_cast<int>(std::clamp(to + kSeam, -1.0, count - 1.0) + 1.0) - 1;
   }
 
   cv::Mat inverse_;  // CV_32FC1, 1/m, 0 = nothing
 };
 
 bool is_one_surface(const std::array<float, 3>& z) {
-  const auto [least, most] = std::minmax_element(z.begin(), z.end());
-  return *most - *least <= kStep * *least;
+  const float least = std::min(z[0], std::min(z[1], z[2])), most = std::max(z[0], std::max(z[1], z[2]));
+  return most - least <= static_cast<float>(kStep) * least;
 }
 
 }  // namespace

@@ -252,7 +252,7 @@ FolderLists read_folder_lists(const FileStore& folder, double frame_rate) {
   } else if (!read_images_alone(folder, lists)) {
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt nor images, expected a folder in the TUM "
-                    "RGB-D layout{}",
+                    "RGB-D layout or another data set's{}",
                     folder.place(), what_else(folder)));
   }
   read_mask_list(folder, lists);
