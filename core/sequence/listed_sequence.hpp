@@ -16,9 +16,12 @@
 namespace stillpoint {
 
 /// A recorded sequence: the images that an input names, a folder in the TUM RGB-D layout or near it, an
-/// archive of one, a bag of messages, or stereo pairs. What a folder may hold is said in folder_lists.hpp,
-/// folder_truth.hpp and folder_camera.hpp; what a bag may, in bag/bag_input.hpp; what stereo may, in
-/// stereo/stereo_recording.hpp. Bonn and ICL-NUIM folders share the layout.
+/// archive of one, a bag of messages, stereo pairs, or a video. What a folder may hold is said in
+/// folder_lists.hpp, folder_truth.hpp and folder_camera.hpp, and what one of another layout may, in
+/// rgbd/rgbd_recording.hpp; what a bag may, in bag/bag_input.hpp; what stereo may, in
+/// stereo/stereo_recording.hpp.
+///
+/// Depth of a depth camera of its own is registered when a frame is read (depth_registration.hpp).
 ///
 /// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, or as
 /// `associations.txt` pairs them where that is given. Whatever can be known before the first frame is told

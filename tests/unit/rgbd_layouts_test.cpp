@@ -409,6 +409,24 @@ TEST(RgbdLayouts, IclAndBonnTellTheSwitchThatReadsTheirTruth) {
   EXPECT_EQ(spoilt.open()->camera().name, "icl_nuim");
 }
 
+TEST(RgbdLayouts, ACalibrationOfAnotherKindIsNotEth3ds) {
+  const TemporaryFolder folder("rgbd_dataset_freiburg1_own");
+  fs::copy(miniature(&kEth3dLayout), folder.path(), fs::copy_options::recursive);
+  folder.write("calibration.txt", std::string("made on Monday\nwith a chessboard\n"));
+  EXPECT_EQ(open_sequence(folder.path())->camera().name, "freiburg1");
+}
+
+TEST(RgbdLayouts, AnArchiveThatIsCutOffIsNamedWhereACalibrationIsMissing) {
+  const TemporaryFolder places("archives");
+  const std::string path = places.path("scene.tar");
+  const Spoilt spoilt(kReplicaLayout);
+  spoilt.remove("cam_params.json");
+  write_archive(path, spoilt.folder.path(), "tar", "scene");
+  fs::resize_file(path, fs::file_size(path) * 2 / 3);
+  EXPECT_THAT(input_error_of([&] { (void)open_sequence(path); }),
+              AllOf(HasSubstr("has no cam_params.json"), HasSubstr("is cut off")));
+}
+
 // ---- what is missing or wrong
 
 TEST(RgbdLayouts, CalibrationThatIsMissingOrWrongIsSaidInOneSentence) {

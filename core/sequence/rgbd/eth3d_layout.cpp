@@ -2,7 +2,7 @@
 // 5000 a metre and registered.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/error.hpp"
@@ -17,14 +17,26 @@ namespace {
 
 constexpr const char* kCalibration = "calibration.txt";
 
+/// The four numbers of the file; empty where it holds something else.
+std::vector<double> calibration_of(const FileStore& folder) {
+  std::vector<double> numbers;
+  const auto lines = text_lines(folder.read_text(kCalibration));
+  if (lines.size() == 1)
+    for (const std::string_view column : split_columns(lines.front().text))
+      numbers.push_back(parse_number(column).value_or(std::nan("")));
+  return numbers.size() == 4 ? numbers : std::vector<double>();
+}
+
 Camera eth3d_camera(const FileStore& folder, const OpenOptions& options) {
   const std::string path = folder.path_of(kCalibration);
-  const auto lines = text_lines(folder.read_text(kCalibration));
-  std::vector<double> numbers;
-  if (!lines.empty())
-    for (const std::string_view column : split_columns(lines.front().text))
-      if (const auto number = parse_number(column)) numbers.push_back(*number);
-  if (numbers.size() != 4) throw InputError(fmt::format("{}: expected one line of fx fy cx cy", path));
+  const auto numbers = calibration_of(folder);
+  if (numbers.empty()) {
+    // Another data set's folder, whose name says which, may have a file of that name.
+    for (const std::string& name : folder.own_names())
+      if (const auto known = camera_from_folder_name(name)) return *known;
+    throw InputError(
+        fmt::format("{}: expected one line of fx fy cx cy, as ETH3D has it (or --camera FILE)", path));
+  }
   Camera camera;
   camera.name = "eth3d";
   camera.fx = numbers[0], camera.fy = numbers[1], camera.cx = numbers[2], camera.cy = numbers[3];

@@ -61,7 +61,7 @@ Camera open3d_camera(const FileStore& folder, const std::string& name, std::vect
       throw InputError(fmt::format("{}: {} has {} numbers, expected 9", path, kMatrix, m.size()));
     Camera camera;
     camera.name = "open3d";
-    camera.width = json.at("width"), camera.height = json.at("height");
+    camera.width = pixels_of(json.at("width")), camera.height = pixels_of(json.at("height"));
     camera.fx = m[0], camera.fy = m[4], camera.cx = m[6], camera.cy = m[7];
     // Column by column; somebody's own may be row by row.
     if (m[6] == 0 && m[7] == 0 && (m[2] != 0 || m[5] != 0)) {

@@ -30,7 +30,7 @@ Camera replica_camera(const FileStore& folder) {
     const auto parameters = nlohmann::json::parse(folder.read_text(name)).at("camera");
     Camera camera;
     camera.name = "replica";
-    camera.width = parameters.at("w"), camera.height = parameters.at("h");
+    camera.width = pixels_of(parameters.at("w")), camera.height = pixels_of(parameters.at("h"));
     camera.fx = parameters.at("fx"), camera.fy = parameters.at("fy");
     camera.cx = parameters.at("cx"), camera.cy = parameters.at("cy");
     camera.depth_scale = parameters.at("scale");

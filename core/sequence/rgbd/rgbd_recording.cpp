@@ -43,6 +43,11 @@ Camera given_camera_or(const FileStore& folder, const OpenOptions& options,
   return own();
 }
 
+int pixels_of(double number) {
+  constexpr double kMost = 1e6;
+  return number > 0 && number < kMost ? static_cast<int>(number) : 0;
+}
+
 FolderLists numbered_images(const FileStore& folder, ImageList colours, ImageList depths) {
   FolderLists lists;
   lists.colours = std::move(colours);

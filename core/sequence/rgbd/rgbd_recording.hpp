@@ -66,6 +66,9 @@ extern const RgbdLayout kUnregisteredLayout;  ///< the TUM layout with a depth c
 [[nodiscard]] Camera given_camera_or(const FileStore& folder, const OpenOptions& options,
                                      const std::function<Camera()>& own);
 
+/// A size (px) that a file gives as a number of any kind; 0, which check_camera refuses, for what is none.
+[[nodiscard]] int pixels_of(double number);
+
 /// Colour and depth images, each stamped by the number in its name. Where there are no depth images it is
 /// told.
 [[nodiscard]] FolderLists numbered_images(const FileStore& folder, ImageList colours, ImageList depths);
