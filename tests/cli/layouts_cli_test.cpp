@@ -29,8 +29,10 @@ class LayoutsCli : public ::testing::Test {
 
 TEST_F(LayoutsCli, AreMadeQuestionedAndRun) {
   const CliResult check = run_cli({"check", made("scannet")});
-  EXPECT_THAT(check.out, AllOf(HasSubstr("4 frames"), HasSubstr("camera scannet (640x480 px)"),
-                               HasSubstr("depth at 1000 a metre, masks yes, ground truth 4 poses")));
+  EXPECT_THAT(
+      check.out,
+      AllOf(HasSubstr("4 frames"), HasSubstr("camera scannet (640x480 px)"),
+            HasSubstr("depth at 1000 a metre, registered from 320x240 px, masks yes, ground truth 4 poses")));
   const CliResult run =
       run_cli({"run", folder.path("scannet"), "--method", "oracle", "--out", folder.path("run")});
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -390,6 +390,27 @@ TEST(RgbdLayouts, RedwoodWithoutIntrinsicsIsPrimeSenses) {
   EXPECT_EQ(source->ground_truth().size(), static_cast<std::size_t>(kFrames));
 }
 
+TEST(RgbdLayouts, RedwoodsNamesAreFrameNumbersOrMicroseconds) {
+  const auto renamed = [](const std::function<std::string(int)>& name_of) {
+    auto spoilt = std::make_unique<Spoilt>(kRedwoodLayout);
+    for (int i = kFrames; i > 0; --i)
+      for (const char* folder : {"image", "depth"})
+        fs::rename(spoilt->folder.path(fmt::format("{}/{:06}.png", folder, i)),
+                   spoilt->folder.path(fmt::format("{}/{}.png", folder, name_of(i))));
+    spoilt->remove("mask.txt");
+    return spoilt;
+  };
+  const auto fiftieth = renamed([](int i) { return fmt::format("{:06}", 50 * i); });
+  EXPECT_NEAR(fiftieth->open()->timestamp(1) - fiftieth->open()->timestamp(0), 50 / 30.0, 1e-9);
+  const auto scan = renamed([](int i) { return fmt::format("{:07}-{:012}", i, 33333 * i); });
+  const auto source = scan->open();
+  EXPECT_NEAR(source->timestamp(1) - source->timestamp(0), 0.033333, 1e-9);
+  EXPECT_TRUE(source->read(4).has_depth());
+  ASSERT_TRUE(source->truth(4).world_from_camera);
+  EXPECT_TRUE(
+      source->truth(4).world_from_camera->isApprox(*open(kRedwoodLayout)->truth(4).world_from_camera, 1e-9));
+}
+
 TEST(RgbdLayouts, OpenLorisTruthIsOfTheRobotUnlessItSaysWhereTheCameraSits) {
   const Spoilt spoilt(kOpenLorisLayout);
   spoilt.remove("trans_matrix.yaml");

@@ -142,6 +142,10 @@ std::optional<RgbdRecording> read_open3d(const FileStore& folder, const OpenOpti
   if (colours.entries.empty()) return std::nullopt;
   RgbdRecording recording;
   recording.lists = numbered_images(folder, std::move(colours), images_of(folder, "depth"));
+  // Names are frame numbers, whatever their step, or microseconds.
+  std::vector<double> numbers;
+  for (const ListEntry& image : recording.lists->colours.entries) numbers.push_back(image.timestamp);
+  if (unit_of(numbers) == StampUnit::milliseconds) recording.unit = StampUnit::frames;
   std::vector<std::string>& warnings = recording.lists->warnings;
   recording.camera = given_camera_or(folder, options, [&] {
     if (json) return open3d_camera(folder, *json, warnings);
