@@ -65,6 +65,14 @@ void check_estimate(const CheckArguments& arguments, const FrameSource& source,
   for (Finding& finding : check_truth(truth, file.poses, true)) findings.push_back(std::move(finding));
 }
 
+/// How a sensor's depth is stored.
+std::string depth_words(const Camera& camera) {
+  std::string words = fmt::format("at {:g} a metre", camera.depth_scale);
+  if (const auto& depth = camera.depth_camera)
+    words += fmt::format(", registered from {}x{} px", depth->camera.width, depth->camera.height);
+  return words;
+}
+
 void check(const CheckArguments& arguments) {
   const auto source = open_sequence(arguments.sequence, arguments.frames.options(Config()));
   std::vector<Finding> findings = check_frames(*source);
@@ -95,7 +103,7 @@ void check(const CheckArguments& arguments) {
         camera.name, camera.width, camera.height,
         !source->has_depth() ? "none"
         : camera.is_stereo() ? fmt::format("by stereo, {:.4g} m apart", camera.baseline_m)
-                             : fmt::format("at {:g} a metre", camera.depth_scale),
+                             : depth_words(camera),
         source->has_masks() ? "yes" : "none",
         source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
     for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);

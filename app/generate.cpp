@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "core/sequence/rgbd/rgbd_recording.hpp"
 #include "core/sequence/write_sequence.hpp"
 
 namespace stillpoint {
@@ -25,12 +27,21 @@ struct GenerateOptions {
 };
 
 /// @throws InputError naming the layouts there are
-SequenceLayout layout_by_name(const std::string& name) {
-  if (name.empty()) return SequenceLayout::own;
-  if (name == "left-right") return SequenceLayout::left_right;
-  if (name == "kitti") return SequenceLayout::kitti;
-  if (name == "euroc") return SequenceLayout::euroc;
-  throw InputError(fmt::format("--layout {}: expected left-right, kitti or euroc", name));
+void choose_layout(const GenerateOptions& options, WriteOptions& write) {
+  const std::string& name = options.layout;
+  if (name.empty()) return;
+  if (!options.stereo) {
+    if (name != "tum") write.rgbd = &rgbd_layout_by_name(name);
+    return;
+  }
+  if (name == "left-right")
+    write.layout = SequenceLayout::left_right;
+  else if (name == "kitti")
+    write.layout = SequenceLayout::kitti;
+  else if (name == "euroc")
+    write.layout = SequenceLayout::euroc;
+  else
+    throw InputError(fmt::format("--layout {}: expected left-right, kitti or euroc with --stereo", name));
 }
 
 /// Frames done and the rate: one line that is rewritten on a terminal, a line every 50 frames elsewhere.
@@ -55,8 +66,7 @@ class ProgressLine {
 
 void generate(const GenerateOptions& options) {
   WriteOptions write;
-  write.layout = layout_by_name(options.layout);
-  if (!options.layout.empty() && !options.stereo) throw InputError("--layout goes with --stereo");
+  choose_layout(options, write);
   std::string kind = options.kind;
   if (options.stereo) kind += kStereoEnding;
   const auto sequence = make_generated_sequence(kind, options.frames, options.seed);
@@ -76,8 +86,9 @@ void generate(const GenerateOptions& options) {
 
 void add_generate_command(CLI::App& app) {
   auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "generate", "Film a generated room and write it as a TUM RGB-D folder, or as stereo pairs");
+  CLI::App* command = app.add_subcommand("generate",
+                                         "Film a generated room and write it as a TUM RGB-D folder, in "
+                                         "another data set's layout, or as stereo pairs");
   command
       ->add_option("kind", options->kind,
                    fmt::format("one of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
@@ -93,9 +104,12 @@ void add_generate_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--stereo", options->stereo,
                     "film it by a stereo pair of 0.12 m: left/ and right/ in place of rgb/ and depth/");
-  command->add_option(
-      "--layout", options->layout,
-      "of a stereo pair: left-right (otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)");
+  std::vector<std::string> layouts;
+  for (const RgbdLayout* layout : rgbd_layouts()) layouts.emplace_back(layout->name);
+  command->add_option("--layout", options->layout,
+                      fmt::format("as a data set lays it out: tum (otherwise), {}; with --stereo left-right "
+                                  "(otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)",
+                                  fmt::join(layouts, ", ")));
   command->add_flag("--force", options->force, "replace the sequence that the folder holds");
   command->callback([options] { generate(*options); });
 }

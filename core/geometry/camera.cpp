@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/geometry/camera_yaml.hpp"
@@ -192,6 +194,75 @@ namespace {
 constexpr double kLongestBaseline = 100.0;  // m
 constexpr double kLongestTime = 0.2;        // s, of readouts and delays
 
+using Reals = std::vector<std::pair<const char*, double*>>;
+
+/// What both a camera and a depth camera have.
+Reals intrinsics_of(Camera& camera) {
+  return {{"fx", &camera.fx}, {"fy", &camera.fy}, {"cx", &camera.cx}, {"cy", &camera.cy}, {"k1", &camera.k1},
+          {"k2", &camera.k2}, {"p1", &camera.p1}, {"p2", &camera.p2}, {"k3", &camera.k3}};
+}
+
+/// Takes a key of a camera's table. @param where names it in messages
+/// @returns false where the key is none of these
+bool take_key(const std::string& where, std::string_view key, const toml::node& node, const Reals& reals,
+              Camera& camera) {
+  for (const auto& [name, target] : reals)
+    if (key == name) {
+      const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+      if (!value || !std::isfinite(*value)) throw InputError(where + " takes a finite number");
+      *target = *value;
+      return true;
+    }
+  if (key != "width" && key != "height") return false;
+  const auto value = node.value_exact<std::int64_t>();
+  if (!value || *value < 32 || *value > 16384)
+    throw InputError(where + " takes a whole number of px from 32 to 16384");
+  (key == "width" ? camera.width : camera.height) = static_cast<int>(*value);
+  return true;
+}
+
+/// A pose as rows of four numbers. @param where names it in messages
+Pose pose_of_rows(const std::string& where, const toml::node& node) {
+  const toml::array* const rows = node.as_array();
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  bool whole = rows != nullptr && (rows->size() == 3 || rows->size() == 4);
+  for (std::size_t i = 0; whole && i < rows->size(); ++i) {
+    const toml::array* const row = rows->get(i)->as_array();
+    whole = row != nullptr && row->size() == 4;
+    for (std::size_t k = 0; whole && k < 4; ++k) {
+      const toml::node& number = *row->get(k);
+      const auto value = number.is_number() ? number.value<double>() : std::nullopt;
+      whole = value.has_value();
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = value.value_or(0.0);
+    }
+  }
+  if (!whole) throw InputError(where + " takes three or four rows of four numbers, [[r, r, r, t], …]");
+  const auto pose = rigid_pose(matrix);
+  if (!pose) throw InputError(where + " is no rigid motion");
+  return *pose;
+}
+
+std::shared_ptr<const DepthCamera> depth_camera_from_toml(const std::string& path, const toml::node& node) {
+  const toml::table* const table = node.as_table();
+  if (table == nullptr)
+    throw InputError(
+        fmt::format("{}:{}: depth_camera is a table, [depth_camera]", path, node.source().begin.line));
+  DepthCamera depth;
+  depth.camera.name = "depth";
+  for (auto&& [key, value] : *table) {
+    const std::string where = fmt::format("{}:{}: {}", path, value.source().begin.line, key.str());
+    if (key.str() == "colour_from_depth")
+      depth.colour_from_depth = pose_of_rows(where, value);
+    else if (!take_key(where, key.str(), value, intrinsics_of(depth.camera), depth.camera))
+      throw InputError(where + " is no key of a depth camera");
+  }
+  for (const char* needed : {"fx", "fy", "cx", "cy", "width", "height"})
+    if (!table->contains(needed)) throw InputError(fmt::format("{}: [depth_camera] has no {}", path, needed));
+  if (depth.camera.fx <= 0 || depth.camera.fy <= 0)
+    throw InputError(fmt::format("{}: fx and fy of [depth_camera] must be above 0", path));
+  return std::make_shared<const DepthCamera>(std::move(depth));
+}
+
 /// The camera of a TOML file. @param parse gives its table
 Camera camera_from_toml(const std::string& path, const std::function<toml::table()>& parse) {
   toml::table table;
@@ -204,44 +275,23 @@ Camera camera_from_toml(const std::string& path, const std::function<toml::table
   Camera camera;
   camera.name = path;
   double depth_readout_s = 0.0;
-  const std::pair<const char*, double*> reals[] = {{"fx", &camera.fx},
-                                                   {"fy", &camera.fy},
-                                                   {"cx", &camera.cx},
-                                                   {"cy", &camera.cy},
-                                                   {"k1", &camera.k1},
-                                                   {"k2", &camera.k2},
-                                                   {"p1", &camera.p1},
-                                                   {"p2", &camera.p2},
-                                                   {"k3", &camera.k3},
-                                                   {"depth_scale", &camera.depth_scale},
-                                                   {"readout_s", &camera.readout_s},
-                                                   {"stamp_delay_s", &camera.stamp_delay_s},
-                                                   {"depth_readout_s", &depth_readout_s},
-                                                   {"depth_delay_s", &camera.depth_delay_s},
-                                                   {"baseline_m", &camera.baseline_m}};
-  const std::pair<const char*, int*> integers[] = {{"width", &camera.width}, {"height", &camera.height}};
+  Reals reals = intrinsics_of(camera);
+  reals.insert(reals.end(), {{"depth_scale", &camera.depth_scale},
+                             {"readout_s", &camera.readout_s},
+                             {"stamp_delay_s", &camera.stamp_delay_s},
+                             {"depth_readout_s", &depth_readout_s},
+                             {"depth_delay_s", &camera.depth_delay_s},
+                             {"baseline_m", &camera.baseline_m}});
   for (auto&& [key, node] : table) {
     const std::string where = fmt::format("{}:{}: {}", path, node.source().begin.line, key.str());
     if (key.str() == "name") {
       if (!node.is_string()) throw InputError(where + " takes a text");
       camera.name = node.value_or(std::string());
-      continue;
+    } else if (key.str() == "depth_camera") {
+      camera.depth_camera = depth_camera_from_toml(path, node);
+    } else if (!take_key(where, key.str(), node, reals, camera)) {
+      throw InputError(where + " is no key of a camera");
     }
-    bool known = false;
-    for (auto& [name, target] : reals)
-      if (key.str() == name) {
-        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-        if (!value || !std::isfinite(*value)) throw InputError(where + " takes a finite number");
-        *target = *value, known = true;
-      }
-    for (auto& [name, target] : integers)
-      if (key.str() == name) {
-        const auto value = node.value_exact<std::int64_t>();
-        if (!value || *value < 32 || *value > 16384)
-          throw InputError(where + " takes a whole number of px from 32 to 16384");
-        *target = static_cast<int>(*value), known = true;
-      }
-    if (!known) throw InputError(where + " is no key of a camera");
   }
   for (const char* needed : {"fx", "fy", "cx", "cy"})
     if (!table.contains(needed)) throw InputError(fmt::format("{}: the camera has no {}", path, needed));

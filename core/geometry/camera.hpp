@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -8,8 +9,11 @@
 #include <vector>
 
 #include "core/geometry/depth_noise.hpp"
+#include "core/geometry/se3.hpp"
 
 namespace stillpoint {
+
+struct DepthCamera;
 
 /// Points nearer to a camera than this are not projected into it.
 inline constexpr double kNearestProjected = 0.05;  // m
@@ -35,6 +39,9 @@ struct Camera {
   double baseline_m =
       0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own
   double depth_sigma_per_m2 = 0.0;  ///< 1/m, of a stereo pair: its depths z have standard deviation this z²
+  /// Of depth images that are stored as another camera sees them; null = they are registered to this one's.
+  /// Frames come with registered depth either way.
+  std::shared_ptr<const DepthCamera> depth_camera{};
 
   [[nodiscard]] bool has_distortion() const;
 
@@ -102,6 +109,12 @@ struct Camera {
   [[nodiscard]] Camera scaled_to(int new_width, int new_height) const;
 };
 
+/// A depth camera that sees its own image, from a place of its own.
+struct DepthCamera {
+  Camera camera;  ///< intrinsics, distortion and size of the depth images; its depth_scale is not used
+  Pose colour_from_depth = Pose::Identity();  ///< points of the depth camera to those of the colour camera
+};
+
 /// The built-in cameras by name: freiburg1, freiburg2, freiburg3, ros_default, icl_nuim, bonn, generated.
 [[nodiscard]] const std::vector<Camera>& known_cameras();
 
@@ -114,8 +127,10 @@ struct Camera {
 [[nodiscard]] std::optional<Camera> camera_from_folder_name(std::string_view folder_name);
 
 /// Reads a camera from TOML: keys name, width, height, fx, fy, cx, cy, k1, k2, p1, p2, k3, depth_scale,
-/// readout_s, stamp_delay_s, depth_readout_s, depth_delay_s, baseline_m; or, by the file's ending, from YAML
-/// (camera_yaml.hpp).
+/// readout_s, stamp_delay_s, depth_readout_s, depth_delay_s, baseline_m, and a table `[depth_camera]` where
+/// depth images are not registered: fx, fy, cx, cy, width, height, k1 to k3, p1, p2, and `colour_from_depth`,
+/// three or four rows of four numbers (m), the identity where it is not given. Or, by the file's ending, from
+/// YAML (camera_yaml.hpp).
 /// @throws InputError on a missing file, a syntax error (with its line), an unknown key or a value out of
 /// range.
 [[nodiscard]] Camera read_camera(const std::string& path);

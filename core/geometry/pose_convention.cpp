@@ -114,4 +114,10 @@ Pose camera_pose(const Pose& written, PoseConvention convention) {
   return written;
 }
 
+Pose written_pose(const Pose& world_from_camera, PoseConvention convention) {
+  if (convention == PoseConvention::bonn)
+    return bonn_ros() * world_from_camera * bonn_marker().inverse() * bonn_ros().inverse();
+  return camera_pose(world_from_camera, convention);  // the others undo themselves
+}
+
 }  // namespace stillpoint

@@ -35,4 +35,8 @@ enum class PoseConvention {
 /// The camera's pose in the world that a pose written in that convention means.
 [[nodiscard]] Pose camera_pose(const Pose& written, PoseConvention convention);
 
+/// The pose that a file of that convention has for a camera's pose: the inverse of camera_pose, for all but
+/// w_first.
+[[nodiscard]] Pose written_pose(const Pose& world_from_camera, PoseConvention convention);
+
 }  // namespace stillpoint

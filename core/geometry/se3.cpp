@@ -67,4 +67,16 @@ Pose normalised(const Pose& pose) {
   return result;
 }
 
+std::optional<Pose> rigid_pose(const Eigen::Matrix4d& matrix) {
+  constexpr double kRounding = 1e-2;
+  const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
+  if (!matrix.allFinite() || !(turn * turn.transpose()).isIdentity(kRounding) || turn.determinant() < 0 ||
+      (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > kRounding)
+    return std::nullopt;
+  Pose pose = Pose::Identity();
+  pose.linear() = turn;
+  pose.translation() = matrix.topRightCorner<3, 1>();
+  return normalised(pose);
+}
+
 }  // namespace stillpoint

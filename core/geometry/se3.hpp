@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <numbers>
+#include <optional>
 
 namespace stillpoint {
 
@@ -35,5 +36,9 @@ double rotation_angle(const Eigen::Matrix3d& rotation);
 
 /// The pose with its rotation made orthonormal again, after many products.
 Pose normalised(const Pose& pose);
+
+/// The rigid motion that a 4x4 matrix of a file is, rounded as files round; nothing where it is none (not
+/// finite, sheared, scaled or mirrored by more than 1 %).
+[[nodiscard]] std::optional<Pose> rigid_pose(const Eigen::Matrix4d& matrix);
 
 }  // namespace stillpoint

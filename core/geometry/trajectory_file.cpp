@@ -63,7 +63,8 @@ class TrajectoryReader {
   void read_row(const TextLine& line, std::vector<ReadPose>& poses) {
     ReadPose read;
     read.line = line.number;
-    switch (pose_of(line, static_cast<int>(poses.size()), read.pose)) {
+    // A row that holds no pose counts where rows stand for times.
+    switch (pose_of(line, static_cast<int>(poses.size()) + file_.skipped, read.pose)) {
       case Fault::none:
         if (!poses.empty() && read.pose.timestamp < poses.back().pose.timestamp) unsorted_.note(line.number);
         poses.push_back(read);

@@ -23,6 +23,24 @@ class VideoSink {
   virtual void close() = 0;
 };
 
+/// A video being read by OpenCV, a frame after another.
+class VideoReader {
+ public:
+  virtual ~VideoReader() = default;
+  /// From the first frame on. May be called again.
+  /// @returns whether it could be opened
+  virtual bool open(const std::string& path) = 0;
+  /// Goes to the next frame. @returns false at the end, or where nothing more can be decoded
+  virtual bool next() = 0;
+  /// When the frame that next() went to is shown, s, by the file's own stamp.
+  [[nodiscard]] virtual double seconds() const = 0;
+  /// The frame that next() went to: CV_8UC3 BGR; empty where it cannot be had.
+  virtual cv::Mat image() = 0;
+  /// What the file's head says: frames a second, and how many; 0 where it says nothing.
+  [[nodiscard]] virtual double frame_rate() const = 0;
+  [[nodiscard]] virtual int frames_by_head() const = 0;
+};
+
 /// What the module can do.
 class MediaModule {
  public:
@@ -33,6 +51,7 @@ class MediaModule {
   [[nodiscard]] virtual std::vector<unsigned char> encode(const std::string& ending, const cv::Mat& image,
                                                           const std::vector<int>& options) const = 0;
   [[nodiscard]] virtual std::unique_ptr<VideoSink> video() const = 0;
+  [[nodiscard]] virtual std::unique_ptr<VideoReader> video_reader() const = 0;
   /// How many frames of a video can be read, at most `most`.
   [[nodiscard]] virtual int readable_frames(const std::string& path, int most) const = 0;
 };

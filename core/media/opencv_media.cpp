@@ -1,4 +1,5 @@
 // The module itself: the one file that is linked with OpenCV's codecs.
+#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -21,6 +22,30 @@ class OpenCvVideo final : public VideoSink {
   cv::VideoWriter video_;
 };
 
+class OpenCvVideoReader final : public VideoReader {
+ public:
+  bool open(const std::string& path) override {
+    // FFmpeg writes what it finds amiss to the terminal, unless told otherwise before the first video.
+    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+    return video_.open(path, cv::CAP_FFMPEG);
+  }
+  bool next() override { return video_.grab(); }
+  [[nodiscard]] double seconds() const override { return video_.get(cv::CAP_PROP_POS_MSEC) / 1000.0; }
+  cv::Mat image() override {
+    cv::Mat image;
+    if (!video_.retrieve(image)) return {};
+    return image.clone();  // the capture's own buffer is used again
+  }
+  [[nodiscard]] double frame_rate() const override { return video_.get(cv::CAP_PROP_FPS); }
+  [[nodiscard]] int frames_by_head() const override {
+    const double count = video_.get(cv::CAP_PROP_FRAME_COUNT);
+    return count > 0 && count < 1e9 ? static_cast<int>(count) : 0;
+  }
+
+ private:
+  cv::VideoCapture video_;
+};
+
 class OpenCvMedia final : public MediaModule {
  public:
   [[nodiscard]] cv::Mat decode(const std::vector<unsigned char>& bytes) const override {
@@ -33,6 +58,9 @@ class OpenCvMedia final : public MediaModule {
     return bytes;
   }
   [[nodiscard]] std::unique_ptr<VideoSink> video() const override { return std::make_unique<OpenCvVideo>(); }
+  [[nodiscard]] std::unique_ptr<VideoReader> video_reader() const override {
+    return std::make_unique<OpenCvVideoReader>();
+  }
   [[nodiscard]] int readable_frames(const std::string& path, int most) const override {
     cv::VideoCapture written(path, cv::CAP_FFMPEG);
     int readable = 0;

@@ -52,6 +52,29 @@ SequenceOrigin origin_of(const FrameSource& source, const std::string& where, co
   return origin;
 }
 
+namespace {
+
+/// A depth camera beside the camera of the frames. Its place is written as it is, so that what is registered
+/// by it is the same to the last bit.
+nlohmann::ordered_json depth_camera_json(const DepthCamera& depth) {
+  nlohmann::ordered_json json;
+  visit_camera(depth.camera, [&json](const char* name, const auto& value) { json[name] = value; });
+  for (int i = 0; i < 12; ++i)
+    json["colour_from_depth"].push_back(depth.colour_from_depth.matrix()(i / 4, i % 4));
+  return json;
+}
+
+std::shared_ptr<const DepthCamera> depth_camera_from_json(const nlohmann::json& json) {
+  DepthCamera depth;
+  visit_camera(depth.camera, [&json](const char* name, auto& value) { json.at(name).get_to(value); });
+  const nlohmann::json& place = json.at("colour_from_depth");
+  for (int i = 0; i < 12; ++i)
+    depth.colour_from_depth.matrix()(i / 4, i % 4) = place.at(static_cast<std::size_t>(i)).get<double>();
+  return std::make_shared<const DepthCamera>(depth);
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run_folder) {
   nlohmann::ordered_json json;
   json["name"] = origin.name;
@@ -81,6 +104,8 @@ nlohmann::ordered_json to_json(const SequenceOrigin& origin, const fs::path& run
     json["camera"]["baseline_m"] = origin.camera.baseline_m;
     json["camera"]["depth_sigma_per_m2"] = origin.camera.depth_sigma_per_m2;
   }
+  if (origin.camera.depth_camera)
+    json["camera"]["depth_camera"] = depth_camera_json(*origin.camera.depth_camera);
   return json;
 }
 
@@ -109,6 +134,8 @@ SequenceOrigin origin_from_json(const nlohmann::json& json) {
   origin.camera.depth_delay_s = camera.value("depth_delay_s", 0.0);
   origin.camera.baseline_m = camera.value("baseline_m", 0.0);
   origin.camera.depth_sigma_per_m2 = camera.value("depth_sigma_per_m2", 0.0);
+  if (camera.contains("depth_camera"))
+    origin.camera.depth_camera = depth_camera_from_json(camera.at("depth_camera"));
   return origin;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -13,11 +15,26 @@ constexpr double kSameSides =
 
 }  // namespace
 
+std::optional<Camera> camera_in_folder(const FileStore& folder) {
+  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"})
+    if (folder.is_there(name)) return read_camera_text(folder.path_of(name), folder.read_text(name));
+  return std::nullopt;
+}
+
+void check_camera(const std::string& path, const Camera& c) {
+  constexpr int kLeast = 32, kMost = 16384;  // px, as of camera.toml
+  const auto is_size = [](int px) { return px >= kLeast && px <= kMost; };
+  for (const double value : {c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale})
+    if (!std::isfinite(value)) throw InputError(fmt::format("{}: holds a number that is not finite", path));
+  if (c.fx <= 0 || c.fy <= 0 || c.depth_scale <= 0 || !is_size(c.width) || !is_size(c.height))
+    throw InputError(fmt::format("{}: is no camera: fx {:g}, fy {:g}, {}x{} px, depth scale {:g}", path, c.fx,
+                                 c.fy, c.width, c.height, c.depth_scale));
+}
+
 Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& given,
                         std::vector<std::string>& warnings) {
   if (given) return *given;
-  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"})
-    if (folder.is_there(name)) return read_camera_text(folder.path_of(name), folder.read_text(name));
+  if (auto camera = camera_in_folder(folder)) return *camera;
   for (const std::string& name : folder.own_names())
     if (const auto known = camera_from_folder_name(name)) return *known;
   Camera camera = camera_by_name("ros_default");

@@ -10,6 +10,14 @@
 
 namespace stillpoint {
 
+/// The camera of a folder's `camera.toml` or `camera.yaml`; nothing where it has none.
+/// @throws InputError for a camera file that cannot be read
+[[nodiscard]] std::optional<Camera> camera_in_folder(const FileStore& folder);
+
+/// Refuses intrinsics that no camera has. @param path of the file that gives them, for messages
+/// @throws InputError in one sentence
+void check_camera(const std::string& path, const Camera& camera);
+
 /// The camera of a folder: `given` (the command line's), else its `camera.toml` or `camera.yaml`, else what
 /// its own, its parent's or its archive's name says, else ros_default, which is told.
 /// @throws InputError for a camera file that cannot be read

@@ -4,11 +4,17 @@
 
 #include "core/error.hpp"
 #include "core/sequence/folder_camera.hpp"
+#include "core/sequence/rgbd/rgbd_input.hpp"
 #include "core/sequence/sequence_input.hpp"
 #include "core/sequence/stereo/stereo_input.hpp"
 
 namespace stillpoint {
 namespace {
+
+/// An archive that is cut off may lack what is missed.
+InputError with_cause(const InputError& error, const std::string& cause) {
+  return InputError(fmt::format("{} ({})", error.what(), cause));
+}
 
 class FolderInput final : public SequenceInput {
  public:
@@ -23,9 +29,8 @@ class FolderInput final : public SequenceInput {
     try {
       return read_folder_lists(*files_, options_.frame_rate);
     } catch (const InputError& error) {
-      // An archive that is cut off may lack what is missed.
       if (files_->warnings().empty()) throw;
-      throw InputError(fmt::format("{} ({})", error.what(), files_->warnings().front()));
+      throw with_cause(error, files_->warnings().front());
     }
   }
   [[nodiscard]] FolderTruth truth(const std::vector<double>& stamps, StampUnit unit) override {
@@ -53,8 +58,14 @@ class FolderInput final : public SequenceInput {
 
 std::unique_ptr<SequenceInput> make_folder_input(std::unique_ptr<FileStore> files,
                                                  const OpenOptions& options) {
-  if (!has_image_lists(*files))
-    if (auto stereo = make_stereo_input(files, options)) return stereo;
+  const std::vector<std::string> told = files->warnings();
+  try {
+    if (!has_image_lists(*files))
+      if (auto stereo = make_stereo_input(files, options)) return stereo;
+    if (auto rgbd = make_rgbd_input(files, options)) return rgbd;
+  } catch (const InputError& error) {
+    throw told.empty() ? error : with_cause(error, told.front());
+  }
   return std::make_unique<FolderInput>(std::move(files), options);
 }
 

@@ -166,12 +166,13 @@ bool has_image_lists(const FileStore& folder) {
   return first_there(folder, kAssociations).has_value() || first_there(folder, kColourLists).has_value();
 }
 
-ImageList images_of(const FileStore& store, const std::string& folder) {
+ImageList images_of(const FileStore& store, const std::string& folder,
+                    const std::function<bool(const std::string& name)>& is_meant) {
   ImageList list{store.path_of(folder), {}};
   const std::string prefix = folder.empty() ? "" : folder + "/";
   std::vector<fs::path> files;
   for (const std::string& name : store.entries(folder))
-    if (is_image_name(name)) files.emplace_back(name);
+    if (is_image_name(name) && (!is_meant || is_meant(name))) files.emplace_back(name);
   std::set<double> stamps;
   bool numbered = true;
   for (const fs::path& file : files) {
@@ -189,14 +190,27 @@ ImageList images_of(const FileStore& store, const std::string& folder) {
   return list;
 }
 
+cv::Size first_size(const FileStore& folder, const ImageList& images) {
+  std::string problem;
+  for (const ListEntry& entry : images.entries) {
+    Bytes bytes;
+    const std::string path = folder.path_of(entry.file), fault = folder.read(entry.file, bytes);
+    const ImageRead read =
+        fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
+    if (!read.image.empty()) return read.image.size();
+    if (problem.empty()) problem = read.problem;
+  }
+  throw InputError(fmt::format("{}: none of its {} images can be read{}{}", images.path,
+                               images.entries.size(), problem.empty() ? "" : "; ", problem));
+}
+
 void read_mask_list(const FileStore& folder, FolderLists& lists) {
   if (const auto masks = first_there(folder, kMaskLists))
     lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);
 }
 
-void settle_stamps(FolderLists& lists, double frame_rate) {
-  const auto colour_stamps = stamps_of(lists.colours);
-  lists.unit = unit_of(colour_stamps);
+void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known) {
+  lists.unit = known ? *known : unit_of(stamps_of(lists.colours));
   convert(lists.colours, lists.unit, frame_rate);
   if (lists.unit == StampUnit::frames)
     lists.warnings.push_back(fmt::format(
@@ -208,8 +222,10 @@ void settle_stamps(FolderLists& lists, double frame_rate) {
   const auto reference = stamps_of(lists.colours);
   for (std::optional<ImageList>* list : {&lists.depths, &lists.masks}) {
     if (!*list) continue;
+    const bool is_known = known && list == &lists.depths;
     const StampUnit unit =
-        unit_beside(stamps_of(**list), reference, lists.unit, frame_rate, kAssociationTolerance);
+        is_known ? *known
+                 : unit_beside(stamps_of(**list), reference, lists.unit, frame_rate, kAssociationTolerance);
     if (unit != lists.unit)
       lists.warnings.push_back(fmt::format("{}: the stamps are {}, where those of {} are {}", (*list)->path,
                                            to_string(unit), lists.colours.path, to_string(lists.unit)));
@@ -236,7 +252,7 @@ FolderLists read_folder_lists(const FileStore& folder, double frame_rate) {
   } else if (!read_images_alone(folder, lists)) {
     throw InputError(
         fmt::format("{}: holds neither rgb.txt nor associations.txt nor images, expected a folder in the TUM "
-                    "RGB-D layout{}",
+                    "RGB-D layout or another data set's{}",
                     folder.place(), what_else(folder)));
   }
   read_mask_list(folder, lists);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,12 +46,19 @@ struct FolderLists {
 
 /// The images of a folder ("" = the store itself) as a list: stamps by their names' numbers where all have
 /// one and no two the same, otherwise by their order. Without entries where there are none.
-[[nodiscard]] ImageList images_of(const FileStore& store, const std::string& folder);
+/// @param is_meant whether a file is one of them, by its name; null = every image is
+[[nodiscard]] ImageList images_of(const FileStore& store, const std::string& folder,
+                                  const std::function<bool(const std::string& name)>& is_meant = nullptr);
+
+/// The size of the first image of a list that can be read.
+/// @throws InputError where none can
+[[nodiscard]] cv::Size first_size(const FileStore& folder, const ImageList& images);
 
 /// Reads the list of masks, where there is one. @throws InputError for one that cannot be read
 void read_mask_list(const FileStore& folder, FolderLists& lists);
 
 /// Converts the stamps of all lists to seconds. @param frame_rate Hz, of stamps that are frame numbers
-void settle_stamps(FolderLists& lists, double frame_rate);
+/// @param known the unit of the colour and depth stamps; nothing = they tell it themselves
+void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known = {});
 
 }  // namespace stillpoint

@@ -15,6 +15,7 @@
 #include <set>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/media/image_codec.hpp"
 
 namespace stillpoint {

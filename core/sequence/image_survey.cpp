@@ -41,20 +41,20 @@ bool is_plausible(double nearest_m, double median_m, double farthest_m) {
 
 }  // namespace
 
-std::string fault_of_depth(const std::string& path, const ImageRead& read, cv::Size colour) {
+std::string fault_of_depth(const std::string& path, const ImageRead& read, const DepthSize& expected) {
   const cv::Mat& image = read.image;
   if (image.type() != CV_16UC1 && !read.in_metres) {
     const bool is_float = image.depth() == CV_32F || image.depth() == CV_64F;
     return fmt::format("{} holds {} channel(s) of {} bits{}, expected depth as 1 channel of 16 bits", path,
                        image.channels(), 8 * image.elemSize1(), is_float ? " (floating point)" : "");
   }
-  if (image.size() != colour)
-    return fmt::format("{} is {}x{} px, but its colour image is {}x{} px", path, image.cols, image.rows,
-                       colour.width, colour.height);
+  if (image.size() != expected.size)
+    return fmt::format("{} is {}x{} px, but {} {}x{} px", path, image.cols, image.rows, expected.whose,
+                       expected.size.width, expected.size.height);
   return {};
 }
 
-DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour, const ImageReader& read_image) {
+DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected, const ImageReader& read_image) {
   DepthSurvey survey;
   std::vector<std::uint16_t> values;
   double pixels = 0, zeros = 0;
@@ -68,8 +68,8 @@ DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour, const ImageRe
     // An image tool may write a frame without any depth in another kind.
     if (cv::countNonZero(strongest(read.image)) == 0) continue;
     ++survey.read;
-    if (const std::string fault = fault_of_depth(path, read, colour); !fault.empty()) {
-      if (survey.fault.empty()) survey.fault = fault;
+    if (const std::string fault = fault_of_depth(path, read, expected); !fault.empty()) {
+      if (survey.fault.empty()) survey.fault = fault, survey.other_size = read.image.size() != expected.size;
       continue;
     }
     ++survey.fit;

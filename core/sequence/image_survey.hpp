@@ -23,21 +23,29 @@ inline constexpr double kMetresSurveyScale = 1000.0;
 
 /// Depth images by sample.
 struct DepthSurvey {
-  int read = 0;       ///< images that could be read
-  int fit = 0;        ///< of these, those that hold depth of the colour images' size
-  std::string fault;  ///< of the first that does not fit, one sentence
+  int read = 0;             ///< images that could be read
+  int fit = 0;              ///< of these, those that hold depth of the colour images' size
+  std::string fault;        ///< of the first that does not fit, one sentence
+  bool other_size = false;  ///< that is its fault
   double nearest = 0, median = 0,
          farthest = 0;     ///< 2, 50 and 98 % of all values of those that fit, in image units
   double zeros = 0;        ///< share of pixels without a measurement
   bool in_metres = false;  ///< the images were; the values are in kMetresSurveyScale units a metre
 };
 
-/// Depth images as sequences have them: 16 bits, one channel, the colour image's size; 65535 and 0 are no
-/// measurement. Or depth in metres, where the reader says so.
-/// @return why the image is no such depth, empty when it is
-[[nodiscard]] std::string fault_of_depth(const std::string& path, const ImageRead& read, cv::Size colour);
+/// The size that depth images must have, px, and whose it is in messages.
+struct DepthSize {
+  cv::Size size;
+  const char* whose = "its colour image is";
+};
 
-[[nodiscard]] DepthSurvey survey_depth(const ImagePaths& paths, cv::Size colour,
+/// Depth images as sequences have them: 16 bits, one channel, the size of the colour image or of a depth
+/// camera; 65535 and 0 are no measurement. Or depth in metres, where the reader says so.
+/// @return why the image is no such depth, empty when it is
+[[nodiscard]] std::string fault_of_depth(const std::string& path, const ImageRead& read,
+                                         const DepthSize& expected);
+
+[[nodiscard]] DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected,
                                        const ImageReader& read_image = stillpoint::read_image);
 
 /// What cameras measure indoors: 2 % nearest and 98 % farthest, m.

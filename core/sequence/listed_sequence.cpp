@@ -31,11 +31,12 @@ ListedSequence::ListedSequence(std::unique_ptr<SequenceInput> input, const OpenO
   if (!truth.why_not.empty()) why_not_[FramePart::truth] = truth.why_not;
   warnings_.insert(warnings_.end(), truth.warnings.begin(), truth.warnings.end());
   const cv::Size size = choose_camera();
+  begin_registration();
   if (is_stereo_) {
     begin_stereo();
     survey_stereo();
   } else if (has_depth_) {
-    survey_depth_images(size);
+    survey_depth_images();
   }
   if (has_masks_) survey_mask_images(size);
   question_convention();
@@ -165,11 +166,24 @@ ImagePaths ListedSequence::sample(Part part, std::size_t count) const {
   return paths;
 }
 
-void ListedSequence::survey_depth_images(cv::Size colour) {
-  const DepthSurvey survey = survey_depth(sample(&Entry::depth, kDepthSample), colour, reader());
+void ListedSequence::begin_registration() {
+  if (!has_depth_ || is_stereo_) camera_.depth_camera.reset();
+  if (camera_.depth_camera) registration_.emplace(*camera_.depth_camera, camera_);
+}
+
+DepthSize ListedSequence::depth_size() const {
+  if (registration_) return {registration_->depth_size(), "the depth camera is of"};
+  return {cv::Size(camera_.width, camera_.height), "its colour image is"};
+}
+
+void ListedSequence::survey_depth_images() {
+  const DepthSurvey survey = survey_depth(sample(&Entry::depth, kDepthSample), depth_size(), reader());
   if (survey.fit == 0 && survey.read > 0) {
     has_depth_ = false;
-    why_not_[FramePart::depth] = survey.fault;
+    why_not_[FramePart::depth] =
+        survey.fault + (survey.other_size && !registration_
+                            ? "; a [depth_camera] in camera.toml registers depth of another camera"
+                            : "");
     return;
   }
   question_scale(survey);
@@ -268,7 +282,7 @@ void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
   ImageRead depth = input_->image(listed.depth->file);
   if (depth.image.empty())
     frame.problem = depth.problem;
-  else if (std::string fault = fault_of_depth(path, depth, frame.gray.size()); !fault.empty())
+  else if (std::string fault = fault_of_depth(path, depth, depth_size()); !fault.empty())
     frame.problem = std::move(fault);
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
@@ -279,8 +293,16 @@ void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
       depth.image.setTo(0, depth.image == 65535);
       depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
     }
+    if (registration_) register_depth(path, frame);
     frame.depth_timestamp = listed.depth->timestamp;
   }
+}
+
+void ListedSequence::register_depth(const std::string& path, Frame& frame) const {
+  frame.depth = registration_->registered(frame.depth);
+  if (cv::countNonZero(frame.depth) > 0) return;
+  frame.depth.release();
+  frame.problem = fmt::format("{}: the colour camera sees nothing of its depth", path);
 }
 
 FrameTruth ListedSequence::truth(int index) const {

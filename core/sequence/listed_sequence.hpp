@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sequence/depth_registration.hpp"
 #include "core/sequence/folder_lists.hpp"
 #include "core/sequence/image_survey.hpp"
 #include "core/sequence/sequence_input.hpp"
@@ -15,9 +16,12 @@
 namespace stillpoint {
 
 /// A recorded sequence: the images that an input names, a folder in the TUM RGB-D layout or near it, an
-/// archive of one, a bag of messages, or stereo pairs. What a folder may hold is said in folder_lists.hpp,
-/// folder_truth.hpp and folder_camera.hpp; what a bag may, in bag/bag_input.hpp; what stereo may, in
-/// stereo/stereo_recording.hpp. Bonn and ICL-NUIM folders share the layout.
+/// archive of one, a bag of messages, stereo pairs, or a video. What a folder may hold is said in
+/// folder_lists.hpp, folder_truth.hpp and folder_camera.hpp, and what one of another layout may, in
+/// rgbd/rgbd_recording.hpp; what a bag may, in bag/bag_input.hpp; what stereo may, in
+/// stereo/stereo_recording.hpp.
+///
+/// Depth of a depth camera of its own is registered when a frame is read (depth_registration.hpp).
 ///
 /// Every colour image is a frame; depth and masks join it by greedy one-to-one association in time, or as
 /// `associations.txt` pairs them where that is given. Whatever can be known before the first frame is told
@@ -57,14 +61,18 @@ class ListedSequence final : public FrameSource {
   void join_masks(const ImageList& masks);
   int join(const ImageList& list, Part part);
   [[nodiscard]] cv::Size choose_camera();
+  void begin_registration();
   void begin_stereo();
   void survey_stereo();
-  void survey_depth_images(cv::Size colour);
+  void survey_depth_images();
+  /// What depth images must be of.
+  [[nodiscard]] DepthSize depth_size() const;
   void question_scale(const DepthSurvey& survey);
   void survey_mask_images(cv::Size colour);
   void question_convention();
   [[nodiscard]] ImagePaths sample(Part part, std::size_t count) const;
   void read_depth(const Entry& entry, Frame& frame) const;
+  void register_depth(const std::string& path, Frame& frame) const;
   void read_right(const Entry& entry, Frame& frame) const;
   [[nodiscard]] ImageReader reader() const;
   [[nodiscard]] std::string path_of(const std::string& file) const { return input_->path_of(file); }
@@ -79,7 +87,8 @@ class ListedSequence final : public FrameSource {
   Camera camera_;
   Trajectory ground_truth_;
   bool is_stereo_ = false, has_depth_ = false, has_masks_ = false;
-  std::optional<StereoMatcher> matcher_;  // of stereo pairs
+  std::optional<StereoMatcher> matcher_;           // of stereo pairs
+  std::optional<DepthRegistration> registration_;  // of depth images that are not registered
   MaskCoding mask_coding_ = MaskCoding::bright;
   std::map<FramePart, std::string> why_not_;
   std::vector<std::string> warnings_;

@@ -13,6 +13,7 @@
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/listed_sequence.hpp"
 #include "core/sequence/source.hpp"
+#include "core/sequence/video/video_input.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -48,11 +49,16 @@ std::vector<std::string> recordings_in(const std::string& folder) {
 
 std::unique_ptr<SequenceInput> open_file(const std::string& where, const OpenOptions& options) {
   if (auto log = open_log(where, where, options)) return make_bag_input(std::move(log), options);
+  if (is_video(where)) {
+    if (!options.topics.empty())
+      throw InputError(fmt::format("{}: --topics goes with a bag, and this is a video", where));
+    return make_video_input(where, options);
+  }
   if (!is_packed(where))
     throw InputError(
         fmt::format("{}: is a file, expected a folder in the TUM RGB-D layout, an "
                     "archive of one (.tgz, "
-                    ".tar, .tar.bz2, .zip), or a bag (.bag, .mcap, .db3)",
+                    ".tar, .tar.bz2, .zip), a bag (.bag, .mcap, .db3), or a video (.mp4, .mkv, .avi)",
                     where));
   const Unpacked unpacked = unpack(where, options);
   if (unpacked.is_copy)
@@ -97,7 +103,7 @@ bool is_sequence_file(const std::string& path) {
   const Bytes start = RandomFile(path).read(0, 16);
   const std::string_view magic(reinterpret_cast<const char*>(start.data()), start.size());
   return magic.starts_with("#ROS") || magic.starts_with("\x89MCAP") || magic.starts_with("SQLite format 3") ||
-         is_packed(path);
+         is_packed(path) || is_video(path);
 }
 
 std::unique_ptr<FrameSource> open_sequence(const std::string& where, const OpenOptions& options) {

@@ -40,7 +40,8 @@ class SequenceInput {
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-/// A folder in the TUM RGB-D layout or near it, or an archive of one.
+/// A folder in the TUM RGB-D layout or near it, in another data set's (rgbd/rgbd_recording.hpp), or of stereo
+/// pairs; or an archive of one. @throws InputError for one of another layout that cannot be used
 [[nodiscard]] std::unique_ptr<SequenceInput> make_folder_input(std::unique_ptr<FileStore> files,
                                                                const OpenOptions& options);
 

@@ -64,14 +64,14 @@ struct OpenOptions {
   std::function<void(const std::string& what, double share)> progress{};
 };
 
-/// Opens a recorded sequence or `generated:KIND`. A recorded one is a folder in the TUM RGB-D layout, an
-/// archive of one (.tar, .tgz, .tar.bz2, .zip, …), or a bag (ROS 1 .bag, ROS 2 .mcap and .db3, or rosbag2's
-/// folder).
+/// Opens a recorded sequence or `generated:KIND`. A recorded one is a folder in the TUM RGB-D layout or
+/// another that is known (rgbd/rgbd_recording.hpp, stereo/stereo_recording.hpp), an archive of one (.tar,
+/// .tgz, .tar.bz2, .zip, …), a bag (ROS 1 .bag, ROS 2 .mcap and .db3, or rosbag2's folder), or a video.
 /// @throws InputError in one sentence when it is neither or cannot be used.
 [[nodiscard]] std::unique_ptr<FrameSource> open_sequence(const std::string& where,
                                                          const OpenOptions& options = {});
 
-/// Whether a file is an archive or a bag by its first bytes, whatever its name.
+/// Whether a file is an archive, a bag or a video by its first bytes, whatever its name.
 [[nodiscard]] bool is_sequence_file(const std::string& path);
 
 }  // namespace stillpoint

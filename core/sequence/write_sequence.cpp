@@ -17,6 +17,7 @@
 #include "core/media/image_codec.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
+#include "core/sequence/rgbd/rgbd_recording.hpp"
 #include "core/sequence/stereo/write_stereo.hpp"
 
 namespace stillpoint {
@@ -60,12 +61,15 @@ bool holds_sequence(const fs::path& folder) {
     return fs::exists(folder / name, error);
   };
   const auto texts = text_files(), images = image_folders();
-  return std::any_of(texts.begin(), texts.end(), there) || std::any_of(images.begin(), images.end(), there);
+  return std::any_of(texts.begin(), texts.end(), there) || std::any_of(images.begin(), images.end(), there) ||
+         !rgbd_files_in(folder).empty();
 }
 
 /// Removes what write_sequence writes and nothing else.
 void clear_sequence(const fs::path& folder) {
   for (const std::string& name : text_files()) fs::remove(folder / name);
+  for (const fs::path& file : rgbd_files_in(folder)) fs::remove(file);
+  remove_rgbd_folders(folder);
   for (const std::string& name : image_folders()) {
     if (!fs::is_directory(folder / name)) continue;
     std::vector<fs::path> images;
@@ -75,22 +79,24 @@ void clear_sequence(const fs::path& folder) {
   }
 }
 
-void prepare(const FrameSource& source, const fs::path& folder, bool force, SequenceLayout layout) {
+void prepare(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   try {
     if (fs::exists(folder) && !fs::is_directory(folder))
       throw InputError(
           fmt::format("{} is a file, expected a folder to write the sequence to", folder.string()));
     if (holds_sequence(folder)) {
-      if (!force)
+      if (!options.force)
         throw InputError(
             fmt::format("{} holds a sequence already; give --force to replace it", folder.string()));
       clear_sequence(folder);
     }
-    if (layout == SequenceLayout::tum) {
+    if (options.rgbd != nullptr) {
+      make_rgbd_folders(*options.rgbd, folder);
+    } else if (options.layout == SequenceLayout::tum) {
       fs::create_directories(folder / "rgb");
       if (source.has_depth()) fs::create_directories(folder / "depth");
     } else {
-      const StereoNames names = stereo_names(source, 0, layout);
+      const StereoNames names = stereo_names(source, 0, options.layout);
       for (const fs::path& image : {names.left, names.right})
         fs::create_directories(folder / image.parent_path());
     }
@@ -117,15 +123,19 @@ void write_pair(const FrameSource& source, const Frame& frame, const fs::path& f
 }
 
 WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder,
-                         SequenceLayout layout) {
+                         const WriteOptions& options) {
   const Frame frame = source.read(index);
   WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}};
   const std::string name = image_name(source.timestamp(index));
   if (source.has_masks())
     if (const FrameTruth truth = source.truth(index); !truth.moving.empty())
       write_png(folder / "mask" / name, truth.moving);
-  if (layout != SequenceLayout::tum) {
-    write_pair(source, frame, folder, layout);
+  if (options.rgbd != nullptr) {
+    write_rgbd_frame(*options.rgbd, source, frame, folder);
+    return written;
+  }
+  if (options.layout != SequenceLayout::tum) {
+    write_pair(source, frame, folder, options.layout);
     return written;
   }
   if (frame.readable()) write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
@@ -140,7 +150,7 @@ WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& f
 /// All frames, by as many threads as wanted; the first failure ends them and is thrown.
 /// @returns those that were written: from the first one on
 std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path& folder,
-                                       const WriteOptions& options, SequenceLayout layout) {
+                                       const WriteOptions& options) {
   std::atomic<int> next{0};
   std::atomic<bool> failed{false};
   std::mutex mutex;  // of done and failure
@@ -153,7 +163,7 @@ std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path
       const int i = next++;
       if (i >= source.size()) break;
       try {
-        written[static_cast<std::size_t>(i)] = write_frame(source, i, folder, layout);
+        written[static_cast<std::size_t>(i)] = write_frame(source, i, folder, options);
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(done, source.size());
@@ -173,18 +183,6 @@ std::vector<WrittenFrame> write_frames(const FrameSource& source, const fs::path
   return written;
 }
 
-std::string camera_text(const Camera& c) {
-  std::string text = fmt::format(
-      "name = \"{}\"\nwidth = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\n"
-      "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ndepth_scale = {}\nreadout_s = {}\n",
-      c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale,
-      c.readout_s);
-  if (c.depth_readout_s) text += fmt::format("depth_readout_s = {}\n", *c.depth_readout_s);
-  if (c.depth_delay_s != 0.0) text += fmt::format("depth_delay_s = {}\n", c.depth_delay_s);
-  if (c.is_stereo()) text += fmt::format("baseline_m = {}\n", c.baseline_m);
-  return text;
-}
-
 /// Names the depth image of a frame that has none: one that is not there, and is no other frame's.
 std::string no_depth_name(int index) { return fmt::format("none_{:06}.png", index); }
 
@@ -194,6 +192,19 @@ void write_list(const FrameSource& source, const fs::path& folder, const char* n
   for (const std::optional<double>& stamp : stamps)
     if (stamp) text += fmt::format("{:.6f} {}/{}\n", *stamp, name, image_name(*stamp));
   write_text_file(folder / (std::string(name) + ".txt"), text);
+}
+
+/// Masks of a layout that has stamps of its own.
+void write_mask_list(const FrameSource& source, const fs::path& folder,
+                     const std::vector<std::optional<double>>& stamps, const RgbdLayout& layout) {
+  std::string text = "# timestamp filename\n";
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    if (stamps[i])
+      text +=
+          fmt::format("{:.6f} mask/{}\n",
+                      layout.files.names(static_cast<int>(i), source.timestamp(static_cast<int>(i))).stamp,
+                      image_name(*stamps[i]));
+  write_text_file(folder / "mask.txt", text);
 }
 
 /// A pair a frame, whether or not its images are there: readers that go by pairs count frames by them.
@@ -211,7 +222,7 @@ void write_pairs(const FrameSource& source, const fs::path& folder,
 }
 
 void write_lists(const FrameSource& source, const fs::path& folder, const std::vector<WrittenFrame>& written,
-                 SequenceLayout layout) {
+                 const WriteOptions& options) {
   std::vector<std::optional<double>> colours, depths, masks;
   for (std::size_t i = 0; i < written.size(); ++i) {
     const double stamp = source.timestamp(static_cast<int>(i));
@@ -219,8 +230,14 @@ void write_lists(const FrameSource& source, const fs::path& folder, const std::v
     depths.push_back(written[i].depth_stamp);
     masks.push_back(fs::exists(folder / "mask" / image_name(stamp)) ? std::optional(stamp) : std::nullopt);
   }
+  const SequenceLayout layout = options.layout;
+  if (options.rgbd != nullptr) {
+    options.rgbd->files.write_texts({source, folder, static_cast<int>(written.size())});
+    if (source.has_masks()) write_mask_list(source, folder, masks, *options.rgbd);
+    return;
+  }
   if (layout == SequenceLayout::tum || layout == SequenceLayout::left_right) {
-    write_text_file(folder / "camera.toml", camera_text(source.camera()));
+    write_text_file(folder / "camera.toml", camera_text(registered_camera(source)));
     if (!source.ground_truth().empty())
       write_tum_trajectory((folder / "groundtruth.txt").string(), source.ground_truth());
   }
@@ -237,8 +254,9 @@ void write_lists(const FrameSource& source, const fs::path& folder, const std::v
 }
 
 /// The layout asked for, or the source's own.
-SequenceLayout layout_of(const FrameSource& source, SequenceLayout asked) {
+SequenceLayout layout_of(const FrameSource& source, const WriteOptions& options) {
   const bool is_stereo = source.camera().is_stereo();
+  const SequenceLayout asked = options.rgbd != nullptr ? SequenceLayout::tum : options.layout;
   if (asked == SequenceLayout::own) return is_stereo ? SequenceLayout::left_right : SequenceLayout::tum;
   if (is_stereo == (asked == SequenceLayout::tum))
     throw InputError(fmt::format("{}: is {}, and cannot be written in a layout of {}", source.name(),
@@ -247,6 +265,33 @@ SequenceLayout layout_of(const FrameSource& source, SequenceLayout asked) {
 }
 
 }  // namespace
+
+Camera registered_camera(const FrameSource& source) {
+  Camera camera = source.camera();
+  camera.depth_camera.reset();
+  return camera;
+}
+
+std::string camera_text(const Camera& c) {
+  std::string text = fmt::format(
+      "name = \"{}\"\nwidth = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\n"
+      "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ndepth_scale = {}\nreadout_s = {}\n",
+      c.name, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.depth_scale,
+      c.readout_s);
+  if (c.depth_readout_s) text += fmt::format("depth_readout_s = {}\n", *c.depth_readout_s);
+  if (c.depth_delay_s != 0.0) text += fmt::format("depth_delay_s = {}\n", c.depth_delay_s);
+  if (c.is_stereo()) text += fmt::format("baseline_m = {}\n", c.baseline_m);
+  if (!c.depth_camera) return text;
+  const Camera& d = c.depth_camera->camera;
+  text += fmt::format(
+      "\n[depth_camera]\nwidth = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\n"
+      "k1 = {}\nk2 = {}\np1 = {}\np2 = {}\nk3 = {}\ncolour_from_depth = [\n",
+      d.width, d.height, d.fx, d.fy, d.cx, d.cy, d.k1, d.k2, d.p1, d.p2, d.k3);
+  const Eigen::Matrix4d m = c.depth_camera->colour_from_depth.matrix();
+  for (int row = 0; row < 3; ++row)
+    text += fmt::format("  [{}, {}, {}, {}],\n", m(row, 0), m(row, 1), m(row, 2), m(row, 3));
+  return text + "]\n";
+}
 
 void remove_sequence(const fs::path& folder) {
   std::error_code ignored;  // what others put there meanwhile stays, and the folder with it
@@ -260,9 +305,10 @@ void remove_sequence(const fs::path& folder) {
 WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder,
                                const WriteOptions& options) {
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
-  const SequenceLayout layout = layout_of(source, options.layout);
-  prepare(source, folder, options.force, layout);
-  const std::vector<WrittenFrame> frames = write_frames(source, folder, options, layout);
+  WriteOptions own = options;
+  own.layout = layout_of(source, options);
+  prepare(source, folder, own);
+  const std::vector<WrittenFrame> frames = write_frames(source, folder, own);
   WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
   for (int i = 0; i < written.frames; ++i)
     if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
@@ -271,7 +317,7 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
     throw InputError(
         fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
   }
-  if (!frames.empty()) write_lists(source, folder, frames, layout);
+  if (!frames.empty()) write_lists(source, folder, frames, own);
   return written;
 }
 

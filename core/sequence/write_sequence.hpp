@@ -3,11 +3,14 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
+
+struct RgbdLayout;
 
 /// How a sequence's files are named and laid out.
 enum class SequenceLayout {
@@ -24,6 +27,7 @@ struct WriteOptions {
   /// Told after each frame how many are done, of how many; called from one thread at a time.
   std::function<void(int done, int total)> progress{};
   SequenceLayout layout = SequenceLayout::own;
+  const RgbdLayout* rgbd = nullptr;  ///< a layout of rgbd/rgbd_recording.hpp in place of tum; null = none
   const std::atomic<bool>* stop = nullptr;  ///< when it turns true the sequence ends with the frames at hand
 };
 
@@ -45,6 +49,12 @@ struct WrittenSequence {
 ///         full).
 WrittenSequence write_sequence(const FrameSource& source, const std::filesystem::path& folder,
                                const WriteOptions& options = {});
+
+/// The camera of a sequence's frames as they come, whose depth is registered.
+[[nodiscard]] Camera registered_camera(const FrameSource& source);
+
+/// A camera as camera.toml has it, with its depth camera.
+[[nodiscard]] std::string camera_text(const Camera& camera);
 
 /// Takes away a sequence that write_sequence wrote, finished or not, and folders that are empty then.
 void remove_sequence(const std::filesystem::path& folder);

@@ -81,6 +81,16 @@ TEST_F(TrajectoryFiles, KittisMatricesHaveNoStamps) {
               HasSubstr("no rotation and translation"));
 }
 
+TEST_F(TrajectoryFiles, ABadMatrixKeepsItsRowsPlace) {
+  const std::string good = "1 0 0 0.25 0 0.28 -0.96 -1.5 0 0.96 0.28 2\n",
+                    none = "nan nan nan nan 0 0 0 0 0 0 0 0\n";
+  const TrajectoryFile file = read(good + none + good + "1 0 0 9\n" + good);
+  ASSERT_EQ(file.poses.size(), 3U);
+  EXPECT_EQ(file.skipped, 2);
+  EXPECT_EQ(file.poses[1].timestamp, 2.0);
+  EXPECT_EQ(file.poses[2].timestamp, 4.0);
+}
+
 TEST_F(TrajectoryFiles, OneBadRowCostsThatRow) {
   std::string text;
   for (int i = 0; i < 9; ++i) text += fmt::format("{} 0.25 -1.5 2 0.6 0 0 0.8\n", 1.5 + i);

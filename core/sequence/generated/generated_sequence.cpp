@@ -29,7 +29,7 @@ constexpr double kEpoch = 1000.0;                        // s, the first frame's
 /// Stamps are whole microseconds, so that six decimals in a file give them back exactly.
 double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
-class GeneratedSequence : public FrameSource {
+class GeneratedSequence : public FrameSource, public FilmedScene {
  public:
   /// @param stereo null: depth is a sensor's own
   GeneratedSequence(std::string_view kind, std::string_view endings, int frames, unsigned seed,
@@ -116,6 +116,17 @@ class GeneratedSequence : public FrameSource {
     camera_.readout_s = timing_of.readout_s;
     camera_.depth_readout_s = timing_of.depth_readout_s;
     camera_.depth_delay_s = timing_of.depth_delay_s;
+  }
+
+  [[nodiscard]] cv::Mat depth_seen_by(const DepthCamera& depth, int index) const override {
+    const double seconds = timestamp(index) - kEpoch;
+    Instant there = instant(seconds);
+    there.world_from_camera = there.world_from_camera * depth.colour_from_depth;
+    const Rendering ideal = cast_depth(act_.scene, depth.camera, there);
+    cv::Mat metres;
+    sensor_.depth(ideal, dropout(there), depth.camera, index)
+        .convertTo(metres, CV_32F, 1.0 / depth.camera.depth_scale);
+    return metres;
   }
 
  private:

@@ -10,6 +10,16 @@
 
 namespace stillpoint {
 
+/// A scene that another camera can look at: what generated sequences are beside FrameSource.
+class FilmedScene {
+ public:
+  virtual ~FilmedScene() = default;
+  /// A frame's depth as a depth camera beside the sequence's measures it.
+  /// @param depth whose distortion is not rendered
+  /// @returns CV_32FC1 of the depth camera's size, m, 0 = no measurement
+  [[nodiscard]] virtual cv::Mat depth_seen_by(const DepthCamera& depth, int index) const = 0;
+};
+
 /// The kinds of generated sequence: the benchmark's nine by name, `room` (nothing moves), `approach` (motion
 /// along the optical axis) and `cup` (a small thing pushed across a table).
 [[nodiscard]] const std::vector<std::string>& generated_kinds();

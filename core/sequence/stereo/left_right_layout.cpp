@@ -11,8 +11,7 @@ constexpr const char *kLeft = "left", *kRight = "right", *kTimes = "times.txt";
 
 Camera camera_of(const FileStore& folder, const OpenOptions& options) {
   if (options.camera) return *options.camera;
-  for (const char* name : {"camera.toml", "camera.yaml", "camera.yml"})
-    if (folder.is_there(name)) return read_camera_text(folder.path_of(name), folder.read_text(name));
+  if (auto camera = camera_in_folder(folder)) return *camera;
   throw InputError(fmt::format(
       "{}: left/ and right/ need a camera.toml (fx, fy, cx, cy, width, height and baseline_m, the "
       "distance of the two cameras), or --camera FILE",

@@ -11,20 +11,6 @@
 
 namespace stillpoint {
 
-cv::Size first_size(const FileStore& folder, const ImageList& images) {
-  std::string problem;
-  for (const ListEntry& entry : images.entries) {
-    Bytes bytes;
-    const std::string path = folder.path_of(entry.file), fault = folder.read(entry.file, bytes);
-    const ImageRead read =
-        fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
-    if (!read.image.empty()) return read.image.size();
-    if (problem.empty()) problem = read.problem;
-  }
-  throw InputError(fmt::format("{}: none of its {} images can be read{}{}", images.path,
-                               images.entries.size(), problem.empty() ? "" : "; ", problem));
-}
-
 std::vector<double> read_times(const FileStore& folder, const std::string& name) {
   std::vector<double> times;
   for (const TextLine& line : text_lines(folder.read_text(name))) {

@@ -50,10 +50,6 @@ struct StereoRecording {
 [[nodiscard]] std::optional<StereoRecording> read_stereo_recording(const FileStore& folder,
                                                                    const OpenOptions& options);
 
-/// The size of the first image of a list that can be read.
-/// @throws InputError where none can
-[[nodiscard]] cv::Size first_size(const FileStore& folder, const ImageList& images);
-
 /// The numbers of a file that has one a line.
 /// @throws InputError naming the line that has none
 [[nodiscard]] std::vector<double> read_times(const FileStore& folder, const std::string& name);
