@@ -83,6 +83,7 @@ void check(const CheckArguments& arguments) {
   const TimeCalibration times = arguments.estimate.empty()
                                     ? calibrate_time(*source, Config(), {.frames = 90, .tries = 1, .runs = 1})
                                     : TimeCalibration();
+  for (Finding& finding : check_times(times, source->camera())) findings.push_back(std::move(finding));
   if (!arguments.estimate.empty()) check_estimate(arguments, *source, findings);
   const Camera& camera = source->camera();
   if (arguments.json) {

@@ -13,7 +13,7 @@ namespace stillpoint {
 
 /// Something about an input that cannot be right, or that was mended on opening.
 struct Finding {
-  std::string about;     ///< "stamps", "depth", "masks", "camera", "truth", "images", "estimate", "odometry"
+  std::string about;     ///< "stamps", "depth", "masks", "camera", "truth", "images", "estimate", "odometry", "time"
   std::string sentence;  ///< what was found, with its figure, and the switch that mends it where there is one
 };
 

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <optional>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -113,21 +113,41 @@ struct Stretch {
   int observations = 0;
 };
 
+/// Keeps the depth of the frames that were read.
+class KeepingDepth final : public WithCamera {
+ public:
+  using WithCamera::WithCamera;
+  struct Kept {
+    cv::Mat depth;       ///< CV_16UC1, kDepthUnits a metre
+    double stamp = 0.0;  ///< s
+  };
+
+  [[nodiscard]] Frame read(int index) const override {
+    Frame frame = WithCamera::read(index);
+    if (frame.has_depth()) {
+      Kept kept{{}, frame.depth_timestamp};
+      frame.depth.convertTo(kept.depth, CV_16UC1, kDepthUnits);
+      const std::lock_guard lock(mutex_);
+      kept_[index] = std::move(kept);
+    }
+    return frame;
+  }
+  /// Once all is read. @returns null for a frame without depth
+  [[nodiscard]] const Kept* kept(int index) const {
+    const auto found = kept_.find(index);
+    return found == kept_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<int, Kept> kept_;
+};
+
 Stretch track(const FrameSource& source, const Camera& camera, Config config, int first, int count) {
-  const WithCamera seen_by(source, camera);
-  std::map<int, std::pair<cv::Mat, double>> depths;  // and lags, by frame
+  const KeepingDepth seen_by(source, camera);
   RunOptions options;
   options.first = first, options.count = count;
   options.keep_features = true;
-  options.on_frame = [&](const FrameResult& result) {
-    const FrameRecord& record = result.record;
-    if (!record.estimated) return;
-    const Frame frame = seen_by.read(record.index);
-    if (!frame.has_depth()) return;
-    auto& [depth, lag] = depths[record.index];
-    frame.depth.convertTo(depth, CV_16UC1, kDepthUnits);
-    lag = frame.depth_timestamp - frame.timestamp;
-  };
   const RunResult run = run_sequence(seen_by, config, options);
   std::unordered_map<int, int> seen_in;  // frames, by point
   for (const FrameRecord& record : run.records)
@@ -149,8 +169,8 @@ Stretch track(const FrameSource& source, const Camera& camera, Config config, in
     if (!record.estimated || pose == poses.end()) continue;
     SeenFrame frame;
     frame.timestamp = record.timestamp;
-    if (const auto depth = depths.find(record.index); depth != depths.end())
-      std::tie(frame.depth, frame.lag) = depth->second;
+    if (const auto* kept = seen_by.kept(record.index))
+      frame.depth = kept->depth, frame.lag = kept->stamp - record.timestamp;
     frame.camera_from_world = pose->second.inverse();
     for (const FeatureRecord& feature : record.features) {
       const auto point = points.find(feature.map_point);
@@ -641,6 +661,25 @@ std::vector<std::string> to_lines(const TimeCalibration& times, const Camera& ca
                               times.first_frame, times.first_frame + times.frames - 1, times.observations,
                               times.noise_px));
   return lines;
+}
+
+std::vector<Finding> check_times(const TimeCalibration& times, const Camera& camera) {
+  constexpr double kOff = 4e-3, kCertain = 4.0;  // s, standard deviations
+  const Times had = times_of(camera);
+  std::vector<Finding> findings;
+  int k = 0;
+  for (const auto& [what, estimate] :
+       {std::pair("colour's rows are read over", times.readout),
+        std::pair("depth's rows are read over", times.depth_readout),
+        std::pair("depth is measured after its stamp by", times.depth_delay)}) {
+    const double of_camera = had[k++], off = std::abs(estimate.seconds - of_camera);
+    if (!estimate.told || off < kOff || off < kCertain * estimate.sigma_s) continue;
+    findings.push_back({"time", fmt::format("{} {:.1f} ± {:.1f} ms, and {:.1f} ms by camera {} "
+                                            "(`--calibrate-time` goes by what was measured)",
+                                            what, 1e3 * estimate.seconds, 1e3 * estimate.sigma_s,
+                                            1e3 * of_camera, camera.name)});
+  }
+  return findings;
 }
 
 TimeCalibration calibrate_time(const FrameSource& source, const Config& config, const TimeStretch& stretch) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/check/findings.hpp"
 #include "core/config.hpp"
 #include "core/sequence/source.hpp"
 
@@ -32,6 +33,9 @@ struct TimeCalibration {
   /// The camera with the times that were told.
   [[nodiscard]] Camera applied_to(Camera camera) const;
 };
+
+/// Times that are surely others than the camera's (by 4 ms and 4 standard deviations).
+[[nodiscard]] std::vector<Finding> check_times(const TimeCalibration& times, const Camera& camera);
 
 /// "colour's readout 22.9 ± 0.3 ms (30.0)", …: a line a time, in brackets what the camera has.
 [[nodiscard]] std::vector<std::string> to_lines(const TimeCalibration& times, const Camera& camera);

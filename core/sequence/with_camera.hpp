@@ -5,7 +5,7 @@
 namespace stillpoint {
 
 /// The same frames as a source's under another camera. Refers to the source, which must outlive it.
-class WithCamera final : public FrameSource {
+class WithCamera : public FrameSource {
  public:
   WithCamera(const FrameSource& source, Camera camera) : source_(source), camera_(std::move(camera)) {}
 

@@ -234,7 +234,7 @@ TEST(FeatureSet, DepthIsReadWhereItIsAndZeroElsewhere) {
 
 TEST(FeatureSet, DepthTakenFromElsewhereIsWarpedToNow) {
   // The depth image was taken 2 cm to the left and 5 cm farther back, of a wall that slopes.
-  const Camera camera = camera_by_name("freiburg3");
+  const Camera camera = camera_by_name("generated");
   const Vector6d velocity{0.2, 0, 0.5, 0, 0, 0};
   constexpr double kLag = 0.1;
   const auto plane_depth = [](double x) { return 2.0 / (1.0 - 0.3 * x); };  // z = 2 + 0.3 X, by x = X / z

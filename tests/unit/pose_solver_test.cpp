@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+
+#include "core/geometry/normal_equations.hpp"
+#include "core/odometry/adaptive_kernel.hpp"
 
 namespace stillpoint {
 namespace {
@@ -55,6 +59,82 @@ TEST(RefinePose, TellsOutliersApart) {
   EXPECT_LT(pose_distance(refined.camera_from_world, some_pose()), 0.01);
   for (std::size_t i = 0; i < 30; ++i) EXPECT_FALSE(refined.inlier[i]) << i;
   EXPECT_GE(refined.inliers, 65);
+}
+
+TEST(RefinePose, ItsCovarianceIsHowItsPosesScatter) {
+  Eigen::Matrix3d positions = Eigen::Matrix3d::Zero(), rotations = Eigen::Matrix3d::Zero(), said = positions;
+  constexpr int kTrials = 300;
+  auto observations = observe(some_pose(), 80, 0.0, false);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.4);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    auto noisy = observations;
+    for (PoseObservation& o : noisy) o.pixel += Eigen::Vector2d(noise(random), noise(random));
+    const PoseRefinement refined = refine_pose(kSolverCamera, noisy, some_pose(), {});
+    const Vector6d off = se3_log(refined.camera_from_world * some_pose().inverse());
+    positions += off.head<3>() * off.head<3>().transpose() / kTrials;
+    rotations += off.tail<3>() * off.tail<3>().transpose() / kTrials;
+    said += refined.covariance().topLeftCorner<3, 3>() / kTrials;
+    ASSERT_EQ(refined.covariance(), refined.covariance().transpose());
+  }
+  EXPECT_NEAR(largest_deviation(said) / largest_deviation(positions), 1.0, 0.15);
+  EXPECT_GT(largest_deviation(rotations), 0.0);
+}
+
+TEST(RefinePose, ItsCovarianceTellsADegenerateView) {
+  // All on one far wall, seen through a narrow part of the image.
+  const auto all = observe(some_pose(), 80, 0.3, false);
+  std::vector<PoseObservation> few;
+  for (const PoseObservation& o : all)
+    if (std::abs(o.pixel.x() - 320) < 120 && std::abs(o.pixel.y() - 240) < 90) few.push_back(o);
+  ASSERT_GE(few.size(), 8U);
+  const auto sigma = [](const std::vector<PoseObservation>& seen) {
+    return largest_deviation(
+        refine_pose(kSolverCamera, seen, some_pose(), {}).covariance().topLeftCorner<3, 3>());
+  };
+  EXPECT_GT(sigma(few), 3 * sigma(all));
+  EXPECT_TRUE(refine_pose(kSolverCamera, {}, some_pose(), {}).covariance().isZero(0.0))
+      << "nothing tells nothing";
+}
+
+TEST(AdaptiveKernel, HasTheLossesItGeneralises) {
+  for (const double square : {0.0, 0.3, 2.0, 40.0}) {
+    EXPECT_NEAR(AdaptiveKernel(2).cost(square), 0.5 * square, 1e-12);
+    EXPECT_NEAR(AdaptiveKernel(1).cost(square), std::sqrt(square + 1) - 1, 1e-12);
+    EXPECT_NEAR(AdaptiveKernel(0).cost(square), std::log(0.5 * square + 1), 1e-12);
+    EXPECT_NEAR(AdaptiveKernel(-2).cost(square), 2 * square / (square + 4), 1e-12);
+    for (const double shape : {-3.0, -2.0, 0.0, 0.4, 1.0, 2.0}) {
+      const AdaptiveKernel kernel(shape);
+      constexpr double kStep = 1e-5;
+      EXPECT_NEAR(kernel.weight(square + kStep),
+                  (kernel.cost(square + 2 * kStep) - kernel.cost(square)) / kStep, 1e-4)
+          << "shape " << shape;
+    }
+  }
+}
+
+TEST(AdaptiveKernel, TakesItsShapeFromTheResiduals) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::cauchy_distribution<double> heavy;
+  std::vector<double> good, bad;
+  for (int i = 0; i < 2000; ++i) {
+    const double g = normal(random), b = heavy(random);
+    good.push_back(g * g), bad.push_back(b * b);
+  }
+  EXPECT_GE(AdaptiveKernel::likeliest(good).shape(), 1.6);
+  EXPECT_LE(AdaptiveKernel::likeliest(bad).shape(), 0.6);
+  EXPECT_EQ(AdaptiveKernel::likeliest({}).shape(), 1.0);
+}
+
+TEST(AdaptiveKernel, APoseIsFoundThroughOutliers) {
+  auto observations = observe(some_pose(), 100, 0.5, true);
+  for (std::size_t i = 0; i < 35; ++i) observations[i].pixel.x() += 25.0;
+  TrackingConfig config;
+  config.adaptive_kernel = true;
+  const PoseRefinement refined = refine_pose(kSolverCamera, observations, Pose::Identity(), config);
+  EXPECT_LT(pose_distance(refined.camera_from_world, some_pose()), 0.01);
+  EXPECT_GE(refined.inliers, 60);
 }
 
 /// Exact observations, of which the first 40 of 100 are seen 1.5 px beside their place: no outliers, but all

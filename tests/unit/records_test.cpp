@@ -88,6 +88,8 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
     EXPECT_EQ(back.ms.total, record.ms.total);
     EXPECT_EQ(back.new_points, record.new_points);
     EXPECT_EQ(back.keyframe, record.keyframe);
+    EXPECT_EQ(back.pose_covariance, record.pose_covariance);
+    EXPECT_EQ(back.removal_check.nothing_removed_sigma_m, record.removal_check.nothing_removed_sigma_m);
     ASSERT_EQ(back.removal_check.nothing_removed.has_value(),
               record.removal_check.nothing_removed.has_value());
     if (record.removal_check.nothing_removed) {

@@ -35,6 +35,7 @@ TEST(RemovalCheck, WithoutRemovalItIsWhatMethodNoneFinds) {
   const SmallSequence folder(8);
   const auto run = run_sequence(*open_sequence(folder.path()), config_of("none", 1));
   EXPECT_FALSE(run.records[0].removal_check.nothing_removed.has_value());  // no map yet
+  EXPECT_TRUE(run.records[0].pose_covariance.isZero(0.0));
   for (std::size_t i = 1; i < run.records.size(); ++i) {
     EXPECT_TRUE(same(run.records[i].removal_check.nothing_removed, run.records[i].world_from_camera)) << i;
     EXPECT_FALSE(run.records[i].removal_check.truth_removed.has_value()) << i;

@@ -8,26 +8,25 @@
 
 #include "core/error.hpp"
 #include "core/sequence/with_camera.hpp"
+#include "tests/support/rendered.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr int kCalibrated = 60;  // frames
+constexpr int kCalibrated = 75;  // frames
 
 /// What a camera of which no times are known is told by frames that were filmed under `times`.
 TimeCalibration calibrated(const std::string& times) {
-  OpenOptions options;
-  options.frames = kCalibrated;
-  const auto filmed = open_sequence("generated:room_shaken:exposure_s=0.004" + times, options);
+  const auto filmed = rendered("room_shaken:exposure_s=0.004" + times, kCalibrated);
   Camera unknown = filmed->camera();
   unknown.readout_s = unknown.depth_delay_s = 0.0;
   unknown.depth_readout_s.reset();
   return calibrate_time(WithCamera(*filmed, unknown), Config(), {.frames = kCalibrated, .tries = 1});
 }
 
-void expect_near(const TimeEstimate& estimate, double seconds) {
+void expect_near(const TimeEstimate& estimate, double seconds, double tolerance = 1e-3) {
   ASSERT_TRUE(estimate.told);
-  EXPECT_NEAR(estimate.seconds, seconds, 1e-3);
+  EXPECT_NEAR(estimate.seconds, seconds, tolerance);
   EXPECT_GT(estimate.sigma_s, 0.0);
   EXPECT_LT(estimate.sigma_s, 1.5e-3);
 }
@@ -37,6 +36,9 @@ TEST(TimeCalibration, FindsReadoutsAndDelay) {
   expect_near(times.readout, 0.02);
   expect_near(times.depth_readout, 0.02);
   expect_near(times.depth_delay, -0.02);
+  Camera unknown;
+  EXPECT_THAT(check_times(times, unknown), ::testing::SizeIs(3)) << "and check says so";
+  EXPECT_THAT(check_times(times, times.applied_to(unknown)), ::testing::IsEmpty());
   ASSERT_TRUE(times.after_truth) << "poses are of the middle row's time, which is the stamp";
   EXPECT_NEAR(times.after_truth->seconds, 0.0, 2e-3);
 }
@@ -44,7 +46,7 @@ TEST(TimeCalibration, FindsReadoutsAndDelay) {
 TEST(TimeCalibration, FindsDepthsOwnReadoutAndARowOrderUpsideDown) {
   const TimeCalibration times = calibrated(":readout_s=-0.03:depth_readout_s=0.01:depth_delay_s=0.02");
   expect_near(times.readout, -0.03);
-  expect_near(times.depth_readout, 0.01);
+  expect_near(times.depth_readout, 0.01, 2.5e-3);  // the hardest to tell
   expect_near(times.depth_delay, 0.02);
   Camera camera;
   camera = times.applied_to(camera);
@@ -59,15 +61,24 @@ TEST(TimeCalibration, FindsNothingWhereThereIsNothing) {
   expect_near(times.depth_delay, 0.0);
 }
 
+/// A camera on a tripod: one frame again and again.
+class Still final : public WithCamera {
+ public:
+  using WithCamera::WithCamera;
+  [[nodiscard]] Frame read(int index) const override {
+    Frame frame = WithCamera::read(0);
+    frame.index = index;
+    frame.timestamp = frame.depth_timestamp = timestamp(index);
+    return frame;
+  }
+};
+
 TEST(TimeCalibration, WhatAStretchDoesNotTellStands) {
-  // A camera that looks on calmly.
-  OpenOptions options;
-  options.frames = 40;
-  const auto calm = open_sequence("generated:sitting_static", options);
-  Camera camera = calm->camera();
+  const auto room = rendered("room", 40);
+  Camera camera = room->camera();
   camera.readout_s = 0.012, camera.depth_delay_s = 0.003;
   const TimeCalibration times =
-      calibrate_time(WithCamera(*calm, camera), Config(), {.frames = 40, .tries = 2, .runs = 1});
+      calibrate_time(Still(*room, camera), Config(), {.frames = 40, .tries = 2, .runs = 1});
   EXPECT_FALSE(times.told());
   EXPECT_THAT(times.why_not, ::testing::HasSubstr("too little"));
   EXPECT_EQ(times.readout.seconds, 0.012);
@@ -124,10 +135,8 @@ TEST(GeneratedTiming, TimesAreToldAndWhatIsNoneIsRefused) {
 TEST(GeneratedTiming, RowsAreFilmedAtTheirOwnTimes) {
   // The row in the middle is the same as a global shutter's; the first one is what a frame of half a readout
   // earlier shows there.
-  OpenOptions options;
-  options.frames = 40;
-  const auto global = open_sequence("generated:room_shaken:exposure_s=0.001", options),
-             rolling = open_sequence("generated:room_shaken:exposure_s=0.001:readout_s=0.066667", options);
+  const auto global = rendered("room_shaken:exposure_s=0.001", 40),
+             rolling = rendered("room_shaken:exposure_s=0.001:readout_s=0.066667", 40);
   constexpr int kShot = 30;  // a frame amid a turn
   const cv::Mat seen = rolling->truth(kShot).depth, now = global->truth(kShot).depth,
                 before = global->truth(kShot - 1).depth, after = global->truth(kShot + 1).depth;

@@ -142,6 +142,9 @@ class RemovalPanel final : public NamedPanel {
     if (summary_.told > 0)
       text += fmt::format(", {:.3g} mm told what is dynamic; removal did better than being told in {} of {}",
                           1000.0 * summary_.median_oracle_m, summary_.beat_oracle, summary_.told);
+    if (summary_.median_widened > 0)
+      text +=
+          fmt::format("; what was removed takes the position's σ to {:.2f} times", summary_.median_widened);
     if (summary_.worst_frame >= 0)
       text += fmt::format(". It hurt most at frame {}, by {:.3g} mm", summary_.worst_frame,
                           1000.0 * summary_.greatest_harm_m);

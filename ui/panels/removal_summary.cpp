@@ -19,7 +19,7 @@ double median(std::vector<double> values) {
 
 RemovalSummary summarise(const std::vector<RemovalError>& errors) {
   RemovalSummary summary;
-  std::vector<double> with, without, told;
+  std::vector<double> with, without, told, widened;
   for (const RemovalError& one : errors) {
     if (!std::isfinite(one.with_removal_m) || !std::isfinite(one.without_removal_m)) continue;
     ++summary.compared;
@@ -27,6 +27,7 @@ RemovalSummary summarise(const std::vector<RemovalError>& errors) {
     summary.hurt += one.hurt ? 1 : 0;
     with.push_back(one.with_removal_m);
     without.push_back(one.without_removal_m);
+    if (std::isfinite(one.widened)) widened.push_back(one.widened);
     const double gain = one.without_removal_m - one.with_removal_m;
     if (one.helped && gain > summary.greatest_gain_m) {
       summary.greatest_gain_m = gain;
@@ -41,6 +42,7 @@ RemovalSummary summarise(const std::vector<RemovalError>& errors) {
     summary.beat_oracle += one.with_removal_m < one.oracle_m ? 1 : 0;
     told.push_back(one.oracle_m);
   }
+  summary.median_widened = median(widened);
   summary.median_with_m = median(std::move(with));
   summary.median_without_m = median(std::move(without));
   summary.median_oracle_m = median(std::move(told));

@@ -16,6 +16,7 @@ struct RemovalSummary {
   double median_with_m = 0.0;     ///< of the frames compared
   double median_without_m = 0.0;  ///< of the same
   double median_oracle_m = 0.0;   ///< of those told
+  double median_widened = 0.0;    ///< position sigma, as many times as with nothing removed; 0 = not known
   double greatest_gain_m = 0.0;   ///< by how much it helped most; 0 = never
   double greatest_harm_m = 0.0;   ///< by how much it hurt most
   int best_frame = -1, worst_frame = -1;  ///< where that was; -1 = nowhere

@@ -24,6 +24,7 @@ using namespace generated;
 constexpr int kOwnLength = 300, kMostFrames = 100000;
 constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz
 constexpr double kBaseline = 0.12;                       // m, of the stereo pair
+constexpr double kMostBlur = 24.0;                       // px, that four instants of an exposure stand for
 constexpr double kEpoch = 1000.0;                        // s, the first frame's stamp
 
 /// Stamps are whole microseconds, so that six decimals in a file give them back exactly.
@@ -95,7 +96,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
     const Instant middle = instant(timestamp(index) - kEpoch);
     Rendering ideal = kept(index);
     if (ideal.depth.empty())
-      ideal = film([&](const Camera& camera, double row) {
+      ideal = film(filming_.readout_s, 0, [&](const Camera& camera, double row) {
         return cast_depth(act_.scene, camera, instant(timestamp(index) - kEpoch + filming_.row_time(row)));
       });
     FrameTruth truth;
@@ -131,24 +132,24 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
 
  private:
   /// What a sensor sees whose rows are taken one after the other: bands of the image, each by itself.
+  /// @param readout_s of its rows; 0: all are taken at once, as the middle one
+  /// @param beyond rows above and below a band that its own ones ask for
   /// @param look what a camera sees whose image is a band, and whose middle row is that row of the whole one
   template <typename Look>
-  [[nodiscard]] Rendering film(const Look& look) const {
-    if (filming_.readout_s == 0.0 && !filming_.depth_is_late(0.0))
-      return look(filming_, 0.5 * filming_.height - 0.5);
-    constexpr int kBand = 8;     // rows: at 30 ms for an image half a band is 0.25 ms
-    constexpr int kBeyond = 14;  // rows above and below, for what moves into the band while it is exposed
+  [[nodiscard]] Rendering film(double readout_s, int beyond, const Look& look) const {
+    if (readout_s == 0.0) return look(filming_, 0.5 * filming_.height - 0.5);
+    constexpr int kBand = 8;  // rows: at 30 ms for an image half a band is 0.25 ms
     Rendering whole;
     for (int top = 0; top < filming_.height; top += kBand) {
       const int rows = std::min(kBand, filming_.height - top);
       Camera band = filming_;
-      band.height = rows + 2 * kBeyond;
-      band.cy -= top - kBeyond;
+      band.height = rows + 2 * beyond;
+      band.cy -= top - beyond;
       const Rendering seen = look(band, top + 0.5 * rows - 0.5);
       const auto put = [&](const cv::Mat& from, cv::Mat& to) {
         if (from.empty()) return;
         if (to.empty()) to.create(filming_.height, filming_.width, from.type());
-        from.rowRange(kBeyond, kBeyond + rows).copyTo(to.rowRange(top, top + rows));
+        from.rowRange(beyond, beyond + rows).copyTo(to.rowRange(top, top + rows));
       };
       put(seen.colour, whole.colour);
       put(seen.depth, whole.depth);
@@ -157,23 +158,28 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
     return whole;
   }
   [[nodiscard]] Rendering film_colour(double seconds, double aside) const {
-    return film([&](const Camera& camera, double row) {
+    // What moves into a band while it is exposed; half as much again, for the bands in which it moves faster.
+    const double blurred =
+        1.5 * blur(instant(seconds - 0.5 * act_.exposure), instant(seconds + 0.5 * act_.exposure));
+    const int beyond = static_cast<int>(std::ceil(0.5 * std::min(kMostBlur, blurred))) + 2;
+    return film(filming_.readout_s, beyond, [&](const Camera& camera, double row) {
       const double now = seconds + filming_.row_time(row);
       return expose(camera, now, instant(now, aside), aside);
     });
   }
   [[nodiscard]] Rendering film_depth(double seconds) const {
-    return film([&](const Camera& camera, double row) {
-      const double now = seconds + filming_.row_time(row) + filming_.depth_lag(0.0, row);
-      return cast_depth(act_.scene, camera, instant(now));
-    });
+    return film(filming_.depth_readout_s.value_or(filming_.readout_s), 0,
+                [&](const Camera& camera, double row) {
+                  const double now = seconds + filming_.row_time(row) + filming_.depth_lag(0.0, row);
+                  return cast_depth(act_.scene, camera, instant(now));
+                });
   }
 
   /// What the camera sees while it exposes. Four instants do for a little blur; more is made of whole images.
   /// @param aside m, to the right of the sequence's camera
   [[nodiscard]] Rendering expose(const Camera& camera, double seconds, const Instant& middle,
                                  double aside) const {
-    constexpr double kMostBlur = 24.0, kStep = 1.5;  // px
+    constexpr double kStep = 1.5;  // px
     const auto at = [&](int k, int count) {
       return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count, aside);
     };
