@@ -65,7 +65,8 @@ std::vector<Ingredient> ingredients(const MethodInfo& method) {
       {"spread_points", "map points in every part of the image", {"map.min_cell_points=0"}},
       {"depth_residual", "depth beside pixels in the pose", {"tracking.depth_weight=0"}},
       {"rolling_shutter", "undoing the rolling shutter", {"tracking.correct_rolling_shutter=false"}},
-      {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=false"}}};
+      {"depth_lag", "undoing the time between depth and colour", {"tracking.correct_depth_lag=false"}},
+      {"huber", "Huber's loss; without it one of adaptive shape", {"tracking.adaptive_kernel=true"}}};
   all.insert(all.end(), of_all.begin(), of_all.end());
   return all;
 }

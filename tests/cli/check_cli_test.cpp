@@ -32,6 +32,17 @@ TEST(CheckCommand, HasStatusThreeAndTheSwitchThatMends) {
   EXPECT_EQ(run_cli({"check", sequence.path(), "--depth-scale", "1000"}).exit_code, 0);
 }
 
+TEST(CheckCommand, SaysWhetherFramesTellTimes) {
+  const SmallSequence few(8);
+  const auto json = nlohmann::json::parse(run_cli({"check", few.path(), "--json"}).out);
+  EXPECT_TRUE(json["time"]["readout"].is_null());
+  EXPECT_THAT(json["time"]["why_not"].get<std::string>(), HasSubstr("8 frames are too few: 30 are needed"));
+  const CliResult run = run_cli({"run", few.path(), "--method", "none", "--calibrate-time"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("time: 8 frames are too few"));
+  EXPECT_EQ(run_cli({"run", few.path(), "--method", "none"}).out.find("time: "), std::string::npos);
+}
+
 TEST(CheckCommand, QuestionsAnEstimate) {
   const SmallSequence sequence(8);
   sequence.folder.write("estimate.txt", "5.0 0 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n");

@@ -19,7 +19,7 @@ TEST(Ablation, EveryIngredientChangesTheConfigAndNothingElse) {
   const MethodInfo& method = method_of(whole);
   std::set<std::string> names;
   const std::vector<Ingredient> all = ingredients(method);
-  ASSERT_EQ(all.size(), 20U);
+  ASSERT_EQ(all.size(), 21U);
   for (const Ingredient& one : all) {
     const Config without = ablated({}, &one);
     EXPECT_FALSE(without == whole) << one.name;
