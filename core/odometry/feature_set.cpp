@@ -83,9 +83,13 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
                             const Camera& camera, const Vector6d& velocity, std::optional<double> lag_s) {
   std::vector<float> result = depth_at(pixels, depth);
   if (depth.empty() || !lag_s || !camera.depth_is_late(*lag_s)) return result;
-  const auto then_from_now = [&, whole = se3_exp(velocity * camera.depth_lag(*lag_s, 0.0)),
-                              by_row = camera.depth_readout_s.has_value()](std::size_t i) -> Pose {
-    return by_row ? se3_exp(velocity * camera.depth_lag(*lag_s, static_cast<double>(pixels[i].y))) : whole;
+  // The whole image's lag exactly, what a row's differs from it to first order: that is some milliseconds.
+  const double middle_lag = camera.depth_lag(*lag_s, 0.5 * camera.height - 0.5);
+  const Pose then_from_now = se3_exp(velocity * middle_lag), now_from_then = then_from_now.inverse();
+  const auto rowed = [&](std::size_t i, const Eigen::Vector3d& p, double sign) -> Eigen::Vector3d {
+    if (!camera.depth_readout_s) return p;
+    const double more = camera.depth_lag(*lag_s, static_cast<double>(pixels[i].y)) - middle_lag;
+    return p + sign * more * (velocity.head<3>() + velocity.tail<3>().cross(p));
   };
   // The first reading is near enough to tell where the point was seen then; distortion is the same over so
   // few pixels.
@@ -93,7 +97,7 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
     const Eigen::Vector2d now(undistorted[i].x, undistorted[i].y);
-    const Eigen::Vector3d p = then_from_now(i) * camera.back_project(now, result[i]);
+    const Eigen::Vector3d p = rowed(i, then_from_now * camera.back_project(now, result[i]), 1.0);
     if (p.z() <= 0) continue;
     const Eigen::Vector2d shift = camera.project(p) - now;
     then[i] += cv::Point2f(static_cast<float>(shift.x()), static_cast<float>(shift.y()));
@@ -102,10 +106,8 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (result[i] <= 0) continue;
     const cv::Point2f pixel = undistorted[i] + then[i] - pixels[i];
-    const double z =
-        measured[i] > 0
-            ? (then_from_now(i).inverse() * camera.back_project({pixel.x, pixel.y}, measured[i])).z()
-            : 0.0;
+    const Eigen::Vector3d then_measured = camera.back_project({pixel.x, pixel.y}, measured[i]);
+    const double z = measured[i] > 0 ? (now_from_then * rowed(i, then_measured, -1.0)).z() : 0.0;
     result[i] = z > 0 ? static_cast<float>(z) : 0.0F;
   }
   return result;

@@ -212,11 +212,12 @@ void read_mask_list(const FileStore& folder, FolderLists& lists) {
 void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known) {
   lists.unit = known ? *known : unit_of(stamps_of(lists.colours));
   convert(lists.colours, lists.unit, frame_rate);
-  if (lists.unit == StampUnit::frames)
+  // A layout that says what its stamps are leaves nothing to wonder at.
+  if (!known && lists.unit == StampUnit::frames)
     lists.warnings.push_back(fmt::format(
         "{}: the stamps are frame numbers; they were read as frames at {} Hz (--frame-rate says otherwise)",
         lists.colours.path, frame_rate));
-  else if (lists.unit != StampUnit::seconds)
+  else if (!known && lists.unit != StampUnit::seconds)
     lists.warnings.push_back(fmt::format("{}: the stamps are {}; they were read as such", lists.colours.path,
                                          to_string(lists.unit)));
   const auto reference = stamps_of(lists.colours);

@@ -58,7 +58,8 @@ struct FolderLists {
 void read_mask_list(const FileStore& folder, FolderLists& lists);
 
 /// Converts the stamps of all lists to seconds. @param frame_rate Hz, of stamps that are frame numbers
-/// @param known the unit of the colour and depth stamps; nothing = they tell it themselves
+/// @param known the unit of the colour and depth stamps by the layout; nothing = they tell it themselves, and
+/// one that is not seconds is told
 void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known = {});
 
 }  // namespace stillpoint

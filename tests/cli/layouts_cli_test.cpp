@@ -56,9 +56,9 @@ TEST_F(LayoutsCli, OfUnknownNameOrOfTheOtherKindAreRefused) {
 TEST_F(LayoutsCli, ACalibrationThatIsMissingIsOneSentence) {
   std::filesystem::remove(made("replica") + "/cam_params.json");
   expect_one_sentence(run_cli({"run", folder.path("replica")}), "has no cam_params.json");
-  EXPECT_EQ(run_cli({"check", folder.path("replica"), "--camera", "freiburg3", "--depth-scale", "6553.5"})
-                .exit_code,
-            3);  // its stamps are frame numbers
+  const CliResult told =
+      run_cli({"check", folder.path("replica"), "--camera", "freiburg3", "--depth-scale", "6553.5"});
+  EXPECT_EQ(told.exit_code, 0) << told.out << "its stamps are frame numbers, as they are to be";
 }
 
 TEST_F(LayoutsCli, VideosAreForMotion) {
