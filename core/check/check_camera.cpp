@@ -6,6 +6,7 @@
 
 #include "core/check/findings.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/sequence/with_camera.hpp"
 
 namespace stillpoint {
 namespace {
@@ -16,28 +17,19 @@ constexpr double kFewestTrackedByCamera = 0.85;  // of the frames, for a residua
 constexpr double kSameSides = 0.01;
 
 /// Frames at hand under another camera.
-class UnderCamera final : public FrameSource {
+class UnderCamera final : public WithCamera {
  public:
   UnderCamera(const FrameSource& source, const std::vector<Frame>& frames, const Camera& camera)
-      : source_(source), frames_(frames), camera_(camera) {}
+      : WithCamera(source, camera), frames_(frames) {}
 
-  [[nodiscard]] const std::string& name() const override { return source_.name(); }
-  [[nodiscard]] const Camera& camera() const override { return camera_; }
   [[nodiscard]] int size() const override { return static_cast<int>(frames_.size()); }
   [[nodiscard]] double timestamp(int index) const override { return read(index).timestamp; }
   [[nodiscard]] Frame read(int index) const override { return frames_[static_cast<std::size_t>(index)]; }
   [[nodiscard]] FrameTruth truth(int) const override { return {}; }
-  [[nodiscard]] const Trajectory& ground_truth() const override { return none_; }
-  [[nodiscard]] bool has_depth() const override { return true; }
   [[nodiscard]] bool has_masks() const override { return false; }
-  [[nodiscard]] const std::vector<std::string>& warnings() const override { return no_warnings_; }
 
  private:
-  const FrameSource& source_;
   const std::vector<Frame>& frames_;
-  Camera camera_;
-  Trajectory none_;
-  std::vector<std::string> no_warnings_;
 };
 
 /// The RMS of the reprojection error of each frame, px; 0 where it could not be tracked.

@@ -18,8 +18,6 @@
 namespace stillpoint {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
-
 constexpr double kSettled = 0.1e-3, kSettledSigmas = 0.3;  // s and sigmas: a smaller change ends the runs
 constexpr double kTold = 2.5e-3;                           // s: a larger standard deviation tells nothing
 constexpr double kLongestTold = 0.06;  // s: a readout or a delay beyond two frames' time is no measurement
@@ -56,7 +54,8 @@ class KeepingDepth final : public WithCamera {
   mutable std::map<int, Kept> kept_;
 };
 
-TrackedStretch track(const FrameSource& source, const Camera& camera, Config config, int first, int count) {
+TrackedStretch track(const FrameSource& source, const Camera& camera, const Config& config, int first,
+                     int count) {
   const KeepingDepth seen_by(source, camera);
   RunOptions options;
   options.first = first, options.count = count;

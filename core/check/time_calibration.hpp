@@ -37,7 +37,8 @@ struct TimeCalibration {
 /// Times that are surely others than the camera's (by 4 ms and 4 standard deviations).
 [[nodiscard]] std::vector<Finding> check_times(const TimeCalibration& times, const Camera& camera);
 
-/// "colour's readout 22.9 ± 0.3 ms (30.0)", …: a line a time, in brackets what the camera has.
+/// "colour's readout 24.7 ± 0.3 ms (camera freiburg1: 25.0)", …: a line a time, in brackets what the camera
+/// has.
 [[nodiscard]] std::vector<std::string> to_lines(const TimeCalibration& times, const Camera& camera);
 
 struct TimeStretch {
@@ -54,10 +55,9 @@ struct TimeStretch {
 
 /// Colour's readout and its direction, depth's own readout, and how late depth is, without ground truth:
 /// where the residuals of the odometry are least. The configured method tracks a stretch; its map points, and
-/// where its frames saw them, then give poses and times together by Gauss-Newton (poses eliminated by their
-/// Schur complement, motion between frames quadratic in time), and the stretch is tracked again under these
-/// times until they stand. Depth is compared with the plane of inverse depth about a feature, moved to where
-/// the point was seen when its row was measured.
+/// where its frames saw them, then give poses, points and times together (timed_adjustment.hpp), and the
+/// stretch is tracked again under these times until they stand. Depth is compared with the plane of inverse
+/// depth about the place where the point was seen when its row was measured.
 /// @param source with depth; its camera's times are the start
 [[nodiscard]] TimeCalibration calibrate_time(const FrameSource& source, const Config& config,
                                              const TimeStretch& stretch = {});

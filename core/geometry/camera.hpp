@@ -34,7 +34,7 @@ struct Camera {
                            ///< taken first; 0 = global shutter
   double stamp_delay_s = 0.0;  ///< s from a colour image's stamp to the moment its middle row was taken,
                                ///< which is the frame's time: poses are of that moment
-  std::optional<double> depth_readout_s{};  ///< the same of depth images; nothing = as colour's
+  std::optional<double> depth_readout_s{};  ///< of depth images, as readout_s of colour's; nothing = the same
   double depth_delay_s = 0.0;  ///< s from a depth image's stamp to the moment its middle row was measured
   double baseline_m =
       0.0;  ///< m, to the right camera of a rectified stereo pair; 0 = depth is a sensor's own

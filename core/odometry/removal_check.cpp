@@ -27,18 +27,18 @@ SolvedPose solve_with_mask(BeforeFrame before, const Frame& image, const Prepare
                            const cv::Mat& mask, const MotionResult& weights, bool judged_by_pose) {
   FrameSolver& solver = before.solver;
   const LocalMap& map = before.mapper.map();
-  FrameRecord unused;  // but for the covariance
+  FrameRecord record;  // of which the covariance is kept
   FrameSolver::FirstPose first = solver.predict(image, map);
   if (solver.needs_first_pose(image)) {
-    first = solver.first_pose(image, prepared, mask, map, before.motion_settled, unused);
+    first = solver.first_pose(image, prepared, mask, map, before.motion_settled, record);
     if (first.found && judged_by_pose)
       before.mapper.remove_dynamic_points(image, mask, first.camera_from_world,
                                           solver.path().last().reference_keyframe);
   }
-  const FrameSolver::Solution solution = solver.solve(image, prepared, mask, weights, first, map, unused);
+  const FrameSolver::Solution solution = solver.solve(image, prepared, mask, weights, first, map, record);
   if (!solution.found()) return {};
   return {solution.frame.camera_from_world.inverse(),
-          largest_deviation(unused.pose_covariance.topLeftCorner<3, 3>())};
+          largest_deviation(record.pose_covariance.topLeftCorner<3, 3>())};
 }
 
 }  // namespace

@@ -157,11 +157,14 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
     }
     return whole;
   }
-  [[nodiscard]] Rendering film_colour(double seconds, double aside) const {
-    // What moves into a band while it is exposed; half as much again, for the bands in which it moves faster.
+  /// What moves into a band while it is exposed; half as much again, for the bands in which it moves faster.
+  [[nodiscard]] int rows_about(double seconds) const {
     const double blurred =
         1.5 * blur(instant(seconds - 0.5 * act_.exposure), instant(seconds + 0.5 * act_.exposure));
-    const int beyond = static_cast<int>(std::ceil(0.5 * std::min(kMostBlur, blurred))) + 2;
+    return static_cast<int>(std::ceil(0.5 * std::min(kMostBlur, blurred))) + 2;
+  }
+  [[nodiscard]] Rendering film_colour(double seconds, double aside) const {
+    const int beyond = filming_.readout_s == 0.0 ? 0 : rows_about(seconds);
     return film(filming_.readout_s, beyond, [&](const Camera& camera, double row) {
       const double now = seconds + filming_.row_time(row);
       return expose(camera, now, instant(now, aside), aside);
