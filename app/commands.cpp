@@ -17,6 +17,7 @@ void add_commands(CLI::App& app) {
   add_view_command(app);
   add_export_command(app);
   add_import_command(app);
+  add_outline_command(app);
   add_replay_command(app);
   add_config_command(app);
   add_manual_command(app);

@@ -29,6 +29,7 @@ void add_report_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_import_command(CLI::App& app);
+void add_outline_command(CLI::App& app);
 void add_replay_command(CLI::App& app);
 void add_config_command(CLI::App& app);
 void add_manual_command(CLI::App& app);

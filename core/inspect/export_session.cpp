@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 Marks marks_among(Marks marks, int frames) {
   std::erase_if(marks.bookmarks, [&](const Bookmark& mark) { return mark.frame >= frames; });
   std::erase_if(marks.pins, [&](const Pin& pin) { return pin.frame >= frames; });
+  std::erase_if(marks.drawn, [&](const DrawnFrame& drawn) { return drawn.frame >= frames; });
   if (marks.span && marks.span->last >= frames) marks.span.reset();
   marks.loop = marks.loop && marks.span;
   return marks;

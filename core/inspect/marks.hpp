@@ -29,6 +29,22 @@ struct Pin {
   bool operator==(const Pin&) const = default;
 };
 
+/// A corner of an outline.
+struct Corner {
+  double x = 0.0, y = 0.0;  ///< px; the middle of pixel (i, j) is (i, j)
+  bool operator==(const Corner&) const = default;
+};
+
+/// What a person drew round a moving object: a closed polygon, three corners or more.
+using Outline = std::vector<Corner>;
+
+/// A frame whose truth was drawn by hand: all that moves in it.
+struct DrawnFrame {
+  int frame = 0;
+  std::vector<Outline> movers;  ///< none: nothing moves
+  bool operator==(const DrawnFrame&) const = default;
+};
+
 /// A condition over what is recorded, and where it holds.
 struct Breakpoint {
   std::string expression;  ///< "rpe > 0.05 || inliers < 30"

@@ -36,6 +36,16 @@ Json to_json(const MarkedSequence& sequence, const Marks& marks) {
   json["breakpoints"] = Json::array();
   for (const Breakpoint& breakpoint : marks.breakpoints)
     json["breakpoints"].push_back({{"condition", breakpoint.expression}, {"enabled", breakpoint.enabled}});
+  json["drawn"] = Json::array();
+  for (const DrawnFrame& drawn : marks.drawn) {
+    Json movers = Json::array();
+    for (const Outline& outline : drawn.movers) {
+      Json corners = Json::array();
+      for (const Corner& corner : outline) corners.push_back({corner.x, corner.y});
+      movers.push_back(std::move(corners));
+    }
+    json["drawn"].push_back({{"frame", drawn.frame}, {"movers", std::move(movers)}});
+  }
   json["span"] = nullptr;
   if (marks.span)
     json["span"] = {{"first", marks.span->first}, {"last", marks.span->last}, {"loop", marks.loop}};
@@ -59,6 +69,10 @@ class MarksReader {
       marks.pins.push_back({frame(pin, "frame"), number(pin, "x"), number(pin, "y"), text(pin, "name")});
     for (const Json& breakpoint : list(json, "breakpoints"))
       marks.breakpoints.push_back({text(breakpoint, "condition"), yes(breakpoint, "enabled")});
+    for (const Json& drawn : list(json, "drawn"))
+      marks.drawn.push_back({frame(drawn, "frame"), outlines(member(drawn, "movers"))});
+    for (std::size_t i = 1; i < marks.drawn.size(); ++i)
+      if (marks.drawn[i].frame <= marks.drawn[i - 1].frame) refuse("its drawn frames are not in order");
     if (const Json span = json.value("span", Json()); !span.is_null()) {
       marks.span = FrameSpan{frame(span, "first"), frame(span, "last")};
       marks.loop = yes(span, "loop");
@@ -95,6 +109,24 @@ class MarksReader {
       refuse(fmt::format("\"{}\" is {}, expected a frame from 0 to {}", key, in_quotes(value.dump()),
                          sequence_.frames - 1));
     return value.get<int>();
+  }
+  [[nodiscard]] std::vector<Outline> outlines(const Json& json) const {
+    if (!json.is_array()) refuse("\"movers\" is no list");
+    std::vector<Outline> all;
+    for (const Json& corners : json) {
+      if (!corners.is_array() || corners.size() < 3) refuse("an outline is no list of three corners or more");
+      Outline& outline = all.emplace_back();
+      for (const Json& corner : corners) {
+        if (!corner.is_array() || corner.size() != 2) refuse("a corner is no pair of numbers");
+        outline.push_back({coordinate(corner[0]), coordinate(corner[1])});
+      }
+    }
+    return all;
+  }
+  [[nodiscard]] double coordinate(const Json& value) const {
+    constexpr double kFar = 1e5;  // px: no image is so large
+    if (!value.is_number() || !(std::abs(value.get<double>()) <= kFar)) refuse("a corner lies nowhere");
+    return value.get<double>();
   }
   [[nodiscard]] double number(const Json& json, const char* key) const {
     const Json value = member(json, key);

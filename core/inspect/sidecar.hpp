@@ -14,6 +14,7 @@ struct Marks {
   std::vector<Bookmark> bookmarks;
   std::vector<Pin> pins;
   std::vector<Breakpoint> breakpoints;
+  std::vector<DrawnFrame> drawn;  ///< truth drawn by hand, by frame
   std::optional<FrameSpan> span;
   bool loop = false;
   bool operator==(const Marks&) const = default;

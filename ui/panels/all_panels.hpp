@@ -31,6 +31,7 @@ struct MaskPanelInfo {
 enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_features_panel(FeatureMoment moment, Shared shared);
 
+[[nodiscard]] std::unique_ptr<Panel> make_outline_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_stages_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_feature_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_motion_panel(Shared shared);

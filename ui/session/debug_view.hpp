@@ -42,6 +42,7 @@ struct ExportView {
 struct DebugView {
   std::vector<Bookmark> bookmarks;  ///< by frame
   std::vector<Pin> pins;
+  std::vector<DrawnFrame> drawn;  ///< truth by hand, by frame
   std::vector<BreakpointView> breakpoints;
   std::optional<int> stopped_by;  ///< breakpoint at which play stopped last, index into breakpoints
   std::optional<FrameSpan> span;  ///< the frames selected
@@ -55,6 +56,7 @@ struct DebugView {
   double preview_ms = 0.0;              ///< what computing it took
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
+  bool masks_written = false;           ///< true masks were written into the sequence since it was opened
   std::string run_hash;                 ///< of all records so far, as `stillpoint run` prints it
   std::string sequence_hash;            ///< of the sequence, as sidecar and run folder keep it
 };
@@ -73,6 +75,11 @@ struct Bookmarks {
 struct Pins {
   std::vector<Pin> all;
 };  ///< replaces them
+struct Drawn {
+  std::vector<DrawnFrame> all;
+};  ///< replaces them
+/// What is drawn, carried to all frames, as the true masks in the sequence's folder.
+struct WriteTruth {};
 struct Breakpoints {
   std::vector<Breakpoint> all;
 };  ///< replaces them
@@ -117,9 +124,9 @@ struct SavePreset {
 }  // namespace request
 
 using SessionRequest =
-    std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Breakpoints,
-                 request::Span, request::Preview, request::RunAll, request::AddGhost, request::RemoveGhost,
-                 request::ExportFrames, request::ExportSession, request::StopExport, request::StagesBeside,
-                 request::SavePreset>;
+    std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
+                 request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
+                 request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
+                 request::StopExport, request::StagesBeside, request::SavePreset>;
 
 }  // namespace stillpoint

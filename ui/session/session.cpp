@@ -103,6 +103,7 @@ DebugView Session::debug_view() {
   DebugView debug = debug_;
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
+  debug.masks_written = masks_written_;
   if (export_) debug.exporting = export_->view();
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,

@@ -111,6 +111,8 @@ class Session {
   void carry_out(const request::Play& wanted);
   void carry_out(const request::Bookmarks& wanted);
   void carry_out(const request::Pins& wanted);
+  void carry_out(const request::Drawn& wanted);
+  void carry_out(const request::WriteTruth& wanted);
   void carry_out(const request::Breakpoints& wanted);
   void carry_out(const request::Span& wanted);
   void carry_out(const request::Preview& wanted);
@@ -170,6 +172,7 @@ class Session {
   std::chrono::steady_clock::time_point preview_asked_{};  // when it was asked for last
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
+  std::atomic<bool> masks_written_ = false;  // true masks, into the sequence
   std::unique_ptr<ExportJob> export_;  // the worker's; null while nothing is being written
 
   mutable std::mutex mutex_;  // guards what follows

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/export_session.hpp"
 #include "core/out_folder.hpp"
 #include "ui/session/session.hpp"
@@ -89,6 +90,23 @@ void Session::carry_out(const request::Bookmarks& wanted) {
 }
 
 void Session::carry_out(const request::Pins& wanted) { debug_.pins = wanted.all; }
+
+void Session::carry_out(const request::Drawn& wanted) { debug_.drawn = wanted.all; }
+
+void Session::carry_out(const request::WriteTruth& /*wanted*/) {
+  const std::filesystem::path folder = options_.sidecar ? options_.sidecar->folder : std::filesystem::path();
+  if (folder.empty() || options_.recorded)
+    throw InputError(fmt::format(
+        "{}: is no sequence in a folder, and masks go into one; `stillpoint outline` writes them elsewhere",
+        source_->name()));
+  refuse_without_images("There is nothing to carry outlines by");
+  write_beside(folder.string(), [this, drawn = debug_.drawn, folder](const ExportControl& control) {
+    const auto carried = write_drawn_truth(*source_, drawn, folder, control);
+    if (!carried) return fmt::format("stopped; the masks in {} are as they were", folder.string());
+    masks_written_ = true;
+    return fmt::format("{}, written to {}", carried->told(), folder.string());
+  });
+}
 
 void Session::carry_out(const request::Breakpoints& wanted) {
   breakpoints_.set(wanted.all);

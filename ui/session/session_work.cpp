@@ -154,6 +154,7 @@ void Session::open_sidecar() {
   // What was marked before there was time to look stays.
   if (debug_.bookmarks.empty()) debug_.bookmarks = std::move(kept.bookmarks);
   if (debug_.pins.empty()) debug_.pins = std::move(kept.pins);
+  if (debug_.drawn.empty()) debug_.drawn = std::move(kept.drawn);
   if (breakpoints_.empty()) breakpoints_.set(kept.breakpoints);
   if (!debug_.span) debug_.span = kept.span, debug_.loop = kept.loop;
   breakpoints_due_ = true;
@@ -161,7 +162,7 @@ void Session::open_sidecar() {
 }
 
 Marks Session::marks() const {
-  return {debug_.bookmarks, debug_.pins, breakpoints_.breakpoints(), debug_.span, debug_.loop};
+  return {debug_.bookmarks, debug_.pins, breakpoints_.breakpoints(), debug_.drawn, debug_.span, debug_.loop};
 }
 
 void Session::save_marks() {

@@ -131,15 +131,15 @@ void draw_pictures(const ImageContent& content, const ImageResponse& response,
   }
 }
 
-void handle_mouse(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
-                  ImVec2 panel_min, ImageResponse& response) {
+void handle_mouse(ImageView& view, bool drawn_on, const Eigen::Vector2d& image_size,
+                  const Eigen::Vector2d& panel_size, ImVec2 panel_min, ImageResponse& response) {
   const ImGuiIO& io = ImGui::GetIO();
   const Eigen::Vector2d cursor = to_vector(io.MousePos) - to_vector(panel_min);
   if (ImGui::IsItemHovered()) {
     if (io.MouseWheel != 0.0F) {
       zoom_about(view, image_size, panel_size, cursor, std::pow(kWheelFactor, io.MouseWheel));
     }
-    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) view = ImageView{};
+    if (!drawn_on && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) view = ImageView{};
     const auto released_in_place = [](ImGuiMouseButton button) {
       const ImVec2 moved = ImGui::GetMouseDragDelta(button, 0.0F);
       return ImGui::IsMouseReleased(button) && std::hypot(moved.x, moved.y) < kClickSlack;
@@ -149,6 +149,7 @@ void handle_mouse(ImageView& view, const Eigen::Vector2d& image_size, const Eige
   }
   if (!ImGui::IsItemActive()) return;
   for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right, ImGuiMouseButton_Middle}) {
+    if (drawn_on && button == ImGuiMouseButton_Left) continue;
     if (!ImGui::IsMouseDragging(button, kClickSlack)) continue;
     pan_by(view, image_size, panel_size, to_vector(io.MouseDelta));
     return;
@@ -183,7 +184,7 @@ ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageConten
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   ImageResponse response;
-  if (present) handle_mouse(view, image_size, panel_size, low, response);
+  if (present) handle_mouse(view, content.drawn_on, image_size, panel_size, low, response);
   response.map = ImageMap(view, image_size, panel_size);
   response.panel_min = low;
   response.panel_max = high;

@@ -25,6 +25,7 @@ struct ImageContent {
   const cv::Mat* values =
       nullptr;  ///< whose numbers stand on the pixels when zoomed in; any depth, 1 or 3 channels
   std::string absent = "No image";    ///< says what is missing
+  bool drawn_on = false;              ///< the left button draws: it neither pans nor fits the image
   float wipe = 1.0F;                  ///< share of the width, from the left, that `texture` covers …
   const Texture* wiped_to = nullptr;  ///< … over this one
 };

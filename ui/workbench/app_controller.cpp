@@ -83,6 +83,7 @@ WorkbenchHost AppController::host() {
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
           .open = [this](const std::string& where) { open(where); },
+          .reopen = [this] { reopen(); },
           .request = [this](SessionRequest wanted) { request(std::move(wanted)); },
           .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
 }
@@ -167,6 +168,10 @@ void AppController::open(const std::string& where) {
   begin_opening(sequence, options_.config, std::nullopt);
 }
 
+void AppController::reopen() {
+  if (session_ && !opening_.valid()) begin_opening(as_left(), options_.config, std::nullopt);
+}
+
 void AppController::open_last(const Config* config) {
   if (options_.settings.recent.empty()) return;
   const RecentSequence last = options_.settings.recent.front();
@@ -233,6 +238,8 @@ void AppController::draw(UiFrame& frame) {
   take_opened();
   for (const std::string& path : frame.dropped_files) open(path);
   const auto view = this->view();
+  // The masks that were drawn are the sequence's from now on.
+  if (view && view->debug.masks_written) reopen();
   workbench_.draw(frame, view.get());
   frame.busy = frame.busy || !idle();
   options_.settings.look = frame.wanted_look;

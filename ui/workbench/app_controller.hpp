@@ -44,7 +44,9 @@ class AppController {
   /// Opens a sequence soon, as it was left where it was open before; when that fails the one open stays, and
   /// the workbench says why. Of several asked for meanwhile, the last is opened.
   void open(const std::string& where);
-  /// The same with what is open already. @param reading how it was read
+  /// Opens the sequence shown anew, at the frame shown: its files have changed.
+  void reopen();
+  /// The same as open() with what is open already. @param reading how it was read
   void show(OpenedSource place, const std::string& where, std::vector<std::string> reading = {});
   /// Opens the sequence that was open last, if any. @param config null: as it was left
   void open_last(const Config* config);

@@ -27,6 +27,12 @@ void Workbench::add_actions() {
                 .icon = icons::kFilm,
                 .enabled = [this] { return static_cast<bool>(host_.open); },
                 .run = [this] { after_frame_ = [this] { host_.open("generated:walking_static"); }; }});
+  actions_.add({.name = "reopen",
+                .title = "Open this sequence again",
+                .group = "File",
+                .keys = {{Key::kF5, {}}},
+                .enabled = [this] { return session_ != nullptr && host_.reopen; },
+                .run = [this] { after_frame_ = host_.reopen; }});
   actions_.add({.name = "hand_on",
                 .title = "Hand this session on as a folder…",
                 .group = "File",
