@@ -4,89 +4,34 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/arguments.hpp"
-#include "app/benchmark_repeats.hpp"
+#include "app/benchmark_tables.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
-#include "core/evaluation/benchmark_results.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/outside_run.hpp"
 #include "core/run/records_file.hpp"
+#include "core/run/repeats.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr const char* kResultsName = "results.json";
-
 struct BenchmarkArguments {
   std::vector<std::string> sequences, methods = usual_methods(), engines;
+  std::vector<std::string> outside;  // NAME=FILE each
   std::string out;
   bool force = false, resume = false;
   int repeats = 1;
   ConfigArguments config;
   SequenceArguments frames;
 };
-
-BenchmarkResult result_of(const RunReport& report) {
-  BenchmarkResult result;
-  result.sequence = report.sequence;
-  result.odometry = report.odometry;
-  result.method = report.method;
-  result.frames = report.frames;
-  result.coverage = report.coverage;
-  if (const auto& e = report.evaluation) {
-    if (e->ate.translation_m.count > 0) result.ate_m = e->ate.translation_m.rmse;
-    if (e->rpe_time.translation_m.count > 0) {
-      result.pairs = e->rpe_time.translation_m.count;
-      result.rpe_m = e->rpe_time.translation_m.rmse;
-      result.rpe_deg = e->rpe_time.rotation_deg.rmse;
-    }
-    if (e->rpe_frame.translation_m.count > 0) result.rpe_frame_m = e->rpe_frame.translation_m.rmse;
-  }
-  if (report.scores.known && !method_named(report.method).baseline) {
-    result.precision = report.scores.mask.precision();
-    result.recall = report.scores.mask.recall();
-    result.iou = report.scores.mask.iou();
-    result.partial_recall = report.scores.partial_mask.recall();
-    result.right = report.scores.removal.removed_rightly;
-    result.wrong = report.scores.removal.removed_wrongly;
-  }
-  result.median_ms = report.speed.median_ms;
-  result.p99_ms = report.speed.p99_ms;
-  result.units = report.speed.units;
-  result.hash = report.hash;
-  return result;
-}
-
-/// Table 1 once an engine: gains are over the baseline behind the same one.
-std::string tables_text(const BenchmarkResults& results, const BenchmarkArguments& arguments) {
-  std::string text;
-  for (const std::string& engine : arguments.engines) {
-    if (arguments.engines.size() > 1)
-      text += fmt::format("{}Odometry {}\n\n", text.empty() ? "" : "\n", engine);
-    text += to_markdown(table_one(results, engine, arguments.methods, baseline_method().name));
-  }
-  return text;
-}
-
-void write_tables(const BenchmarkResults& results, const BenchmarkArguments& arguments) {
-  const std::filesystem::path folder = arguments.out;
-  write_text_file(folder / kResultsName, to_json(results).dump(2) + "\n");
-  write_text_file(folder / "table1.md", tables_text(results, arguments));
-  for (const std::string& engine : arguments.engines)
-    write_text_file(
-        folder / (engine == arguments.engines.front() ? "table1.csv" : fmt::format("table1_{}.csv", engine)),
-        to_csv(table_one(results, engine, arguments.methods, baseline_method().name)));
-  write_text_file(folder / "details.md", to_markdown(details_table(results)));
-  write_text_file(folder / "details.csv", to_csv(details_table(results)));
-}
 
 /// The config that all of a benchmark's runs share.
 std::string shared_config(Config config) {
@@ -130,6 +75,14 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
     wants_masks = wants_masks || method_of(config).needs.true_mask;
     if (!methods.insert(method).second) throw InputError(fmt::format("--methods names {} twice", method));
   }
+  for (const std::string& outside : arguments.outside) {
+    const OutsideRunFiles files = outside_run_argument(outside);
+    if (!methods.insert(files.name).second) throw InputError(fmt::format("--run names {} twice", files.name));
+    if (std::any_of(stillpoint::methods().begin(), stillpoint::methods().end(),
+                    [&files](const MethodInfo& method) { return method.name == files.name; }))
+      throw InputError(
+          fmt::format("--run {}: is called like one of the methods; NAME=FILE names it", outside));
+  }
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .oracle = wants_masks}));
@@ -155,12 +108,14 @@ int frames_of(const FrameSource& source, int asked) {
 }
 
 /// @param records null where the run is not kept
-RunResult run_one(const FrameSource& source, const Config& config, int frames, RecordsWriter* records) {
+RunResult run_one(const FrameSource& source, const Config& config, int first, int frames,
+                  const std::string& label, RecordsWriter* records) {
   RunOptions options;
+  options.first = first;
   options.count = frames;
   options.stop = &stop_requested();
   options.measure_orb_unit = true;
-  Progress progress(fmt::format("{} ({})", source.name(), run_label(config)), frames_of(source, frames));
+  Progress progress(label, frames);
   options.on_frame = [&progress, records](const FrameResult& frame) {
     if (records != nullptr) records->add(frame);
     progress.advance(std::string(to_string(frame.record.status)));
@@ -168,75 +123,125 @@ RunResult run_one(const FrameSource& source, const Config& config, int frames, R
   return run_sequence(source, config, options);
 }
 
-/// A run, kept below `runs` where an origin is given. Nothing where it was interrupted: half a run is no run
-/// to compare with.
-std::optional<RunReport> run_and_keep(const FrameSource& source, const Config& config, int frames,
-                                      const std::filesystem::path& runs, bool force,
-                                      const std::optional<SequenceOrigin>& origin) {
-  const std::filesystem::path folder = runs / run_label(config);
+/// A sequence of the benchmark.
+struct Place {
+  const FrameSource& source;
+  std::string name;                        ///< numbered where several sequences share it
+  int frames = 0;                          ///< so many are run
+  std::optional<SequenceOrigin> origin{};  ///< where runs are kept …
+  std::filesystem::path runs{};            ///< … below this
+};
+
+/// A run, kept where the benchmark has a folder and the run is the one without perturbation. Nothing where it
+/// was interrupted: half a run is no run to compare with.
+std::optional<BenchmarkResult> run_and_keep(const Place& place, const Config& config, int repeat,
+                                            const BenchmarkArguments& arguments) {
+  const Perturbation by = perturbation(repeat);
+  const std::filesystem::path folder = place.runs / run_label(config);
   std::optional<RecordsWriter> records;
-  if (origin) {
-    prepare_run_folder(folder, force);
-    records.emplace(folder, *origin, config);
+  if (place.origin && repeat == 0) {
+    prepare_run_folder(folder, arguments.force || arguments.resume);
+    records.emplace(folder, *place.origin, config);
   }
-  const RunResult result = run_one(source, config, frames, records ? &*records : nullptr);
+  const std::string label =
+      arguments.repeats > 1
+          ? fmt::format("{} ({}, {} of {})", place.name, run_label(config), repeat + 1, arguments.repeats)
+          : fmt::format("{} ({})", place.name, run_label(config));
+  const int first = std::min(by.first_frame, place.frames - 1);
+  const RunResult result = run_one(place.source, perturbed(config, by), first, place.frames - first, label,
+                                   records ? &*records : nullptr);
   if (result.interrupted) {
     if (records) std::filesystem::remove(folder / kRecordsName);
     return std::nullopt;
   }
-  RunReport report = report_on(result, source);
+  const RunReport report = report_on(result, place.source);
   if (records) {
-    write_run(folder, result, report, source, *origin);
-    records->finish(result, source.ground_truth());
+    write_run(folder, result, report, place.source, *place.origin);
+    records->finish(result, place.source.ground_truth());
   }
-  return report;
+  BenchmarkResult reached = result_of(report, !method_named(report.method).baseline);
+  reached.sequence = place.name;
+  reached.repeat = repeat;
+  return reached;
+}
+
+/// Where another program's run of a sequence lies: {} stands for the sequence's name.
+OutsideRunFiles outside_files(const std::string& argument, const std::string& sequence) {
+  OutsideRunFiles files = outside_run_argument(argument);
+  if (const auto at = files.where.find("{}"); at != std::string::npos) files.where.replace(at, 2, sequence);
+  return files;
+}
+
+/// Measures another program's run by the frames that ours are measured by.
+BenchmarkResult measure_outside(const Place& place, const SequenceOrigin& origin,
+                                const std::string& argument) {
+  std::vector<std::string> warnings;
+  const RecordedRun recorded =
+      read_outside_run(place.source, origin, outside_files(argument, place.source.name()), warnings);
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
+  const bool judges = std::any_of(recorded.masks.begin(), recorded.masks.end(),
+                                  [](const PackedMask& mask) { return !mask.empty(); });
+  BenchmarkResult reached = result_of(report_on(recorded.run, place.source), judges);
+  reached.sequence = place.name;
+  reached.method = recorded.outside;
+  reached.odometry = kItsOwnOdometry;
+  reached.hash.clear();
+  return reached;
 }
 
 void benchmark(BenchmarkArguments arguments) {
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
   const auto sources = open_all(arguments, config);
-  if (arguments.repeats > 1) {
-    RepeatPlan plan{{},           arguments.methods, arguments.engines,
-                    config,       arguments.repeats, arguments.frames.frames,
-                    arguments.out};
-    for (const auto& source : sources) plan.sources.push_back(source.get());
-    benchmark_repeats(plan);
-    return;
-  }
   BenchmarkResults results = made_here();
   results.config = shared_config(config);
   if (arguments.resume) results.runs = earlier_runs(arguments, config);
+  BenchmarkColumns columns{arguments.engines, arguments.methods, arguments.repeats > 1};
+  for (const std::string& outside : arguments.outside)
+    columns.methods.push_back(outside_run_argument(outside).name);
+
   std::set<std::string> taken, names;
-  const std::vector<std::string> places = expanded_sequences(arguments.sequences);
-  for (std::size_t i = 0; i < sources.size() && !stop_requested(); ++i) {
-    const auto& source = sources[i];
-    std::optional<SequenceOrigin> origin;
-    if (!arguments.out.empty()) origin = origin_of(*source, places[i], arguments.frames.options(config));
-    const auto runs = runs_folder(arguments.out, source->name(), taken);
-    const int frames = frames_of(*source, arguments.frames.frames);
-    std::string name = source->name();  // numbered where several sequences share it
-    for (int number = 2; !names.insert(name).second; ++number)
-      name = fmt::format("{} {}", source->name(), number);
-    for (const std::string& engine : arguments.engines)
-      for (const std::string& method : arguments.methods) {
-        const BenchmarkResult* known = results.find(name, engine, method);
-        if (stop_requested() || (known != nullptr && known->frames == frames)) continue;
-        if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
-        set_parameter(config, "run.odometry=" + engine);
-        set_parameter(config, "run.method=" + method);
-        const std::optional<RunReport> report =
-            run_and_keep(*source, config, frames, runs, arguments.force || arguments.resume, origin);
-        if (!report) continue;
-        results.runs.push_back(result_of(*report));
-        results.runs.back().sequence = name;
-        // After each run, so that an interrupted benchmark keeps what it has.
-        if (!arguments.out.empty()) write_tables(results, arguments);
-      }
+  std::vector<Place> places;
+  const std::vector<std::string> where = expanded_sequences(arguments.sequences);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const FrameSource& source = *sources[i];
+    Place place{source, source.name(), frames_of(source, arguments.frames.frames)};
+    for (int number = 2; !names.insert(place.name).second; ++number)
+      place.name = fmt::format("{} {}", source.name(), number);
+    const SequenceOrigin origin = origin_of(source, where[i], arguments.frames.options(config));
+    if (!arguments.out.empty()) {
+      place.origin = origin;
+      place.runs = runs_folder(arguments.out, source.name(), taken);
+    }
+    // Measured at once: what is wrong with a file is told before the first frame.
+    for (const std::string& outside : arguments.outside) {
+      const BenchmarkResult reached = measure_outside(place, origin, outside);
+      std::erase_if(results.runs, [&reached](const BenchmarkResult& r) {
+        return r.sequence == reached.sequence && r.method == reached.method;
+      });
+      results.runs.push_back(reached);
+    }
+    places.push_back(std::move(place));
   }
-  if (!arguments.out.empty() && !results.runs.empty()) write_tables(results, arguments);
-  fmt::print("Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
-             tables_text(results, arguments), to_markdown(details_table(results)));
+  for (const Place& place : places)
+    for (const std::string& engine : arguments.engines)
+      for (const std::string& method : arguments.methods)
+        for (int repeat = 0; repeat < arguments.repeats && !stop_requested(); ++repeat) {
+          const BenchmarkResult* known = results.find(place.name, engine, method, repeat);
+          const int frames = place.frames - std::min(perturbation(repeat).first_frame, place.frames - 1);
+          if (known != nullptr && known->frames == frames) continue;
+          if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
+          set_parameter(config, "run.odometry=" + engine);
+          set_parameter(config, "run.method=" + method);
+          const auto reached = run_and_keep(place, config, repeat, arguments);
+          if (!reached) continue;
+          results.runs.push_back(*reached);
+          // After each run, so that an interrupted benchmark keeps what it has.
+          if (!arguments.out.empty()) write_tables(results, columns, arguments.out);
+        }
+  if (!arguments.out.empty() && !results.runs.empty()) write_tables(results, columns, arguments.out);
+  fmt::print("{}", tables_text(results, columns));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
   throw_if_interrupted();
 }
@@ -272,6 +277,9 @@ void add_benchmark_command(CLI::App& app) {
           "Run each so many times, with a few features more or fewer, another seed and first frame, and "
           "print median and spread; --out has them as Markdown, CSV, JSON and LaTeX")
       ->check(CLI::Range(1, 99));
+  command->add_option("--run", arguments->outside,
+                      "Another program's run as a further column: NAME=FILE or NAME=FOLDER, as import takes "
+                      "it; {} in it stands for the sequence's name");
   arguments->config.add_to(*command, false);
   arguments->frames.add_to(*command);
   command->callback([arguments] { benchmark(*arguments); });

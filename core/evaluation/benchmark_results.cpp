@@ -26,6 +26,7 @@ nlohmann::ordered_json run_json(const BenchmarkResult& r) {
   json["sequence"] = r.sequence;
   json["odometry"] = r.odometry;
   json["method"] = r.method;
+  json["repeat"] = r.repeat;
   json["frames"] = r.frames;
   json["coverage"] = r.coverage;
   json["ate_m"] = or_null(r.ate_m);
@@ -51,6 +52,7 @@ BenchmarkResult run_from(const nlohmann::json& json) {
   json.at("sequence").get_to(r.sequence);
   json.at("odometry").get_to(r.odometry);
   json.at("method").get_to(r.method);
+  r.repeat = json.value("repeat", 0);
   json.at("frames").get_to(r.frames);
   json.at("coverage").get_to(r.coverage);
   read_optional(json, "ate_m", r.ate_m);
@@ -80,9 +82,10 @@ std::string whole(const std::optional<std::int64_t>& value) { return value ? std
 }  // namespace
 
 const BenchmarkResult* BenchmarkResults::find(const std::string& sequence, const std::string& odometry,
-                                              const std::string& method) const {
+                                              const std::string& method, int repeat) const {
   const auto it = std::find_if(runs.begin(), runs.end(), [&](const BenchmarkResult& r) {
-    return r.sequence == sequence && r.odometry == odometry && r.method == method;
+    return r.sequence == sequence && (r.odometry == odometry || r.odometry == kItsOwnOdometry) &&
+           r.method == method && r.repeat == repeat;
   });
   return it == runs.end() ? nullptr : &*it;
 }
@@ -135,7 +138,7 @@ Table table_one(const BenchmarkResults& results, const std::string& odometry,
     BenchmarkRow row{sequence, {}};
     for (const std::string& method : methods)
       if (const BenchmarkResult* r = results.find(sequence, odometry, method))
-        row.cells.push_back({method, r->rpe_m, r->coverage, r->pairs});
+        row.cells.push_back({method, r->rpe_m, r->coverage, r->pairs, r->odometry == kItsOwnOdometry});
     if (!row.cells.empty()) rows.push_back(std::move(row));
   }
   return table_one(rows, methods, baseline);
@@ -147,13 +150,18 @@ Table details_table(const BenchmarkResults& results) {
                   "RPE 1 s m", "RPE 1 s deg", "pairs",          "RPE 1 frame m",   "mask precision",
                   "recall",    "IoU",         "forward recall", "removed rightly", "removed wrongly",
                   "median ms", "p99 ms",      "ORB units"};
-  for (const BenchmarkResult& r : results.runs)
+  for (const BenchmarkResult& r : results.runs) {
+    if (r.repeat != 0) continue;
+    const bool timed = r.median_ms > 0.0;
+    const auto time = [timed](double value, int digits) {
+      return timed ? fmt::format("{:.{}f}", value, digits) : std::string("-");
+    };
     table.rows.push_back({r.sequence, r.odometry, r.method, fmt::format("{:.1f}", 100.0 * r.coverage),
                           figure(r.ate_m, 4), figure(r.rpe_m, 4), figure(r.rpe_deg, 3),
                           std::to_string(r.pairs), figure(r.rpe_frame_m, 5), figure(r.precision, 3),
                           figure(r.recall, 3), figure(r.iou, 3), figure(r.partial_recall, 3), whole(r.right),
-                          whole(r.wrong), fmt::format("{:.1f}", r.median_ms), fmt::format("{:.1f}", r.p99_ms),
-                          fmt::format("{:.2f}", r.units)});
+                          whole(r.wrong), time(r.median_ms, 1), time(r.p99_ms, 1), time(r.units, 2)});
+  }
   return table;
 }
 

@@ -16,6 +16,7 @@ namespace stillpoint {
 /// What one run of a benchmark reached. A figure is absent where there is nothing to measure it by.
 struct BenchmarkResult {
   std::string sequence, odometry, method;
+  int repeat = 0;  ///< which of several runs, each a little perturbed; 0 = as it is
   int frames = 0;
   double coverage = 1.0;                     ///< share of frames with a pose, 0 to 1
   std::optional<double> ate_m;               ///< m, RMSE
@@ -32,6 +33,9 @@ struct BenchmarkResult {
   bool operator==(const BenchmarkResult&) const = default;
 };
 
+/// In place of an engine's name, for another program's run: it stands beside the runs behind any engine.
+inline constexpr const char* kItsOwnOdometry = "its own";
+
 /// A benchmark's results.
 struct BenchmarkResults {
   std::string version, commit;  ///< of the program
@@ -41,9 +45,9 @@ struct BenchmarkResults {
   std::string config;           ///< TOML, but for method and odometry
   std::vector<BenchmarkResult> runs;
 
-  /// Null where there is none.
+  /// Null where there is none. Another program's run is found behind any engine.
   [[nodiscard]] const BenchmarkResult* find(const std::string& sequence, const std::string& odometry,
-                                            const std::string& method) const;
+                                            const std::string& method, int repeat = 0) const;
   /// In the order in which they first appear.
   [[nodiscard]] std::vector<std::string> sequences() const;
 };

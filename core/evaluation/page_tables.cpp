@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/evaluation/spread.hpp"
 
 namespace stillpoint {
 namespace {
@@ -158,7 +159,7 @@ Table figure_table(const BenchmarkResults& results, const Request& request, cons
   if (found == figures().end()) {
     Names names;
     for (const auto& [name, figure] : figures()) names.push_back(name);
-    throw InputError(fmt::format("{}: a table asks for '{}'; there are {}, published, made", where,
+    throw InputError(fmt::format("{}: a table asks for '{}'; there are {}, spread, published, made", where,
                                  request.what, fmt::join(names, ", ")));
   }
   const Names there_engines = all_of(results, &BenchmarkResult::odometry),
@@ -191,6 +192,15 @@ std::string table_text(const Request& request, const BenchmarkResults& all, cons
   if (results.runs.empty())
     throw InputError(
         fmt::format("{}: a table of {} asks for sequences that it has none of", where, request.file));
+  if (request.what == "spread") {
+    const Names methods =
+        request.methods.empty() ? all_of(results, &BenchmarkResult::method) : request.methods;
+    throw_if_unknown(methods, all_of(results, &BenchmarkResult::method), "method", where);
+    const SpreadTable table = spread_of_runs(
+        results, request.engines.empty() ? all_of(results, &BenchmarkResult::odometry) : request.engines,
+        methods);
+    return spread_text(table.rows, table.methods, "RPE 1 s, m", TableMarkup::markdown);
+  }
   if (request.what != "published") return to_markdown(figure_table(results, request, baseline, where));
   const Names methods = request.methods.empty() ? all_of(results, &BenchmarkResult::method) : request.methods;
   throw_if_unknown(methods, all_of(results, &BenchmarkResult::method), "method", where);

@@ -22,6 +22,7 @@ namespace stillpoint {
 //   right                       of the features removed, the share on what is dynamic
 //   ms p99 units                time a frame
 //   lost                        frames without a pose
+//   spread                      median RPE and half the distance of its quartiles, of a benchmark's --repeat
 //   published                   Table 1 of the paper with our columns beside it
 //   made                        no table: what the results were made by, in a sentence
 // Choices: methods=A,B and odometry=A,B (both in the order of the columns; otherwise all there are);

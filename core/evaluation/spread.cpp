@@ -103,14 +103,49 @@ Ranking rank(const std::vector<Spread>& spreads) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return spreads[a].median < spreads[b].median; });
   const auto stands_out = [&](std::size_t place) {
-    if (place + 1 >= order.size() || spreads[order[place]].failed > 0) return false;
+    if (place + 1 >= order.size()) return false;
+    const Spread& one = spreads[order[place]];
+    if (one.failed > 0 || one.values.size() < 2) return false;
     return std::all_of(order.begin() + static_cast<std::ptrdiff_t>(place) + 1, order.end(),
-                       [&](std::size_t other) { return spreads[order[place]].upper < spreads[other].lower; });
+                       [&](std::size_t other) { return one.upper < spreads[other].lower; });
   };
   Ranking ranking;
   if (stands_out(0)) ranking.best = order[0];
   if (ranking.best && stands_out(1)) ranking.second = order[1];
   return ranking;
+}
+
+SpreadTable spread_of_runs(const BenchmarkResults& results, const std::vector<std::string>& engines,
+                           const std::vector<std::string>& methods) {
+  struct Column {
+    std::string engine, method;
+  };
+  std::vector<Column> columns;
+  SpreadTable table;
+  const auto is_outside = [&results](const std::string& method) {
+    return std::any_of(results.runs.begin(), results.runs.end(), [&method](const BenchmarkResult& r) {
+      return r.method == method && r.odometry == kItsOwnOdometry;
+    });
+  };
+  for (const std::string& engine : engines)
+    for (const std::string& method : methods) {
+      const bool outside = is_outside(method);
+      if (outside && engine != engines.front()) continue;
+      columns.push_back({outside ? kItsOwnOdometry : engine, method});
+      table.methods.push_back(engines.size() > 1 && !outside ? engine + ", " + method : method);
+    }
+  for (const std::string& sequence : results.sequences()) {
+    SpreadRow row{sequence, {}};
+    for (const Column& column : columns) {
+      std::vector<std::optional<double>> values;
+      for (const BenchmarkResult& r : results.runs)
+        if (r.sequence == sequence && r.odometry == column.engine && r.method == column.method)
+          values.push_back(r.coverage < kLostCoverage ? std::nullopt : r.rpe_m);
+      row.cells.push_back(spread_of(values));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 std::string spread_text(const std::vector<SpreadRow>& rows, const std::vector<std::string>& methods,

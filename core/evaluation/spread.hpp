@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/benchmark_results.hpp"
 #include "core/evaluation/tables.hpp"
 
 namespace stillpoint {
@@ -23,7 +24,8 @@ struct Spread {
 [[nodiscard]] Spread spread_of(const std::vector<std::optional<double>>& values);
 
 /// Which of several is the best, and which the second: smaller is better. Only where that survives the
-/// spread: its upper quartile lies below the lower one of all that come after it, and not a run of it failed.
+/// spread: its upper quartile lies below the lower one of all that come after it, not a run of it failed, and
+/// there were several: one run has no spread.
 struct Ranking {
   std::optional<std::size_t> best, second;
 };
@@ -34,6 +36,18 @@ struct SpreadRow {
   std::string sequence;
   std::vector<Spread> cells;  ///< one a method
 };
+
+/// A table of spreads.
+struct SpreadTable {
+  std::vector<std::string> methods;  ///< of the columns: "paper", or "dso, paper" where there are engines
+  std::vector<SpreadRow> rows;
+};
+
+/// The RPE over 1 s of all runs of a benchmark, by sequence, engine and method. A run that lost half its
+/// frames has no figure. @param engines, methods of the columns; another program's run stands once
+[[nodiscard]] SpreadTable spread_of_runs(const BenchmarkResults& results,
+                                         const std::vector<std::string>& engines,
+                                         const std::vector<std::string>& methods);
 
 /// How a table is written down.
 enum class TableMarkup { markdown, latex, csv };

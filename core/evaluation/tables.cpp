@@ -30,7 +30,9 @@ std::string metres(const std::optional<double>& value) {
 }
 
 std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.1f} %", 100.0 * *share) : std::string(kNoFigure);
+  if (!share) return kNoFigure;
+  const std::string text = fmt::format("{:.1f} %", 100.0 * *share);
+  return text == "-0.0 %" ? text.substr(1) : text;
 }
 
 std::string cell_text(const BenchmarkCell* cell) {
@@ -152,7 +154,14 @@ Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::st
   Table table;
   table.header = {"RPE 1 s, RMSE [m]", "ORB-SLAM2 VO", "paper, published", "ref 7", "ref 12",
                   "published gain"};
-  for (const std::string& method : methods) table.header.push_back("ours: " + method);
+  const auto is_outside = [&rows](const std::string& method) {
+    return std::any_of(rows.begin(), rows.end(), [&method](const BenchmarkRow& row) {
+      const BenchmarkCell* cell = find_cell(row, method);
+      return cell != nullptr && cell->outside;
+    });
+  };
+  for (const std::string& method : methods)
+    table.header.push_back(is_outside(method) ? method : "ours: " + method);
   for (const std::string& method : methods)
     if (method != baseline) table.header.push_back("gain: " + method);
 

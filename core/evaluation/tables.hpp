@@ -48,6 +48,7 @@ struct BenchmarkCell {
   std::optional<double> rpe_m;  ///< translational RPE over 1 s, RMSE in m; nothing = no pair to measure
   double coverage = 1.0;        ///< share of frames with a pose, 0 to 1
   int pairs = 0;                ///< the RPE is over
+  bool outside = false;         ///< another program made it
 };
 
 /// What all methods reached on one sequence.

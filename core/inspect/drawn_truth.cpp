@@ -41,7 +41,7 @@ class Carrier {
       if (!frame.readable())
         throw InputError(
             fmt::format("{}: frame {}, which was drawn, cannot be read", source_.name(), one.frame));
-      masks_[one.frame] = mask_of(one.movers, frame.gray.size());
+      masks_[one.frame] = mask_of_outlines(one.movers, frame.gray.size());
       give(one.frame, masks_[one.frame]);
       ++result_.drawn;
     }
@@ -144,7 +144,7 @@ std::string list_text(const FrameSource& source, const std::vector<DrawnFrame>& 
 
 }  // namespace
 
-cv::Mat mask_of(const std::vector<Outline>& movers, cv::Size size) {
+cv::Mat mask_of_outlines(const std::vector<Outline>& movers, cv::Size size) {
   constexpr int kShift = 4;  // bits behind the point
   cv::Mat mask = cv::Mat::zeros(size, CV_8UC1);
   for (const Outline& outline : movers) {

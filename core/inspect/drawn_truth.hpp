@@ -17,7 +17,7 @@ namespace stillpoint {
 // (mask_carrying.hpp). What comes out is the sequence's true masks from then on.
 
 /// What outlines enclose. @returns CV_8UC1 of that size, 255 = inside any of them
-[[nodiscard]] cv::Mat mask_of(const std::vector<Outline>& movers, cv::Size size);
+[[nodiscard]] cv::Mat mask_of_outlines(const std::vector<Outline>& movers, cv::Size size);
 
 /// A mask's regions as outlines that can be corrected, the largest first; regions below 60 px are left out.
 /// Holes are filled.

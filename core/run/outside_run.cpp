@@ -198,6 +198,21 @@ Trajectory read_poses(const FrameSource& source, const FrameFinder& frames, cons
   return std::move(file.poses);
 }
 
+/// Takes out the poses before the first frame and after the last, which frames that are run are not measured
+/// by either.
+void leave_out_beyond(const FrameFinder& frames, const std::string& path, Trajectory& poses,
+                      std::vector<std::string>& warnings) {
+  const double begin = frames.stamps().front() - kAssociationTolerance,
+               end = frames.stamps().back() + kAssociationTolerance;
+  if (const auto out = std::erase_if(
+          poses, [&](const StampedPose& pose) { return pose.timestamp < begin || pose.timestamp > end; });
+      out > 0)
+    warnings.push_back(
+        fmt::format("{}: {} of its poses lie before the first frame or after the last, and are "
+                    "left out",
+                    path, out));
+}
+
 /// A record a frame: where the trajectory has a pose, and where it has none.
 std::vector<FrameRecord> lay_onto_frames(const Trajectory& poses, const FrameFinder& frames) {
   std::vector<FrameRecord> records(frames.stamps().size());
@@ -273,8 +288,10 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
   run.config.run.method = baseline_method().name;
   run.frames_in_sequence = source.size();
   run.trajectory = read_poses(source, frames, files, path, warnings);
-  run.live = run.trajectory;
+  leave_out_beyond(frames, path, run.trajectory, warnings);
   run.records = lay_onto_frames(run.trajectory, frames);
+  for (const FrameRecord& record : run.records)
+    if (record.estimated) run.live.push_back({record.timestamp, record.world_from_camera});
   run.scores.resize(run.records.size());
   recorded.masks.resize(run.records.size());
   bool has_features = false;

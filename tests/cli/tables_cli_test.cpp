@@ -44,6 +44,55 @@ TEST(BenchmarkResume, MakesOnlyTheRunsThatAreNotThere) {
   expect_one_sentence(run_cli(more), "was made with other parameters");
 }
 
+TEST(BenchmarkRepeats, KeepEveryRunAndGoOn) {
+  const SmallSequence sequence(40);
+  std::vector<std::string> words = {"benchmark", sequence.path(), "--methods",         "none", "--repeat",
+                                    "2",         "--out",         sequence.path("out")};
+  CliResult result = run_cli(words);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("median of several runs"));
+  auto runs = nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs");
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[1].at("repeat"), 1);
+  EXPECT_NE(runs[1].at("run_hash"), runs[0].at("run_hash"));
+  for (const char* name : {"out/repeats.md", "out/repeats.csv", "out/repeats.tex", "out/repeats.json"})
+    EXPECT_TRUE(std::filesystem::exists(sequence.path(name))) << name;
+  words[5] = "3";
+  words.push_back("--resume");
+  result = run_cli(words);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("3 of 3"));
+  EXPECT_THAT(result.err, Not(HasSubstr("2 of 3")));
+  runs = nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs");
+  EXPECT_EQ(runs.size(), 3U);
+}
+
+TEST(BenchmarkOutside, AnotherProgramsRunIsAColumn) {
+  const SmallSequence sequence(40);
+  ASSERT_EQ(run_cli({"run", sequence.path(), "--method", "none", "--out", sequence.path("run")}).exit_code,
+            0);
+  std::filesystem::create_directories(sequence.path("droid"));
+  const std::string name = std::filesystem::path(sequence.path()).filename().string();
+  std::filesystem::copy(sequence.path("run/trajectory.txt"), sequence.path("droid/" + name + ".txt"));
+  const std::vector<std::string> words = {"benchmark", sequence.path(),
+                                          "--methods", "none",
+                                          "--run",     "droid=" + sequence.path("droid") + "/{}.txt",
+                                          "--out",     sequence.path("out")};
+  const CliResult result = run_cli(words);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("gain: droid"));
+  const auto runs = nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs");
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].at("odometry"), "its own");
+  EXPECT_NEAR(runs[0].at("rpe_m").get<double>(), runs[1].at("rpe_m").get<double>(), 1e-6);
+
+  expect_one_sentence(
+      run_cli({"benchmark", sequence.path(), "--methods", "none", "--run", "droid=nowhere.txt"}),
+      "nowhere.txt: there is no such file or folder");
+  expect_one_sentence(run_cli({"benchmark", sequence.path(), "--methods", "none", "--run", "paper=a.txt"}),
+                      "is called like one of the methods");
+}
+
 TEST(BenchmarkTwins, TwoSequencesOfOneNameAreBothRun) {
   const SmallSequence sequence(3);
   for (const char* twin : {"a/twin", "b/twin"}) {

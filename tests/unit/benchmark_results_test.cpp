@@ -55,6 +55,30 @@ std::string made(const std::string& request) {
   });
 }
 
+TEST(BenchmarkResults, AnotherProgramsRunStandsBehindEveryEngineUnderItsOwnName) {
+  BenchmarkResults results = some_results();
+  results.runs.push_back(result("clip", kItsOwnOdometry, "droid", 0.00615));
+  ASSERT_NE(results.find("clip", "dso", "droid"), nullptr);
+  EXPECT_EQ(results.find("clip", "dso", "none"), nullptr);
+  const Table table = table_one(results, "features", {"none", "droid"}, "none");
+  EXPECT_THAT(table.header, ::testing::IsSupersetOf({"ours: none", "droid", "gain: droid"}));
+  ASSERT_EQ(table.rows.size(), 3U);
+  EXPECT_EQ(table.rows[1].back(), "50.0 %");
+}
+
+TEST(BenchmarkResults, RepeatsAreTablesOfTheirSpread) {
+  const std::string page =
+      with_tables(page_with("spread sequences=clip methods=none"), "page.md", "none", [](const std::string&) {
+        BenchmarkResults results = some_results();
+        for (int k = 1; k < 3; ++k) {
+          results.runs.push_back(result("clip", "features", "none", 0.01));
+          results.runs.back().repeat = k;
+        }
+        return results;
+      });
+  EXPECT_THAT(page, HasSubstr("| clip       | 0.0100 ± 0.0006 |"));
+}
+
 TEST(BenchmarkResults, ReadBackAsWritten) {
   const BenchmarkResults results = some_results();
   const BenchmarkResults again = results_from_json(to_json(results).dump(), "a.json");

@@ -12,7 +12,7 @@ namespace {
 
 using motion_test::slight_motion;
 
-const cv::Size kVga(640, 480);
+const cv::Size kPairSize(640, 480);
 
 /// Tracks of a plane under `homography`: the first `outliers` of them go anywhere.
 std::vector<Track> make_tracks(const cv::Matx33d& homography, int count, int outliers, double noise_px,
@@ -52,7 +52,7 @@ cv::Matx33d direct_linear_transform(const std::vector<Track>& tracks) {
 TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     std::vector<Track> tracks = make_tracks(slight_motion(), 600, 240, 0.3, seed);
-    const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
+    const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
     ASSERT_TRUE(estimate.valid);
     // 360 good tracks of 0.3 px noise: a corner is known to about 0.3 * sqrt(8 / 720) * 3 = 0.1 px.
     EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.25);
@@ -67,7 +67,7 @@ TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
 
 TEST(Homography, ExactTracksGiveTheExactHomography) {
   std::vector<Track> tracks = make_tracks(slight_motion(), 100, 0, 0.0, 4);
-  const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 1e-3);  // Track's floats round at 1e-5 px
 }
@@ -111,7 +111,7 @@ TEST(Homography, RemovedTracksHaveNoSay) {
     other.removed = true;
     tracks.push_back(other);
   }
-  const HomographyEstimate estimate = estimate_homography(tracks, kVga, PaperConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.2);
   for (const Track& track : tracks) EXPECT_FALSE(track.removed && track.inlier);
@@ -128,7 +128,7 @@ TEST(Homography, TooFewOrSenselessTracksFallBack) {
     anywhere.push_back({.from = cv::Point2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0)),
                         .to = cv::Point2d(random.uniform(0.0, 640.0), random.uniform(0.0, 480.0))});
   for (std::vector<Track>* tracks : {&few, &on_a_point, &none, &anywhere}) {
-    const HomographyEstimate estimate = estimate_homography(*tracks, kVga, PaperConfig{}, fall_back);
+    const HomographyEstimate estimate = estimate_homography(*tracks, kPairSize, PaperConfig{}, fall_back);
     EXPECT_FALSE(estimate.valid);
     EXPECT_EQ(estimate.matrix, fall_back);
     for (const Track& track : *tracks) EXPECT_FALSE(track.inlier);
@@ -136,16 +136,16 @@ TEST(Homography, TooFewOrSenselessTracksFallBack) {
 }
 
 TEST(Homography, DegenerateOnesAreNotPlausible) {
-  EXPECT_TRUE(is_plausible(cv::Matx33d::eye(), kVga));
-  EXPECT_TRUE(is_plausible(slight_motion() * -3.0, kVga)) << "its scale and sign mean nothing";
-  EXPECT_FALSE(is_plausible({1, 0, 0, 0, 1, 0, 0, 0, 0}, kVga)) << "not invertible";
-  EXPECT_FALSE(is_plausible({1, 2, 3, 2, 4, 6, 0, 0, 1}, kVga)) << "onto a line";
-  EXPECT_FALSE(is_plausible({-1, 0, 640, 0, 1, 0, 0, 0, 1}, kVga)) << "a mirror image";
-  EXPECT_FALSE(is_plausible({1, 0, 0, 0, 1, 0, -1.0 / 400, 0, 1}, kVga)) << "horizon inside the image";
-  EXPECT_FALSE(is_plausible({8, 0, 0, 0, 8, 0, 0, 0, 1}, kVga)) << "64 times as large";
-  EXPECT_FALSE(is_plausible({0.1, 0, 0, 0, 0.1, 0, 0, 0, 1}, kVga)) << "a hundredth of it";
+  EXPECT_TRUE(is_plausible(cv::Matx33d::eye(), kPairSize));
+  EXPECT_TRUE(is_plausible(slight_motion() * -3.0, kPairSize)) << "its scale and sign mean nothing";
+  EXPECT_FALSE(is_plausible({1, 0, 0, 0, 1, 0, 0, 0, 0}, kPairSize)) << "not invertible";
+  EXPECT_FALSE(is_plausible({1, 2, 3, 2, 4, 6, 0, 0, 1}, kPairSize)) << "onto a line";
+  EXPECT_FALSE(is_plausible({-1, 0, 640, 0, 1, 0, 0, 0, 1}, kPairSize)) << "a mirror image";
+  EXPECT_FALSE(is_plausible({1, 0, 0, 0, 1, 0, -1.0 / 400, 0, 1}, kPairSize)) << "horizon inside the image";
+  EXPECT_FALSE(is_plausible({8, 0, 0, 0, 8, 0, 0, 0, 1}, kPairSize)) << "64 times as large";
+  EXPECT_FALSE(is_plausible({0.1, 0, 0, 0, 0.1, 0, 0, 0, 1}, kPairSize)) << "a hundredth of it";
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(is_plausible({nan, 0, 0, 0, 1, 0, 0, 0, 1}, kVga));
+  EXPECT_FALSE(is_plausible({nan, 0, 0, 0, 1, 0, 0, 0, 1}, kPairSize));
 }
 
 }  // namespace

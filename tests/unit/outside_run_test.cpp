@@ -57,6 +57,20 @@ TEST_F(OutsideRun, ArgumentsNameARunAndItsFile) {
   EXPECT_THAT(input_error_of([] { (void)outside_run_argument("orb3="); }), HasSubstr("write NAME=FILE"));
 }
 
+TEST_F(OutsideRun, PosesBeyondTheFramesAreLeftOutAndTold) {
+  OpenOptions ten;
+  ten.frames = 10;
+  source_ = open_sequence(small_.path(), ten);
+  const RecordedRun run = read("drift=" + write("drift.txt", drifting(0.03)));
+  EXPECT_THAT(warnings_,
+              ElementsAre(HasSubstr("30 of its poses lie before the first frame or after the last")));
+  const RunReport report = report_on(run.run, *source_);
+  EXPECT_EQ(report.tracked, 10);
+  EXPECT_DOUBLE_EQ(report.coverage, 1.0);
+  ASSERT_TRUE(report.evaluation);
+  EXPECT_NEAR(report.evaluation->rpe_frame.translation_m.rmse, 0.0, 1e-6);  // the drift begins at frame 20
+}
+
 TEST_F(OutsideRun, IsMeasuredAsItsTrajectoryIs) {
   const RecordedRun run = read("drift=" + write("drift.txt", drifting(0.03)));
   EXPECT_EQ(run.outside, "drift");

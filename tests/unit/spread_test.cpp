@@ -59,6 +59,35 @@ TEST(Spreads, AsTables) {
   EXPECT_EQ(json[4]["failed"], 1);
 }
 
+TEST(Spreads, OneRunHasNone) {
+  EXPECT_FALSE(rank({spread({1.0}), spread({2.0, 2.1})}).best);
+  EXPECT_EQ(rank({spread({3.0}), spread({2.0, 2.1})}).best, 1U);
+}
+
+TEST(Spreads, OfABenchmarksRunsByEngineAndMethod) {
+  BenchmarkResults results;
+  const auto add = [&results](const char* engine, const char* method, int repeat, std::optional<double> rpe,
+                              double coverage = 1.0) {
+    BenchmarkResult r;
+    r.sequence = "s", r.odometry = engine, r.method = method;
+    r.repeat = repeat, r.rpe_m = rpe, r.coverage = coverage;
+    results.runs.push_back(r);
+  };
+  add(kItsOwnOdometry, "droid", 0, 0.5);
+  for (int k = 0; k < 3; ++k) add("features", "none", k, 0.1 * (k + 1));
+  add("dso", "none", 0, 0.4);
+  add("dso", "none", 1, 0.2, 0.3);  // half of its frames are lost
+  const SpreadTable table = spread_of_runs(results, {"features", "dso"}, {"none", "droid"});
+  EXPECT_THAT(table.methods, ::testing::ElementsAre("features, none", "droid", "dso, none"));
+  ASSERT_EQ(table.rows.size(), 1U);
+  const std::vector<Spread>& cells = table.rows[0].cells;
+  ASSERT_EQ(cells.size(), 3U);
+  EXPECT_DOUBLE_EQ(cells[0].median, 0.2);
+  EXPECT_DOUBLE_EQ(cells[1].median, 0.5);
+  EXPECT_EQ(cells[2].values.size(), 1U);
+  EXPECT_EQ(cells[2].failed, 1);
+}
+
 TEST(Repeats, TheFirstIsTheRunItselfAndNoTwoAreAlike) {
   Config config;
   EXPECT_EQ(perturbed(config, perturbation(0)), config);

@@ -243,7 +243,7 @@ class OutlinePanel final : public FramePanel {
     // Always, so that the picture stays where it is while one draws.
     footer.legend.push_back({"drawn", ink(), Sign::kLine});
     if (drawn) {
-      const double share = percent_set(mask_of(movers, view.frame.gray.size()));
+      const double share = percent_set(mask_of_outlines(movers, view.frame.gray.size()));
       footer.caption += movers.empty() ? std::string(": drawn, nothing moves.")
                                        : fmt::format(": {} outline{}, {:.1f} % of the pixels.", movers.size(),
                                                      movers.size() == 1 ? "" : "s", share);

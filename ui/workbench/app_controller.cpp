@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <utility>
 
 #include "ui/panels/panel.hpp"
 
@@ -239,7 +240,8 @@ void AppController::draw(UiFrame& frame) {
   for (const std::string& path : frame.dropped_files) open(path);
   const auto view = this->view();
   // The masks that were drawn are the sequence's from now on.
-  if (view && view->debug.masks_written) reopen();
+  if (view && view->debug.masks_written && std::exchange(renewed_, session_.get()) != session_.get())
+    reopen();
   workbench_.draw(frame, view.get());
   frame.busy = frame.busy || !idle();
   options_.settings.look = frame.wanted_look;

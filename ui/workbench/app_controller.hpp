@@ -103,6 +103,7 @@ class AppController {
   std::unique_ptr<Session> session_;
   std::shared_ptr<const FrameSource> given_;  // the one shown first, while it is not in session_ yet
   RecentSequence open_;                       // the sequence shown
+  const Session* renewed_ = nullptr;          // the last one opened again because its masks were written
   int configured_ = 0;                        // how often the config was changed
   std::future<Opened> opening_;
   std::optional<std::string> next_;          // to be opened after that

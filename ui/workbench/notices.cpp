@@ -95,7 +95,9 @@ void Workbench::draw_exporting() {
   if (begin_notice(frame, "##exporting", {margin, frame.size.y - 25.0F * frame.scale - margin}, {0.0F, 1.0F},
                    mix(frame.theme.border, frame.theme.accent, 0.6F))) {
     ImGui::PushFont(frame.fonts.strong);
-    ImGui::TextUnformatted(view.what == "run" ? "Running over what was written…" : "Writing frames…");
+    ImGui::TextUnformatted(view.what == "run"     ? "Running over what was written…"
+                           : view.what == "masks" ? "Carrying outlines…"
+                                                  : "Writing frames…");
     ImGui::PopFont();
     ImGui::TextColored(to_vec4(frame.theme.text_dim), "%s", view.folder.c_str());
     const float share =

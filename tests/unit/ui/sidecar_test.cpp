@@ -22,6 +22,7 @@ Marks some_marks() {
   marks.bookmarks = {{3, "here \"it\" begins"}, {40, "über"}};
   marks.pins = {{2, 10.25, 11.5, "A"}};
   marks.breakpoints = {{"rpe > 5 cm || lost", true}, {"not a condition", false}};
+  marks.drawn = {{5, {}}, {8, {{{1.5, 2}, {30, 2}, {30.25, 40}}, {{50, 50}, {60, 50}, {60, 60}, {50, 60}}}}};
   marks.span = FrameSpan{4, 9};
   marks.loop = true;
   return marks;
