@@ -45,7 +45,7 @@ std::vector<std::optional<Ingredient>> variants_of(const AblateArguments& argume
 std::vector<std::unique_ptr<FrameSource>> open_all(const AblateArguments& arguments, const Config& config) {
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
-    sources.push_back(arguments.frames.open(sequence, config, {.depth = true}));
+    sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .questioned = true}));
   return sources;
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "app/progress.hpp"
 #include "core/check/time_calibration.hpp"
@@ -95,6 +97,10 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
       "--calibrate-time", calibrate_time,
       "Measure the camera's readouts and depth's delay by the sequence's own frames first, and go by "
       "them (`stillpoint check` prints them)");
+  command.add_flag(
+      "--fix", fix,
+      "Question the sequence first, as `stillpoint check` does, and read it otherwise where that "
+      "is certain to be right; what is done is told");
   command.add_option(
       "--topics", topics,
       "Of a bag: colour=TOPIC,depth=TOPIC,info=TOPIC,truth=TOPIC, any of them, none but colour "
@@ -107,8 +113,8 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
 
 bool SequenceArguments::given() const {
   return !camera.empty() || frames > 0 || seed >= 0 || frame_rate > 0 || depth_scale > 0 ||
-         depth_offset_s != 0 || !truth.empty() || inverted_masks || calibrate_time || !topics.empty() ||
-         !stereo.empty();
+         depth_offset_s != 0 || !truth.empty() || inverted_masks || calibrate_time || fix ||
+         !topics.empty() || !stereo.empty();
 }
 
 namespace {
@@ -127,6 +133,12 @@ void visit_reading(Arguments& arguments, Visit visit) {
   visit("calibrate_time", arguments.calibrate_time);
   visit("topics", arguments.topics);
   visit("stereo", arguments.stereo);
+}
+
+/// The switch of a field of the reading: "depth-scale".
+std::string switch_named(std::string field) {
+  std::replace(field.begin(), field.end(), '_', '-');
+  return field;
 }
 
 void read_word(const std::string& word, std::string& value) { value = word; }
@@ -182,8 +194,32 @@ OpenOptions SequenceArguments::options(const Config& config) const {
   return options;
 }
 
+SequenceArguments SequenceArguments::fixed(const std::string& where, const Config& config) const {
+  SequenceArguments reading = *this;
+  if (!std::exchange(reading.fix, false)) return reading;
+  std::vector<std::string> given;  // switches, which stand
+  for (const std::string& word : reading.words())
+    given.push_back(switch_named(word.substr(0, word.find('='))));
+  for (;;) {
+    const auto source = open_sequence(where, reading.options(config));
+    const auto remedy = first_remedy(check_sequence(*source).findings, given);
+    if (!remedy) return reading;
+    std::fprintf(stderr, "stillpoint: fixed by %s: %s\n", remedy->first.text().c_str(),
+                 remedy->second.sentence.c_str());
+    reading.set(remedy->first);
+    given.push_back(remedy->first.name);
+  }
+}
+
+void SequenceArguments::set(const Remedy& remedy) {
+  visit_reading(*this, [&remedy](const char* name, auto& value) {
+    if (switch_named(name) == remedy.name) read_word(remedy.value.empty() ? "true" : remedy.value, value);
+  });
+}
+
 std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config,
                                                      SequenceNeeds needs) const {
+  if (fix) return fixed(where, config).open(where, config, needs);
   auto source = open_sequence(where, options(config));
   if (needs.depth && !source->has_depth()) {
     const std::string why = source->why_not(FramePart::depth);
@@ -206,6 +242,9 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   }
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
+  if (needs.questioned)
+    for (const Finding& finding : look_over(*source))
+      std::fprintf(stderr, "stillpoint: warning: %s: %s\n", where.c_str(), finding.sentence.c_str());
   if (!calibrate_time) return source;
   const TimeCalibration times = stillpoint::calibrate_time(*source, config);
   for (const std::string& line : to_lines(times, source->camera()))

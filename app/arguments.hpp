@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/check/check_sequence.hpp"
 #include "core/config.hpp"
 #include "core/sequence/source.hpp"
 
@@ -33,8 +34,9 @@ void throw_if_no_pair(const Config& config);
 
 /// What a command cannot do without.
 struct SequenceNeeds {
-  bool depth = false;   ///< odometry
-  bool oracle = false;  ///< ground-truth masks
+  bool depth = false;       ///< odometry
+  bool oracle = false;      ///< ground-truth masks
+  bool questioned = false;  ///< it is about to be run: what a quick look finds wrong with it is told
 };
 
 /// What SEQUENCE may be, for the help of commands that take one, several, or also a finished run.
@@ -64,6 +66,7 @@ struct SequenceArguments {
   bool inverted_masks = false;
   std::string topics;           ///< of a bag, as OpenOptions has them; empty = as they are found
   bool calibrate_time = false;  ///< measure the camera's times first, and use them
+  bool fix = false;             ///< question the sequence first, and read it as is certain to be right
   std::string stereo;           ///< of stereo pairs, as stereo_options_from reads it; empty = as a rule
 
   /// @param frames_option what sets `frames`, where --frames means something else
@@ -77,6 +80,11 @@ struct SequenceArguments {
   /// What open_sequence is given.
   /// @throws InputError for a camera or a convention that is none
   [[nodiscard]] OpenOptions options(const Config& config) const;
+  /// Reads it by that switch from now on.
+  void set(const Remedy& remedy);
+  /// With `fix`: the sequence is questioned (check_sequence), and these are the arguments under which no
+  /// certain remedy is left, each told on standard error; what was given stands. Without: these.
+  [[nodiscard]] SequenceArguments fixed(const std::string& where, const Config& config) const;
   /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
   /// @throws InputError also where it lacks what is needed, with the reason
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config,

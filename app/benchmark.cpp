@@ -59,8 +59,14 @@ std::vector<BenchmarkResult> earlier_runs(const BenchmarkArguments& arguments, c
   return earlier.runs;
 }
 
+struct OpenedSequence {
+  std::string where;
+  std::unique_ptr<FrameSource> source;
+  OpenOptions options;
+};
+
 /// Everything that can be known to be wrong is told before the first frame, not hours later.
-std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arguments, Config config) {
+std::vector<OpenedSequence> open_all(const BenchmarkArguments& arguments, Config config) {
   std::set<std::string> methods;
   bool wants_masks = false;
   std::set<std::string> engines;
@@ -83,13 +89,17 @@ std::vector<std::unique_ptr<FrameSource>> open_all(const BenchmarkArguments& arg
       throw InputError(
           fmt::format("--run {}: is called like one of the methods; NAME=FILE names it", outside));
   }
-  std::vector<std::unique_ptr<FrameSource>> sources;
-  for (const std::string& sequence : expanded_sequences(arguments.sequences))
-    sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .oracle = wants_masks}));
+  std::vector<OpenedSequence> sequences;
+  for (const std::string& where : expanded_sequences(arguments.sequences)) {
+    const SequenceArguments reading = arguments.frames.fixed(where, config);
+    sequences.push_back(
+        {where, reading.open(where, config, {.depth = true, .oracle = wants_masks, .questioned = true}),
+         reading.options(config)});
+  }
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv"},
                        arguments.force || arguments.resume);
-  return sources;
+  return sequences;
 }
 
 /// Where a sequence's runs go below the out folder: by its name (`generated:room` as `generated_room`),
@@ -193,7 +203,7 @@ BenchmarkResult measure_outside(const Place& place, const SequenceOrigin& origin
 void benchmark(BenchmarkArguments arguments) {
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
-  const auto sources = open_all(arguments, config);
+  const auto sequences = open_all(arguments, config);
   BenchmarkResults results = made_here();
   results.config = shared_config(config);
   if (arguments.resume) results.runs = earlier_runs(arguments, config);
@@ -203,13 +213,12 @@ void benchmark(BenchmarkArguments arguments) {
 
   std::set<std::string> taken, names;
   std::vector<Place> places;
-  const std::vector<std::string> where = expanded_sequences(arguments.sequences);
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const FrameSource& source = *sources[i];
+  for (const OpenedSequence& sequence : sequences) {
+    const FrameSource& source = *sequence.source;
     Place place{source, source.name(), frames_of(source, arguments.frames.frames)};
     for (int number = 2; !names.insert(place.name).second; ++number)
       place.name = fmt::format("{} {}", source.name(), number);
-    const SequenceOrigin origin = origin_of(source, where[i], arguments.frames.options(config));
+    const SequenceOrigin origin = origin_of(source, sequence.where, sequence.options);
     if (!arguments.out.empty()) {
       place.origin = origin;
       place.runs = runs_folder(arguments.out, source.name(), taken);

@@ -5,8 +5,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
-#include "core/check/findings.hpp"
-#include "core/check/time_calibration.hpp"
+#include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/geometry/trajectory_file.hpp"
@@ -15,7 +14,6 @@ namespace stillpoint {
 namespace {
 
 constexpr int kFindingsStatus = 3;
-constexpr int kOdometryFrames = 60, kCameraFrames = 40;
 
 struct CheckArguments {
   std::string sequence, estimate;
@@ -74,16 +72,10 @@ std::string depth_words(const Camera& camera) {
 }
 
 void check(const CheckArguments& arguments) {
-  const auto source = open_sequence(arguments.sequence, arguments.frames.options(Config()));
-  std::vector<Finding> findings = check_frames(*source);
-  if (arguments.estimate.empty()) {
-    for (Finding& finding : check_odometry(*source, kOdometryFrames)) findings.push_back(std::move(finding));
-    for (Finding& finding : check_camera(*source, kCameraFrames)) findings.push_back(std::move(finding));
-  }
-  const TimeCalibration times = arguments.estimate.empty()
-                                    ? calibrate_time(*source, Config(), {.frames = 90, .tries = 1, .runs = 1})
-                                    : TimeCalibration();
-  for (Finding& finding : check_times(times, source->camera())) findings.push_back(std::move(finding));
+  const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, Config());
+  const auto source = open_sequence(arguments.sequence, reading.options(Config()));
+  auto [findings, times] =
+      arguments.estimate.empty() ? check_sequence(*source) : SequenceCheck{check_frames(*source), {}};
   if (!arguments.estimate.empty()) check_estimate(arguments, *source, findings);
   const Camera& camera = source->camera();
   if (arguments.json) {

@@ -27,8 +27,9 @@ void import(const ImportArguments& arguments) {
   files.convention = convention_argument("--estimate", arguments.convention);
   files.time_offset_s = arguments.time_offset_s;
   const Config config;
-  const auto source = arguments.frames.open(arguments.sequence, config);
-  const SequenceOrigin origin = origin_of(*source, arguments.sequence, arguments.frames.options(config));
+  const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, config);
+  const auto source = reading.open(arguments.sequence, config);
+  const SequenceOrigin origin = origin_of(*source, arguments.sequence, reading.options(config));
   std::vector<std::string> warnings;
   const RecordedRun run = read_outside_run(*source, origin, files, warnings);
   for (const std::string& warning : warnings)

@@ -93,7 +93,8 @@ void stand_beside(const SourceArguments& arguments, OpenedSource& opened) {
                                                  ? read_records(files.where)
                                                  : read_outside_run(*opened.source, {}, files, warnings));
     if (is_run_folder(files.where) && run->origin.fingerprint != sequence_fingerprint(*opened.source))
-      throw InputError(fmt::format("--run {}: is a run of {}, not of the frames opened", text, run->origin.name));
+      throw InputError(
+          fmt::format("--run {}: is a run of {}, not of the frames opened", text, run->origin.name));
     opened.options.beside.push_back(std::move(run));
     for (const std::string& warning : warnings)
       std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());

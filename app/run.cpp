@@ -61,8 +61,10 @@ void run(const RunArguments& arguments) {
   const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
   throw_if_no_pair(config);
-  const auto source = arguments.frames.open(arguments.sequence, config,
-                                            {.depth = true, .oracle = method_of(config).needs.true_mask});
+  const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, config);
+  const auto source =
+      reading.open(arguments.sequence, config,
+                   {.depth = true, .oracle = method_of(config).needs.true_mask, .questioned = true});
   RunOptions options;
   options.count = arguments.frames.frames;
   options.stop = &stop_requested();
@@ -70,7 +72,7 @@ void run(const RunArguments& arguments) {
   std::optional<RecordsWriter> records;
   if (!arguments.out.empty()) {
     prepare_run_folder(arguments.out, arguments.force);
-    origin = origin_of(*source, arguments.sequence, arguments.frames.options(config));
+    origin = origin_of(*source, arguments.sequence, reading.options(config));
     records.emplace(arguments.out, *origin, config);
   }
   options.measure_orb_unit = arguments.measure_unit;

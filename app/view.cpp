@@ -128,10 +128,15 @@ class Viewer {
 };
 
 /// Begins with the sequence named, else with the one open last, else with the start page.
-void view(const ViewArguments& arguments) {
+void view(ViewArguments arguments) {
   // What was named and cannot be opened is told before there is a window.
   std::optional<OpenedSource> place;
-  if (!arguments.place.place.empty()) place = open_source(arguments.place);
+  if (!arguments.place.place.empty()) {
+    SequenceArguments& reading = arguments.place.source;
+    if (!is_run_folder(arguments.place.place))
+      reading = reading.fixed(arguments.place.place, arguments.place.config.config());
+    place = open_source(arguments.place);
+  }
   Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
     viewer.controller().show(std::move(*place), arguments.place.place, arguments.place.source.words());

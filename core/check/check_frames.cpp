@@ -86,11 +86,17 @@ void to_json(nlohmann::json& json, const Finding& finding) {
   json = {{"about", finding.about}, {"sentence", finding.sentence}};
 }
 
+std::vector<Finding> look_over(const FrameSource& source) {
+  std::vector<Finding> findings;
+  check_gaps(source, findings);
+  check_repeats(source, findings);
+  return findings;
+}
+
 std::vector<Finding> check_frames(const FrameSource& source) {
   std::vector<Finding> findings;
   for (const std::string& warning : source.warnings()) findings.push_back({subject_of(warning), warning});
-  check_gaps(source, findings);
-  check_repeats(source, findings);
+  for (Finding& finding : look_over(source)) findings.push_back(std::move(finding));
   return findings;
 }
 

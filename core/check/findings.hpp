@@ -13,7 +13,8 @@ namespace stillpoint {
 
 /// Something about an input that cannot be right, or that was mended on opening.
 struct Finding {
-  std::string about;     ///< "stamps", "depth", "masks", "camera", "truth", "images", "estimate", "odometry", "time"
+  std::string
+      about;  ///< "stamps", "depth", "masks", "camera", "truth", "images", "estimate", "odometry", "time"
   std::string sentence;  ///< what was found, with its figure, and the switch that mends it where there is one
 };
 
@@ -22,6 +23,9 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// What can be said of a sequence from its lists and a sample of its images: all that was told on opening,
 /// parts that are of no use, gaps in time, and images that repeat the one before.
 [[nodiscard]] std::vector<Finding> check_frames(const FrameSource& source);
+
+/// Of that what was not told on opening already.
+[[nodiscard]] std::vector<Finding> look_over(const FrameSource& source);
 
 /// What can be said of ground truth beside poses that are independent of it: a convention, a constant motion
 /// between two bodies, a scale, a shift in time, each by how much better the alternative fits.

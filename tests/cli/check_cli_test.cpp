@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -30,6 +31,47 @@ TEST(CheckCommand, HasStatusThreeAndTheSwitchThatMends) {
   EXPECT_EQ(json["findings"][0]["about"], "depth");
   EXPECT_THAT(json["findings"][0]["sentence"].get<std::string>(), HasSubstr("`--depth-scale 1000`"));
   EXPECT_EQ(run_cli({"check", sequence.path(), "--depth-scale", "1000"}).exit_code, 0);
+}
+
+TEST(CheckCommand, WhatIsCertainIsMendedWhenAskedFor) {
+  const SmallSequence sequence(8);
+  for (int i = 0; i < 8; ++i)
+    sequence.folder.write(sequence.depth(i),
+                          cv::Mat(SmallSequence::kHeight, SmallSequence::kWidth, CV_16UC1, cv::Scalar(1500)));
+  const std::vector<std::string> run = {"run", sequence.path(), "--method", "none", "--out"};
+  const auto with = [&run](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> words = run;
+    words.push_back(out);
+    words.insert(words.end(), more.begin(), more.end());
+    return run_cli(words);
+  };
+  const CliResult told = with(sequence.path("told"), {});
+  EXPECT_THAT(told.err, HasSubstr("`--depth-scale 1000` reads it so"));  // told, and not done
+  const CliResult fixed = with(sequence.path("fixed"), {"--fix"});
+  ASSERT_EQ(fixed.exit_code, 0) << fixed.err;
+  EXPECT_THAT(fixed.err, HasSubstr("fixed by --depth-scale 1000: "));
+  const CliResult given = with(sequence.path("given"), {"--depth-scale", "1000"});
+  EXPECT_EQ(sequence.folder.read("fixed/trajectory.txt"), sequence.folder.read("given/trajectory.txt"));
+  EXPECT_NE(sequence.folder.read("fixed/trajectory.txt"), sequence.folder.read("told/trajectory.txt"));
+  // The run's folder opens by what was mended.
+  EXPECT_EQ(run_cli({"snapshot", sequence.path("fixed"), "--frames", "3", "--panels", "input", "--out",
+                     sequence.path("pictures")})
+                .exit_code,
+            0);
+  // What was given stands.
+  const CliResult kept = run_cli({"check", sequence.path(), "--fix", "--depth-scale", "5000", "--json"});
+  EXPECT_EQ(kept.exit_code, 3);
+  EXPECT_EQ(nlohmann::json::parse(kept.out)["depth_scale"], 5000.0);
+}
+
+TEST(CheckCommand, ARunIsToldWhatAQuickLookFinds) {
+  const SmallSequence sequence(8);
+  sequence.folder.write(sequence.colour(1),
+                        cv::imread(sequence.path(sequence.colour(0)), cv::IMREAD_UNCHANGED));
+  const CliResult run = run_cli({"run", sequence.path(), "--method", "none"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("warning: " + sequence.path() +
+                                 ": 1 of 7 sampled colour images are the same, pixel for pixel"));
 }
 
 TEST(CheckCommand, SaysWhetherFramesTellTimes) {

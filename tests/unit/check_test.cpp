@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/check/findings.hpp"
+#include "core/check/check_sequence.hpp"
 #include "core/sequence/source.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -81,6 +81,41 @@ TEST(Check, FindsGapsRepeatsAndWhatWasMended) {
   EXPECT_THAT(findings, Contains(says("stamps", "s, follows frame 7: the odometry will be lost there")));
   EXPECT_THAT(findings, Contains(says("images", "6 of 11 sampled colour images are the same")));
   EXPECT_THAT(findings, Contains(says("camera", "ros_default is assumed")));
+}
+
+TEST(Remedies, AreTheSwitchesThatMendForCertain) {
+  EXPECT_EQ(remedy_of({"depth", "it would be 1 to 2 m: `--depth-scale 1000` reads it so"}),
+            (Remedy{"depth-scale", "1000"}));
+  EXPECT_EQ(remedy_of({"time", "20 ms (`--calibrate-time` goes by what was measured)"}),
+            (Remedy{"calibrate-time", ""}));
+  EXPECT_EQ((Remedy{"camera", "freiburg1"}).text(), "--camera freiburg1");
+  // A person's to decide, without a value, or no switch at all.
+  EXPECT_FALSE(remedy_of({"masks", "if white is what is static, `--invert-masks` reads them so"}));
+  EXPECT_FALSE(remedy_of({"depth", "(if its clock is, `--depth-offset 0.5` mends that)"}));
+  EXPECT_FALSE(remedy_of({"depth", "`--depth-scale` sets the depth's"}));
+  EXPECT_FALSE(remedy_of({"camera", "the name tells no camera"}));
+  EXPECT_FALSE(remedy_of({"camera", "`--camera freiburg1 without an end"}));
+}
+
+TEST(Remedies, WhatLetsTheTruthLookWrongComesFirstAndWhatWasGivenStands) {
+  const std::vector<Finding> findings = {{"truth", "(`--truth inverse` reads it so)"},
+                                         {"camera", "(`--camera icl_nuim` uses it)"},
+                                         {"depth", "`--depth-scale 5000` reads it so"}};
+  const auto first = first_remedy(findings, {});
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->first.name, "depth-scale");
+  EXPECT_EQ(first->second.about, "depth");
+  EXPECT_EQ(first_remedy(findings, {"depth-scale"})->first.name, "camera");
+  EXPECT_FALSE(first_remedy(findings, {"depth-scale", "camera", "truth"}));
+}
+
+TEST(Remedies, EveryFindingOfAConventionNamesOne) {
+  const Trajectory estimate = path(10.0);
+  Trajectory inverse = estimate;
+  for (StampedPose& pose : inverse) pose.world_from_camera = pose.world_from_camera.inverse();
+  const auto findings = check_truth(inverse, estimate, false);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(remedy_of(findings[0]), (Remedy{"truth", "inverse"}));
 }
 
 }  // namespace

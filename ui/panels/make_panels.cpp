@@ -23,7 +23,6 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_feature_panel(shared));
   panels.push_back(make_stages_panel(shared));
   panels.push_back(make_mask_panel({"mask", "Mask", Role::kUnion, true}, shared));
-  panels.push_back(make_outline_panel(shared));
   panels.push_back(make_motion_panel(shared));
   panels.push_back(make_trajectory_panel(shared));
   panels.push_back(make_errors_panel(shared));
@@ -35,6 +34,8 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_timings_panel(shared));
   panels.push_back(make_parameters_panel(shared));
   panels.push_back(make_inspector_panel(shared));
+  panels.push_back(make_outline_panel(shared));
+  panels.push_back(make_check_panel(shared));
   panels.push_back(make_log_panel(shared));
   return panels;
 }

@@ -65,7 +65,7 @@ class OutlinePanel final : public FramePanel {
             [this](const SessionView&) { return unfinished_.size() >= kLeastCorners; },
             [this](const SessionView& session, PanelActions& actions) { close(session, actions); }),
         command(
-            "outline_undo", "Take out the last corner of the outline being drawn", {{Key::kBackspace, {}}},
+            "outline_undo", "Take out the last corner drawn", {{Key::kBackspace, {}}},
             [this](const SessionView&) { return !unfinished_.empty(); },
             [this](const SessionView&, PanelActions&) { unfinished_.pop_back(); }),
         command(

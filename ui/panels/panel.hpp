@@ -18,6 +18,7 @@ struct PanelActions {
   std::vector<SessionRequest> requests;  ///< in order
   bool compare_frames = false;           ///< FrameView::before is wanted
   std::optional<int> worst_by;  ///< the figure (frame_figure_infos()) that "worst" is to go by from now on
+  std::string reopen_with;  ///< the sequence anew, with a switch in place of how it was read: "camera=freiburg1"
   std::vector<std::string> perform;  ///< named actions to run, in order
 };
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/check/findings.hpp"
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
 #include "core/run/removal_errors.hpp"
@@ -38,6 +39,15 @@ struct ExportView {
   int done = 0, total = 0;  ///< of that
 };
 
+/// What the sequence was questioned by.
+struct CheckView {
+  bool asking = false;  ///< it is being questioned now
+  bool looked = false;  ///< at its lists and a sample of its images
+  bool whole = false;   ///< by all there is, not by a look at its lists and images alone
+  std::vector<Finding> findings;
+  std::vector<std::string> times;  ///< the camera's times as its frames tell them, a line each
+};
+
 /// The debugger's part of SessionView.
 struct DebugView {
   std::vector<Bookmark> bookmarks;  ///< by frame
@@ -52,8 +62,9 @@ struct DebugView {
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
   std::optional<Config> previewed;           ///< the config `preview` was made with
-  bool preview_whole = false;           ///< false: its features' matches and its pose are the run's still
-  double preview_ms = 0.0;              ///< what computing it took
+  bool preview_whole = false;  ///< false: its features' matches and its pose are the run's still
+  double preview_ms = 0.0;     ///< what computing it took
+  CheckView check;
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
   bool masks_written = false;           ///< true masks were written into the sequence since it was opened
@@ -111,6 +122,8 @@ struct ExportFrames {
 struct ExportSession {
   std::string folder;
 };
+/// The sequence is questioned by all there is (check_sequence), beside the session.
+struct CheckSequence {};
 /// What is being written ends, and is taken away.
 struct StopExport {};
 /// Another method's stages of each frame shown, beside the run's own; an empty name ends it.
@@ -127,6 +140,6 @@ using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
                  request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
                  request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
-                 request::StopExport, request::StagesBeside, request::SavePreset>;
+                 request::CheckSequence, request::StopExport, request::StagesBeside, request::SavePreset>;
 
 }  // namespace stillpoint

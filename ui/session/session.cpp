@@ -188,14 +188,14 @@ void Session::request_speed(double frames_per_second) {
 
 bool Session::idle() const {
   const std::lock_guard lock(mutex_);
-  return resting_ && requests_.empty() && !exporting_;
+  return resting_ && requests_.empty() && !exporting_ && !checking_;
 }
 
 void Session::rest(const std::stop_token& stop, bool until_comparison) {
   std::unique_lock lock(mutex_);
   resting_ = true;
   asked_.wait(lock, stop, [&] {
-    return !requests_.empty() || export_news_ || (until_comparison && compares_ && lacks_before());
+    return !requests_.empty() || news_ || (until_comparison && compares_ && lacks_before());
   });
   resting_ = false;
 }

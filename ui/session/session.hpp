@@ -121,6 +121,7 @@ class Session {
   void carry_out(const request::RemoveGhost& wanted);
   void carry_out(const request::ExportFrames& wanted);
   void carry_out(const request::ExportSession& wanted);
+  void carry_out(const request::CheckSequence& wanted);
   void carry_out(const request::StopExport& wanted);
   void carry_out(const request::StagesBeside& wanted);
   void carry_out(const request::SavePreset& wanted);
@@ -136,7 +137,7 @@ class Session {
   void rest(const std::stop_token& stop, bool until_comparison);
   void work_step();
   void settle();
-  [[nodiscard]] bool take_export_news();
+  [[nodiscard]] bool take_news();
   // What is done when nothing else is asked for, a frame at a time.
   [[nodiscard]] bool has_background() const;
   void background_step();
@@ -173,7 +174,8 @@ class Session {
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
   std::atomic<bool> masks_written_ = false;  // true masks, into the sequence
-  std::unique_ptr<ExportJob> export_;  // the worker's; null while nothing is being written
+  bool looked_over_ = false;                 // check_frames() has been asked
+  std::unique_ptr<ExportJob> export_;        // the worker's; null while nothing is being written
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
@@ -183,8 +185,11 @@ class Session {
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
   std::atomic<bool> compares_ = false;  // FrameView::before is wanted
-  std::atomic<bool> export_news_ = false, exporting_ = false;
-  std::jthread worker_;  // last: it ends before what it works with
+  std::atomic<bool> news_ = false;      // of what goes on beside the session
+  std::atomic<bool> exporting_ = false, checking_ = false;
+  std::optional<CheckView> checked_;  // what the last questioning found
+  std::jthread checker_;              // ends before what it works with
+  std::jthread worker_;               // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
 #include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/export_session.hpp"
@@ -166,13 +167,13 @@ void Session::write_beside(const std::string& folder, ExportJob::Work work) {
     debug_.notice = work({});
     return;
   }
-  (void)take_export_news();
+  (void)take_news();
   if (export_) throw InputError(fmt::format("{}: something else is still being written", folder));
   debug_.notice.clear();
   exporting_ = true;
   export_ = std::make_unique<ExportJob>(folder, std::move(work), [this] {
     const std::lock_guard lock(mutex_);
-    export_news_ = true;
+    news_ = true;
     asked_.notify_all();
   });
 }
@@ -199,6 +200,37 @@ void Session::carry_out(const request::ExportSession& wanted) {
     return export_session(
         {.source = *source, .config = config, .frames = frames, .run_hash = hash, .marks = marks}, folder,
         control);
+  });
+}
+
+void Session::carry_out(const request::CheckSequence& /*wanted*/) {
+  refuse_without_images("There is nothing to question");
+  if (debug_.check.asking) return;
+  const auto question = [this] {
+    CheckView view;
+    try {
+      const SequenceCheck check = check_sequence(*source_);
+      view = {.asking = false,
+              .whole = true,
+              .findings = check.findings,
+              .times = to_lines(check.times, source_->camera())};
+    } catch (const std::exception& error) {
+      view.findings = {{"sequence", error.what()}};
+    }
+    return view;
+  };
+  if (!worker_.joinable()) {
+    debug_.check = question();
+    return;
+  }
+  debug_.check.asking = true;
+  checking_ = true;
+  checker_ = std::jthread([this, question] {
+    CheckView view = question();
+    const std::lock_guard lock(mutex_);
+    checked_ = std::move(view);
+    news_ = true;
+    asked_.notify_all();
   });
 }
 

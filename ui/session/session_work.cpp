@@ -51,8 +51,8 @@ void Session::work_step() {
 
 bool Session::has_background() const {
   const int processed = run_->track().processed();
-  return preview_due_ || sidecar_due_ || processed < wanted_ || (compares_ && lacks_before()) ||
-         (worker_.joinable() && stages_are_missing()) ||
+  return preview_due_ || sidecar_due_ || (worker_.joinable() && !looked_over_) || processed < wanted_ ||
+         (compares_ && lacks_before()) || (worker_.joinable() && stages_are_missing()) ||
          std::any_of(ghosts_.begin(), ghosts_.end(),
                      [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
 }
@@ -80,10 +80,16 @@ void Session::background_step() {
   };
   // One frame more at a time, so that what is asked for meanwhile is not kept waiting.
   const auto ghost = std::find_if(ghosts_.begin(), ghosts_.end(), lags);
-  if (ghost != ghosts_.end())
+  if (ghost != ghosts_.end()) {
     advance(*ghost);
-  else
+  } else if (run_->track().processed() < wanted_ || !worker_.joinable() || looked_over_) {
     process_one();
+  } else {
+    looked_over_ = true;
+    if (!options_.no_images.empty() || debug_.check.whole) return;
+    debug_.check.findings = check_frames(*source_);
+    debug_.check.looked = true;
+  }
 }
 
 void Session::advance(Ghost& ghost) {
@@ -112,7 +118,7 @@ void Session::preview_step() {
   if (!motion_alone && worker_.joinable() && Clock::now() < rests) {
     // While the slider still moves, the worker is kept free for the next motion stages.
     std::unique_lock lock(mutex_);
-    asked_.wait_until(lock, rests, [this] { return !requests_.empty() || export_news_; });
+    asked_.wait_until(lock, rests, [this] { return !requests_.empty() || news_; });
     return;
   }
   const Stopwatch watch;
@@ -189,9 +195,18 @@ void Session::attempt(const std::function<void()>& work) {
   }
 }
 
-/// @returns whether something is to be told of what is being written
-bool Session::take_export_news() {
-  if (!export_news_.exchange(false) || !export_) return false;
+/// @returns whether something is to be told of what goes on beside the session
+bool Session::take_news() {
+  if (!news_.exchange(false)) return false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (checked_) {
+      debug_.check = std::move(*checked_);
+      checked_.reset();
+      checking_ = false;
+    }
+  }
+  if (!export_) return true;
   if (const auto outcome = export_->outcome()) {
     (outcome->failed ? message_ : debug_.notice) = outcome->told;
     export_.reset();
@@ -211,7 +226,7 @@ void Session::work(const std::stop_token& stop) {
   auto due = Clock::now(), published = due;
   while (!stop.stop_requested()) {
     try {
-      const bool news = take_export_news(), asked = take_requests();
+      const bool news = take_news(), asked = take_requests();
       if ((asked || news) && at_rest()) publish();
       const bool waits = at_rest() && (!playing_ || Clock::now() < due);
       if (waits && has_background()) {
@@ -228,7 +243,7 @@ void Session::work(const std::stop_token& stop) {
       }
       if (waits) {
         std::unique_lock lock(mutex_);
-        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty() || export_news_; });
+        asked_.wait_until(lock, stop, due, [this] { return !requests_.empty() || news_; });
         continue;
       }
       due = Clock::now() + std::chrono::duration_cast<Clock::duration>(

@@ -84,7 +84,7 @@ WorkbenchHost AppController::host() {
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
           .open = [this](const std::string& where) { open(where); },
-          .reopen = [this] { reopen(); },
+          .reopen = [this](const std::string& with) { reopen(with); },
           .request = [this](SessionRequest wanted) { request(std::move(wanted)); },
           .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
 }
@@ -169,8 +169,15 @@ void AppController::open(const std::string& where) {
   begin_opening(sequence, options_.config, std::nullopt);
 }
 
-void AppController::reopen() {
-  if (session_ && !opening_.valid()) begin_opening(as_left(), options_.config, std::nullopt);
+void AppController::reopen(const std::string& with) {
+  if (!session_ || opening_.valid()) return;
+  RecentSequence sequence = as_left();
+  if (!with.empty()) {
+    const std::string name = with.substr(0, with.find('=') + 1);
+    std::erase_if(sequence.reading, [&name](const std::string& word) { return word.starts_with(name); });
+    sequence.reading.push_back(with);
+  }
+  begin_opening(std::move(sequence), options_.config, std::nullopt);
 }
 
 void AppController::open_last(const Config* config) {

@@ -44,8 +44,10 @@ class AppController {
   /// Opens a sequence soon, as it was left where it was open before; when that fails the one open stays, and
   /// the workbench says why. Of several asked for meanwhile, the last is opened.
   void open(const std::string& where);
-  /// Opens the sequence shown anew, at the frame shown: its files have changed.
-  void reopen();
+  /// Opens the sequence shown anew, at the frame shown: its files have changed, or it is to be read
+  /// otherwise.
+  /// @param with a word of the reading in place of the one of its name: "camera=freiburg1"; empty: none
+  void reopen(const std::string& with = {});
   /// The same as open() with what is open already. @param reading how it was read
   void show(OpenedSource place, const std::string& where, std::vector<std::string> reading = {});
   /// Opens the sequence that was open last, if any. @param config null: as it was left

@@ -327,6 +327,8 @@ void Workbench::carry_out(const PanelActions& wanted) {
   if (wanted.worst_by) worst_by_ = wanted.worst_by;
   if (wanted.go_to_frame) go_to(*wanted.go_to_frame);
   for (const std::string& action : wanted.perform) actions_.run(action);
+  if (!wanted.reopen_with.empty() && host_.reopen)
+    after_frame_ = [this, with = wanted.reopen_with] { host_.reopen(with); };
   compare_frames_ |= wanted.compare_frames;
   if (host_.request)
     for (const SessionRequest& wish : wanted.requests) host_.request(wish);

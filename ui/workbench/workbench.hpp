@@ -22,9 +22,10 @@ struct WorkbenchHost {
   std::function<void(bool)> play{};
   std::function<void(double)> speed{};             ///< frames a second, while playing
   std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
-  std::function<void()> reopen{};                  ///< the sequence that is open, anew from its files
-  std::function<void(SessionRequest)> request{};   ///< what panels ask of the session
-  std::function<void(bool)> compare{};             ///< whether FrameView::before is wanted; told each frame
+  /// The sequence that is open, anew from its files; with a switch in place of how it was read, unless empty.
+  std::function<void(const std::string& with)> reopen{};
+  std::function<void(SessionRequest)> request{};  ///< what panels ask of the session
+  std::function<void(bool)> compare{};            ///< whether FrameView::before is wanted; told each frame
 };
 
 /// The whole interface: menus, toolbar, tiles with panels, status bar, palette, shortcut sheet, start page.

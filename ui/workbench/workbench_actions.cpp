@@ -32,7 +32,7 @@ void Workbench::add_actions() {
                 .group = "File",
                 .keys = {{Key::kF5, {}}},
                 .enabled = [this] { return session_ != nullptr && host_.reopen; },
-                .run = [this] { after_frame_ = host_.reopen; }});
+                .run = [this] { after_frame_ = [this] { host_.reopen(""); }; }});
   actions_.add({.name = "hand_on",
                 .title = "Hand this session on as a folder…",
                 .group = "File",

@@ -1,0 +1,63 @@
+#include "core/check/check_sequence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/config.hpp"
+
+namespace stillpoint {
+namespace {
+
+constexpr int kFramesTracked = 60, kFramesByCamera = 40;
+constexpr TimeStretch kShortStretch = {.frames = 90, .tries = 1, .runs = 1};
+
+/// Switches that mend for certain what names them, in the order in which they are tried.
+constexpr std::array<const char*, 4> kMendsForCertain = {"depth-scale", "camera", "truth", "calibrate-time"};
+
+}  // namespace
+
+SequenceCheck check_sequence(const FrameSource& source) {
+  SequenceCheck check;
+  const auto add = [&check](std::vector<Finding> found) {
+    for (Finding& finding : found) check.findings.push_back(std::move(finding));
+  };
+  add(check_frames(source));
+  add(check_odometry(source, kFramesTracked));
+  add(check_camera(source, kFramesByCamera));
+  check.times = calibrate_time(source, Config(), kShortStretch);
+  add(check_times(check.times, source.camera()));
+  return check;
+}
+
+std::string Remedy::text() const { return value.empty() ? "--" + name : "--" + name + " " + value; }
+
+std::optional<Remedy> remedy_of(const Finding& finding) {
+  constexpr std::string_view kBegin = "`--";
+  const std::string& sentence = finding.sentence;
+  for (auto at = sentence.find(kBegin); at != std::string::npos; at = sentence.find(kBegin, at + 1)) {
+    const auto begin = at + kBegin.size(), end = sentence.find('`', begin);
+    if (end == std::string::npos) return std::nullopt;
+    const std::string words = sentence.substr(begin, end - begin);
+    const auto space = words.find(' ');
+    Remedy remedy{words.substr(0, space), space == std::string::npos ? "" : words.substr(space + 1)};
+    const bool takes_value = remedy.name != kMendsForCertain.back();
+    if (std::find(kMendsForCertain.begin(), kMendsForCertain.end(), remedy.name) != kMendsForCertain.end() &&
+        takes_value != remedy.value.empty())
+      return remedy;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::pair<Remedy, Finding>> first_remedy(const std::vector<Finding>& findings,
+                                                       const std::vector<std::string>& given) {
+  for (const char* name : kMendsForCertain) {
+    if (std::find(given.begin(), given.end(), name) != given.end()) continue;
+    for (const Finding& finding : findings)
+      if (auto remedy = remedy_of(finding); remedy && remedy->name == name)
+        return std::pair(std::move(*remedy), finding);
+  }
+  return std::nullopt;
+}
+
+}  // namespace stillpoint
