@@ -37,6 +37,7 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_motion_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_trajectory_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_errors_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_pose_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timeline_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_timings_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_parameters_panel(Shared shared);

@@ -34,6 +34,7 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_timings_panel(shared));
   panels.push_back(make_parameters_panel(shared));
   panels.push_back(make_inspector_panel(shared));
+  panels.push_back(make_pose_panel(shared));
   panels.push_back(make_outline_panel(shared));
   panels.push_back(make_check_panel(shared));
   panels.push_back(make_log_panel(shared));
