@@ -43,7 +43,9 @@ class CheckPanel final : public NamedPanel {
     // Its bar is always there: one that came with the last line would wrap all others anew under the mouse.
     ImGui::BeginChild("findings", {}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(frame.fonts.small);
-    ImGui::TextColored(to_vec4(frame.theme.text_dim), "%s", state_of(session).c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
+    text_in_lines(state_of(session));
+    ImGui::PopStyleColor();
     ImGui::PopFont();
     if (!check.findings.empty() && ImGui::BeginTable("findings", 2, ImGuiTableFlags_BordersInnerH)) {
       ImGui::TableSetupColumn("about", ImGuiTableColumnFlags_WidthFixed, 76.0F * frame.scale);

@@ -30,11 +30,19 @@ class PosePanel final : public NamedPanel {
     collect(session, has_truth && error_);
     Footer footer;
     footer.caption = caption(has_truth);
-    const int count = of_ == kSpeed ? 1 : 3;
+    // All three one below the other where they can be read, else one of them.
+    const bool all = of_ != kSpeed && ImGui::GetContentRegionAvail().y > kRoomForAll * frame.scale;
+    if (of_ != kSpeed && !all)
+      controls.choice("axis",
+                      of_ == kRotation ? std::vector<std::string>{"Roll", "Pitch", "Yaw"}
+                                       : std::vector<std::string>{"x", "y", "z"},
+                      axis_);
+    const int count = all ? 3 : 1;
     const ImVec2 room = room_above(frame, footer);
     const float gaps = static_cast<float>(count - 1) * ImGui::GetStyle().ItemSpacing.y;
     const ImVec2 size{room.x, (room.y - gaps) / static_cast<float>(count)};
-    for (int i = 0; i < count; ++i) plot(frame, session, actions, i, size);
+    for (int i = 0; i < count; ++i)
+      plot(frame, session, actions, all ? i : of_ == kSpeed ? 0 : axis_, i == 0, i + 1 == count, size);
     footer.draw(frame);
   }
 
@@ -86,15 +94,17 @@ class PosePanel final : public NamedPanel {
     return of_ == kSpeed ? series.speed : of_ == kRotation ? series.angle[at] : series.position[at];
   }
 
-  void plot(const UiFrame& frame, const SessionView& session, PanelActions& actions, int which, ImVec2 size) {
+  void plot(const UiFrame& frame, const SessionView& session, PanelActions& actions, int which, bool first,
+            bool lowest, ImVec2 size) {
     constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"}, kTurns = {"roll", "pitch", "yaw"};
     const auto at = static_cast<std::size_t>(which);
     const ThemeName theme = frame.theme.name;
-    Plot plot{.x_label = "time", .x_unit = "s"};
+    Plot plot;
+    if (lowest) plot.x_label = "time", plot.x_unit = "s";
     plot.y_label = of_ == kSpeed ? "speed" : of_ == kRotation ? kTurns[at] : kAxes[at];
     plot.y_unit = of_ == kSpeed ? "m/s" : of_ == kRotation ? "°" : "m";
     plot.y_from_zero = of_ == kSpeed;
-    plot.legend = which == 0;
+    plot.legend = first;
     const auto add = [&](const std::string& name, const PoseSeries& series, Rgb colour, SeriesStyle style,
                          float width) {
       if (!series.time.empty())
@@ -130,7 +140,9 @@ class PosePanel final : public NamedPanel {
                           : " Runs are aligned (SE(3)) to the ground truth.");
   }
 
-  int of_ = kPosition;
+  static constexpr float kRoomForAll = 330.0F;  // design px
+
+  int of_ = kPosition, axis_ = 0;
   bool error_ = false;
   Key kept_;
   std::optional<PoseSeries> truth_, baseline_;
