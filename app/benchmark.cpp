@@ -170,9 +170,10 @@ RunResult run_one(const FrameSource& source, const Config& config, int frames, R
 
 /// A run, kept below `runs` where an origin is given. Nothing where it was interrupted: half a run is no run
 /// to compare with.
-std::optional<RunReport> run_and_keep(const FrameSource& source, const Config& config, int frames,
-                                      const std::filesystem::path& runs, bool force,
-                                      const std::optional<SequenceOrigin>& origin) {
+/// @throws InputError where the sequence went away meanwhile
+std::optional<RunReport> run_and_keep(const FrameSource& source, const std::string& where,
+                                      const Config& config, int frames, const std::filesystem::path& runs,
+                                      bool force, const std::optional<SequenceOrigin>& origin) {
   const std::filesystem::path folder = runs / run_label(config);
   std::optional<RecordsWriter> records;
   if (origin) {
@@ -180,15 +181,14 @@ std::optional<RunReport> run_and_keep(const FrameSource& source, const Config& c
     records.emplace(folder, *origin, config);
   }
   const RunResult result = run_one(source, config, frames, records ? &*records : nullptr);
-  if (result.interrupted) {
-    if (records) std::filesystem::remove(folder / kRecordsName);
+  const std::string gone = why_gone(where, result);
+  if (result.interrupted || !gone.empty()) {
+    if (records) records->discard();
+    if (!gone.empty()) throw InputError(gone);
     return std::nullopt;
   }
   RunReport report = report_on(result, source);
-  if (records) {
-    write_run(folder, result, report, source, *origin);
-    records->finish(result, source.ground_truth());
-  }
+  if (records) write_run(folder, result, report, source, *origin, *records);
   return report;
 }
 
@@ -225,8 +225,8 @@ void benchmark(BenchmarkArguments arguments) {
         if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
         set_parameter(config, "run.odometry=" + engine);
         set_parameter(config, "run.method=" + method);
-        const std::optional<RunReport> report =
-            run_and_keep(*source, config, frames, runs, arguments.force || arguments.resume, origin);
+        const std::optional<RunReport> report = run_and_keep(*source, places[i], config, frames, runs,
+                                                             arguments.force || arguments.resume, origin);
         if (!report) continue;
         results.runs.push_back(result_of(*report));
         results.runs.back().sequence = name;

@@ -4,12 +4,13 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/error.hpp"
 #include "core/media/jpeg_codec.hpp"
 #include "core/media/media_module.hpp"
+#include "core/out_folder.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -98,9 +99,12 @@ bool save_image(const std::filesystem::path& path, const cv::Mat& image, int png
                                                ? encode_jpeg(image, kJpegQuality)
                                                : media_module().encode(ending, image, {});
   if (bytes.empty()) return false;
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  return static_cast<bool>(file.flush());
+  try {
+    write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace stillpoint
