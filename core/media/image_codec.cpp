@@ -53,8 +53,10 @@ cv::Mat decode_plain_png(const std::vector<unsigned char>& bytes) {
 
 cv::Mat decode_pixels(const std::vector<unsigned char>& bytes) {
   cv::Mat image = decode_plain_png(bytes);
-  if (image.empty()) image = decode_plain_jpeg(bytes);
-  return image.empty() ? media_module().decode(bytes) : image;
+  // OpenCV's decoder of JPEGs is libjpeg as well, and would only print what is amiss.
+  bool is_damaged = false;
+  if (image.empty()) image = decode_plain_jpeg(bytes, &is_damaged);
+  return image.empty() && !is_damaged ? media_module().decode(bytes) : image;
 }
 
 std::vector<unsigned char> encode_png(const cv::Mat& image, int level) {
