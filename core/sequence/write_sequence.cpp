@@ -81,12 +81,16 @@ void check_target(const fs::path& folder, bool force) {
     throw InputError(fmt::format("{} holds a sequence already; give --force to replace it", folder.string()));
 }
 
+/// A folder by its whole name, links followed.
+fs::path whole_name(const fs::path& folder) {
+  std::error_code none;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(folder, none), none);
+  return whole.filename().empty() ? whole.parent_path() : whole;
+}
+
 /// Where a sequence is written before it takes its folder: beside it, as FOLDER.part. The folder itself where
 /// there is no room beside, above a mounted disk.
-fs::path place_while_written(const fs::path& folder) {
-  std::error_code none;
-  fs::path whole = fs::weakly_canonical(fs::absolute(folder, none), none);
-  if (whole.filename().empty()) whole = whole.parent_path();
+fs::path place_while_written(fs::path whole) {
   struct stat own {
   }, parent{};
   const bool is_there = ::stat(whole.c_str(), &own) == 0;
@@ -346,7 +350,7 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
   WriteOptions own = options;
   own.layout = layout_of(source, options);
   check_target(folder, options.force);
-  const fs::path place = place_while_written(folder);
+  const fs::path whole = whole_name(folder), place = place_while_written(whole);
   try {
     prepare(source, place, own);
     const std::vector<WrittenFrame> frames = write_frames(source, place, own);
@@ -361,7 +365,7 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
       throw InputError(
           fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
     write_lists(source, place, frames, own);
-    take_place(place, folder);
+    take_place(place, whole);
     return written;
   } catch (...) {
     try {

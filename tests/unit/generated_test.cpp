@@ -332,6 +332,11 @@ TEST(WriteSequence, AnEarlierOneStaysUntilTheNewOneIsWhole) {
   EXPECT_EQ(sentence_of([&] { write_sequence(*longer, out, options); }), "stopped");
   EXPECT_EQ(open_sequence(out)->size(), 3);
   EXPECT_EQ(folder.read("out/notes/mine.md"), "mine");
+  fs::create_directory_symlink("out", folder.path("link"));
+  options.progress = {};
+  write_sequence(*make_generated_sequence("room", 2, 1), folder.path("link"), options);
+  EXPECT_TRUE(fs::is_symlink(folder.path("link")));
+  EXPECT_EQ(open_sequence(out)->size(), 2);
   EXPECT_FALSE(fs::exists(folder.path("out.part")));
 }
 
