@@ -98,13 +98,14 @@ void write_run(const std::filesystem::path& folder, const RunResult& run, const 
 
 std::string why_gone(const std::string& where, const RunResult& run) {
   std::error_code none;
-  const auto is_read = [](const FrameRecord& record) { return record.status != FrameStatus::unreadable; };
-  if (where.starts_with("generated:") || std::filesystem::exists(where, none) || run.records.empty() ||
-      is_read(run.records.back()))
-    return {};
-  const auto after = std::find_if(run.records.rbegin(), run.records.rend(), is_read).base();
-  return fmt::format("{}: went away while it was read; no frame from {} on could be read", where,
-                     after->index);
+  if (where.starts_with("generated:") || std::filesystem::exists(where, none)) return {};
+  // Frames are read ahead of each other, so that the last one may have been read.
+  const auto unread = std::count_if(run.records.begin(), run.records.end(), [](const FrameRecord& record) {
+    return record.status == FrameStatus::unreadable;
+  });
+  if (unread == 0) return {};
+  return fmt::format("{}: went away while it was read; {} of {} frames could not be read", where, unread,
+                     run.records.size());
 }
 
 }  // namespace stillpoint

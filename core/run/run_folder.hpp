@@ -32,8 +32,8 @@ inline constexpr const char* kSummaryName = "summary.json";
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,
                const FrameSource& source, const SequenceOrigin& origin, RecordsWriter& records);
 
-/// Why a run's last frames could not be read, where its sequence went away while it was read: one sentence;
-/// empty where it is there.
+/// Why frames of a run could not be read, where its sequence went away while it was read: one sentence; empty
+/// where it is there, and where all of them could.
 /// @param where as open_sequence was given it
 [[nodiscard]] std::string why_gone(const std::string& where, const RunResult& run);
 
