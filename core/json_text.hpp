@@ -11,7 +11,7 @@ namespace stillpoint {
 /// @throws nlohmann::json::parse_error
 template <typename Json = nlohmann::json>
 [[nodiscard]] Json parse_json(std::string_view text, bool throws = true) {
-  constexpr int kDeepestJson = 64;
+  constexpr int kDeepestJson = 200;
   return Json::parse(
       text, [](int depth, typename Json::parse_event_t, const Json&) { return depth < kDeepestJson; },
       throws);

@@ -36,14 +36,6 @@ std::uint64_t bits_a_pixel(const unsigned char* header) {
   return static_cast<std::uint64_t>(channels) * header[8];
 }
 
-std::string no_such_size(std::uint64_t width, std::uint64_t height) {
-  return fmt::format("claims a size of {}x{} px, expected 1 to {} px a side", width, height, kLargestSide);
-}
-std::string too_few_bytes(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
-  return fmt::format("is damaged (it claims {}x{} px, more than its {} bytes can hold)", width, height,
-                     bytes);
-}
-
 /// Why a PNG is not whole, or nothing; `kept` receives it without the chunks that say nothing about pixels,
 /// which are what libpng prints warnings about.
 std::string check_png(const Bytes& bytes, Bytes& kept) {
@@ -66,13 +58,17 @@ std::string check_png(const Bytes& bytes, Bytes& kept) {
       if (type != "IHDR" || length != 13) return "is damaged (it has no PNG header)";
       width = big_endian(chunk + 8), height = big_endian(chunk + 12), bits = bits_a_pixel(chunk + 8);
       if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide)
-        return no_such_size(width, height);
+        return fmt::format("claims a size of {}x{} px, expected 1 to {} px a side", width, height,
+                           kLargestSide);
     }
     if (type == "IDAT") packed += length;
     const bool critical = (chunk[4] & 0x20U) == 0;
     if (critical || type == "tRNS") kept.insert(kept.end(), chunk, chunk + length + 12);
-    if (type == "IEND")
-      return width * height * bits > kBitsAByte * packed ? too_few_bytes(width, height, bytes.size()) : "";
+    if (type == "IEND") {
+      if (width * height * bits <= kBitsAByte * packed) return {};
+      return fmt::format("is damaged (it claims {}x{} px, more than its {} bytes can hold)", width, height,
+                         bytes.size());
+    }
     at += length + 12;
   }
 }
