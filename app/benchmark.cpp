@@ -136,6 +136,7 @@ RunResult run_one(const FrameSource& source, const Config& config, int first, in
 /// A sequence of the benchmark.
 struct Place {
   const FrameSource& source;
+  std::string where;                       ///< as it was named
   std::string name;                        ///< numbered where several sequences share it
   int frames = 0;                          ///< so many are run
   std::optional<SequenceOrigin> origin{};  ///< where runs are kept …
@@ -144,6 +145,7 @@ struct Place {
 
 /// A run, kept where the benchmark has a folder and the run is the one without perturbation. Nothing where it
 /// was interrupted: half a run is no run to compare with.
+/// @throws InputError where the sequence went away meanwhile
 std::optional<BenchmarkResult> run_and_keep(const Place& place, const Config& config, int repeat,
                                             const BenchmarkArguments& arguments) {
   const Perturbation by = perturbation(repeat);
@@ -160,15 +162,14 @@ std::optional<BenchmarkResult> run_and_keep(const Place& place, const Config& co
   const int first = std::min(by.first_frame, place.frames - 1);
   const RunResult result = run_one(place.source, perturbed(config, by), first, place.frames - first, label,
                                    records ? &*records : nullptr);
-  if (result.interrupted) {
-    if (records) std::filesystem::remove(folder / kRecordsName);
+  const std::string gone = why_gone(place.where, result);
+  if (result.interrupted || !gone.empty()) {
+    if (records) records->discard();
+    if (!gone.empty()) throw InputError(gone);
     return std::nullopt;
   }
   const RunReport report = report_on(result, place.source);
-  if (records) {
-    write_run(folder, result, report, place.source, *place.origin);
-    records->finish(result, place.source.ground_truth());
-  }
+  if (records) write_run(folder, result, report, place.source, *place.origin, *records);
   BenchmarkResult reached = result_of(report, !method_named(report.method).baseline);
   reached.sequence = place.name;
   reached.repeat = repeat;
@@ -215,7 +216,7 @@ void benchmark(BenchmarkArguments arguments) {
   std::vector<Place> places;
   for (const OpenedSequence& sequence : sequences) {
     const FrameSource& source = *sequence.source;
-    Place place{source, source.name(), frames_of(source, arguments.frames.frames)};
+    Place place{source, sequence.where, source.name(), frames_of(source, arguments.frames.frames)};
     for (int number = 2; !names.insert(place.name).second; ++number)
       place.name = fmt::format("{} {}", source.name(), number);
     const SequenceOrigin origin = origin_of(source, sequence.where, sequence.options);

@@ -53,7 +53,7 @@ class LayeredFrames {
 
 }  // namespace
 
-McapFileName::McapFileName(std::string path, bool force) : path_(std::move(path)), part_(path_ + ".part") {
+McapFileName::McapFileName(std::string path, bool force) : path_(std::move(path)), file_(path_) {
   std::error_code none;
   if (fs::path(path_).extension() != ".mcap")
     throw InputError(fmt::format("{}: expected a name that ends in .mcap", path_));
@@ -61,16 +61,8 @@ McapFileName::McapFileName(std::string path, bool force) : path_(std::move(path)
     throw InputError(fmt::format("{}: is there already; --force replaces it", path_));
 }
 
-McapFileName::~McapFileName() {
-  std::error_code none;
-  if (!finished_) fs::remove(part_, none);
-}
-
 void McapFileName::finish() {
-  std::error_code failed;
-  fs::rename(part_, path_, failed);
-  if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path_, failed.message()));
-  finished_ = true;
+  file_.keep();
   write_text_file(fs::path(path_).replace_extension(".foxglove.json"), foxglove_layout());
 }
 

@@ -3,25 +3,24 @@
 #include <string>
 #include <vector>
 
+#include "core/out_folder.hpp"
+
 namespace stillpoint {
 
-/// A file that is written under another name and takes its own once it is whole; else it goes away.
+/// The name of an MCAP file, which it takes once it is whole.
 class McapFileName {
  public:
   /// @throws InputError where something of that name is there and `force` is not given, or its end is not
   /// .mcap
   McapFileName(std::string path, bool force);
-  ~McapFileName();
-  McapFileName(const McapFileName&) = delete;
-  McapFileName& operator=(const McapFileName&) = delete;
-  [[nodiscard]] const std::string& while_written() const { return part_; }
+  [[nodiscard]] std::string while_written() const { return file_.while_written().string(); }
   /// Gives it its name, and lays Foxglove's layout beside it.
   /// @throws InputError when that cannot be
   void finish();
 
  private:
-  std::string path_, part_;
-  bool finished_ = false;
+  std::string path_;
+  WholeFile file_;
 };
 
 /// A finished run as an MCAP file. @param layers ids of stages' layers to write beside

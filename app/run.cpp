@@ -97,8 +97,7 @@ void run(const RunArguments& arguments) {
   // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
   if (records) {
-    write_run(arguments.out, result, report, *source, *origin);
-    records->finish(result, source->ground_truth());
+    write_run(arguments.out, result, report, *source, *origin, *records);
     fmt::print("  written to    {}\n", arguments.out);
   }
   if (mcap) {
@@ -111,6 +110,7 @@ void run(const RunArguments& arguments) {
                arguments.out.empty() ? "" : "; what was done is kept");
     throw_if_interrupted();
   }
+  if (const std::string gone = why_gone(arguments.sequence, result); !gone.empty()) throw InputError(gone);
   const bool held = condition && tell_frames(*condition, result, report);
   if (report.tracked == 0)
     throw InputError(fmt::format("{}: no frame could be tracked ({})", arguments.sequence,

@@ -32,7 +32,10 @@ const Format* format_of(const std::filesystem::path& path) {
 }  // namespace
 
 VideoFile::VideoFile(std::filesystem::path path, double frames_per_second, bool force)
-    : path_(std::move(path)), frames_per_second_(frames_per_second), video_(media_module().video()) {
+    : path_(std::move(path)),
+      file_(path_, path_.extension().string()),
+      frames_per_second_(frames_per_second),
+      video_(media_module().video()) {
   if (format_of(path_) == nullptr)
     throw InputError(fmt::format("--video {}: a video's name ends in .mp4, .mkv or .avi", path_.string()));
   std::error_code failed;
@@ -45,7 +48,7 @@ VideoFile::VideoFile(std::filesystem::path path, double frames_per_second, bool 
 
 void VideoFile::begin(const cv::Size& size) {
   for (const std::string& codec : format_of(path_)->codecs) {
-    if (video_->open(path_.string(), codec, frames_per_second_, size)) return;
+    if (video_->open(file_.while_written().string(), codec, frames_per_second_, size)) return;
   }
   throw InputError(fmt::format(
       "--video {}: cannot be written (no permission, or OpenCV has no encoder for it)", path_.string()));
@@ -61,9 +64,10 @@ void VideoFile::add(const cv::Mat& image) {
 
 void VideoFile::finish() {
   video_->close();
-  if (media_module().readable_frames(path_.string(), images_) < images_)
+  if (media_module().readable_frames(file_.while_written().string(), images_) < images_)
     throw InputError(
         fmt::format("--video {}: could not be written whole (the disk is full?)", path_.string()));
+  file_.keep();
 }
 
 }  // namespace stillpoint

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/media/media_module.hpp"
+#include "core/out_folder.hpp"
 
 namespace stillpoint {
 
@@ -21,7 +22,7 @@ class VideoFile {
   /// @throws InputError when the file cannot be begun
   void add(const cv::Mat& image);
 
-  /// Ends the file and reads it back.
+  /// Ends the file, reads it back and gives it its name.
   /// @throws InputError when not everything could be written
   void finish();
 
@@ -29,6 +30,7 @@ class VideoFile {
   void begin(const cv::Size& size);
 
   std::filesystem::path path_;
+  WholeFile file_;
   double frames_per_second_;
   std::unique_ptr<VideoSink> video_;
   int images_ = 0;

@@ -28,12 +28,46 @@ void prepare_out_folder(const std::filesystem::path& folder, std::initializer_li
         fmt::format("{}: the folder cannot be written to ({})", folder.string(), std::strerror(errno)));
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
+WholeFile::WholeFile(std::filesystem::path path, std::string_view ending) : path_(std::move(path)) {
+  std::error_code none;
+  if (std::filesystem::is_symlink(path_, none)) path_ = std::filesystem::weakly_canonical(path_, none);
+  const bool is_other =
+      std::filesystem::exists(path_, none) && !std::filesystem::is_regular_file(path_, none);
+  part_ = path_;
+  if (!is_other) (part_ += ".part") += ending;
+}
+
+WholeFile::~WholeFile() {
+  std::error_code none;
+  if (!kept_ && part_ != path_) std::filesystem::remove(part_, none);
+}
+
+void WholeFile::keep() {
+  std::error_code failed;
+  if (part_ != path_) std::filesystem::rename(part_, path_, failed);
+  if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path_.string(), failed.message()));
+  kept_ = true;
+}
+
+void WholeFiles::add(const std::filesystem::path& path, std::string_view text) {
+  const WholeFile& whole = files_.emplace_back(path);
   errno = 0;
-  std::ofstream file(path, std::ios::binary);
+  std::ofstream file(whole.while_written(), std::ios::binary);
   file << text;
-  file.close();
-  if (!file) throw InputError(fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
+  file.close();  // a full disk may show only now
+  if (!file)
+    throw InputError(
+        fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno != 0 ? errno : EIO)));
+}
+
+void WholeFiles::keep() {
+  for (WholeFile& file : files_) file.keep();
+}
+
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  WholeFiles files;
+  files.add(path, text);
+  files.keep();
 }
 
 }  // namespace stillpoint

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
@@ -15,7 +16,41 @@ namespace stillpoint {
 void prepare_out_folder(const std::filesystem::path& folder, std::initializer_list<std::string_view> signs,
                         bool force);
 
-/// Writes a whole text file.
+/// A file that takes its name once it is whole: until keep() it is written beside, as PATH.part, and what was
+/// there before stays, whatever ends the program. Links are followed; what is no regular file (a device, a
+/// pipe) is written to as it is.
+class WholeFile {
+ public:
+  /// @param ending of the name while it is written, for writers that go by it: ".mp4"
+  explicit WholeFile(std::filesystem::path path, std::string_view ending = {});
+  /// What was not kept goes away.
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  /// Where it is to be written.
+  [[nodiscard]] const std::filesystem::path& while_written() const { return part_; }
+  /// It is whole. @throws InputError when it cannot take its name
+  void keep();
+
+ private:
+  std::filesystem::path path_, part_;
+  bool kept_ = false;
+};
+
+/// Files that take their names together, once all of them are whole.
+class WholeFiles {
+ public:
+  /// @throws InputError when it cannot be written; none has taken its name then
+  void add(const std::filesystem::path& path, std::string_view text);
+  /// @throws InputError when one cannot take its name
+  void keep();
+
+ private:
+  std::deque<WholeFile> files_;
+};
+
+/// Writes a file, whole or not at all.
 /// @throws InputError when it cannot be written whole: no rights, a full disk.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -112,7 +113,7 @@ nlohmann::ordered_json to_json(const BenchmarkResults& results) {
 
 BenchmarkResults results_from_json(const std::string& text, const std::string& where) {
   try {
-    const nlohmann::json json = nlohmann::json::parse(text);
+    const nlohmann::json json = parse_json(text);
     BenchmarkResults results;
     constexpr std::string_view kProgram = "stillpoint ";
     const auto program = json.at("program").get<std::string>();

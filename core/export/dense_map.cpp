@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/out_folder.hpp"
 
 namespace stillpoint {
 namespace {
@@ -150,13 +148,7 @@ void write_dense_ply(const std::string& path, const std::vector<DensePoint>& poi
     for (int i = 0; i < 3; ++i) number(point.normal[i]);
     for (int i = 2; i >= 0; --i) bytes += static_cast<char>(point.colour[i]);
   }
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file)
-    throw InputError(
-        fmt::format("{}: cannot be written ({})", path, std::strerror(errno != 0 ? errno : EIO)));
+  write_text_file(path, bytes);
 }
 
 BackgroundFiller::BackgroundFiller(const Camera& camera, const DenseMapOptions& options)

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
-#include "core/error.hpp"
 #include "core/geometry/trajectory_file.hpp"
+#include "core/out_folder.hpp"
 
 namespace stillpoint {
 
@@ -19,18 +16,19 @@ Trajectory read_tum_trajectory(const std::string& path, std::vector<std::string>
   return std::move(file.poses);
 }
 
-void write_tum_trajectory(const std::string& path, const Trajectory& trajectory) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+std::string tum_text(const Trajectory& trajectory) {
+  std::string text;
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.world_from_camera.translation();
     const Eigen::Quaterniond q(pose.world_from_camera.linear());
-    file << fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp, t.x(),
+    text += fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.timestamp, t.x(),
                         t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
-  file.close();
-  if (!file)
-    throw InputError(fmt::format("{}: the trajectory cannot be written ({})", path, std::strerror(errno)));
+  return text;
+}
+
+void write_tum_trajectory(const std::string& path, const Trajectory& trajectory) {
+  write_text_file(path, tum_text(trajectory));
 }
 
 std::optional<std::size_t> nearest_pose(const Trajectory& trajectory, double timestamp, double tolerance) {

@@ -23,7 +23,10 @@ using Trajectory = std::vector<StampedPose>;
 [[nodiscard]] Trajectory read_tum_trajectory(const std::string& path,
                                              std::vector<std::string>* warnings = nullptr);
 
-/// Writes a TUM trajectory, exactly 8 columns a line.
+/// A trajectory in the TUM format, exactly 8 columns a line.
+[[nodiscard]] std::string tum_text(const Trajectory& trajectory);
+
+/// Writes it to a file.
 /// @throws InputError when the file cannot be written.
 void write_tum_trajectory(const std::string& path, const Trajectory& trajectory);
 

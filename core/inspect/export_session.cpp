@@ -63,8 +63,7 @@ std::optional<std::string> write_run_over(const FrameSource& source, const fs::p
   const RunResult run = run_sequence(source, config, options);
   if (run.interrupted) return std::nullopt;
   const RunReport report = report_on(run, source);
-  write_run(folder, run, report, source, origin);
-  records.finish(run, source.ground_truth());
+  write_run(folder, run, report, source, origin, records);
   return report.hash;
 }
 

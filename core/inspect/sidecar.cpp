@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/out_folder.hpp"
 #include "core/text_file.hpp"
 
@@ -169,7 +170,7 @@ Marks read_marks(const fs::path& file, const MarkedSequence& sequence) {
   std::stringstream text;
   text << stream.rdbuf();
   try {
-    return MarksReader(file, sequence).read(Json::parse(text.str()));
+    return MarksReader(file, sequence).read(parse_json<Json>(text.str()));
   } catch (const Json::exception&) {
     throw InputError(fmt::format("{}: is damaged; it is left as it is, and what is marked now is not kept",
                                  file.string()));
@@ -177,19 +178,7 @@ Marks read_marks(const fs::path& file, const MarkedSequence& sequence) {
 }
 
 void write_marks(const fs::path& file, const MarkedSequence& sequence, const Marks& marks) {
-  // A reader finds the old file or the new one, and after a full disk the old one.
-  const fs::path beside = file.string() + ".part";
-  const std::string text =
-      to_json(sequence, marks).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  std::error_code error;
-  try {
-    write_text_file(beside, text);
-  } catch (const InputError&) {
-    fs::remove(beside, error);
-    throw;
-  }
-  fs::rename(beside, file, error);
-  if (error) throw InputError(fmt::format("{}: cannot be written ({})", file.string(), error.message()));
+  write_text_file(file, to_json(sequence, marks).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 Sidecar::Sidecar(const SidecarPlaces& places, MarkedSequence sequence) : sequence_(std::move(sequence)) {

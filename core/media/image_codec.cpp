@@ -4,12 +4,13 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/error.hpp"
 #include "core/media/jpeg_codec.hpp"
 #include "core/media/media_module.hpp"
+#include "core/out_folder.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -52,8 +53,10 @@ cv::Mat decode_plain_png(const std::vector<unsigned char>& bytes) {
 
 cv::Mat decode_pixels(const std::vector<unsigned char>& bytes) {
   cv::Mat image = decode_plain_png(bytes);
-  if (image.empty()) image = decode_plain_jpeg(bytes);
-  return image.empty() ? media_module().decode(bytes) : image;
+  // OpenCV's decoder of JPEGs is libjpeg as well, and would only print what is amiss.
+  bool is_damaged = false;
+  if (image.empty()) image = decode_plain_jpeg(bytes, &is_damaged);
+  return image.empty() && !is_damaged ? media_module().decode(bytes) : image;
 }
 
 std::vector<unsigned char> encode_png(const cv::Mat& image, int level) {
@@ -98,9 +101,12 @@ bool save_image(const std::filesystem::path& path, const cv::Mat& image, int png
                                                ? encode_jpeg(image, kJpegQuality)
                                                : media_module().encode(ending, image, {});
   if (bytes.empty()) return false;
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  return static_cast<bool>(file.flush());
+  try {
+    write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace stillpoint

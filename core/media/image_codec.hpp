@@ -23,7 +23,7 @@ namespace stillpoint {
 /// @returns nothing where it cannot be encoded
 [[nodiscard]] std::vector<unsigned char> encode_jpeg(const cv::Mat& image, int quality);
 
-/// Writes an image, in the format that the path's ending names.
+/// Writes an image, whole or not at all, in the format that the path's ending names.
 /// @returns whether it could be written
 [[nodiscard]] bool save_image(const std::filesystem::path& path, const cv::Mat& image, int png_level = 3);
 

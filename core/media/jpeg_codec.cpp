@@ -1,10 +1,16 @@
 #include "core/media/jpeg_codec.hpp"
 
+#include <fmt/format.h>
+#include <jerror.h>
 #include <jpeglib.h>
 
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+
+#include "core/error.hpp"
 
 namespace stillpoint {
 namespace {
@@ -13,6 +19,8 @@ namespace {
 struct JpegErrors {
   jpeg_error_mgr base;  // first: libjpeg knows of this alone
   std::jmp_buf place;
+  bool is_other = false;  // a kind that is left to OpenCV
+  std::string refusal;    // why what it claims cannot be
 
   JpegErrors() {
     jpeg_std_error(&base);
@@ -23,16 +31,45 @@ struct JpegErrors {
   }
 };
 
+constexpr JDIMENSION kLargestSide = 16384;  // px
+// A block of 64 px takes a bit at least (ISO 10918-1, F.1.2), so that what is decoded is bounded by the file.
+constexpr std::uint64_t kPixelsAByte = 64 * 8;
+constexpr int kMostScans = 100;  // each goes through the whole image; encoders make ten
+
+std::string refusal_of(const jpeg_decompress_struct& info, std::size_t bytes) {
+  const std::uint64_t width = info.image_width, height = info.image_height;
+  if (width > kLargestSide || height > kLargestSide)
+    return fmt::format("it claims a size of {}x{} px, expected 1 to {} px a side", width, height,
+                       kLargestSide);
+  if (width * height > kPixelsAByte * bytes)
+    return fmt::format("it claims {}x{} px, more than its {} bytes can hold", width, height, bytes);
+  return {};
+}
+
+/// Ends the decoding of an image of too many scans.
+void count_scans(j_common_ptr any) {
+  if (reinterpret_cast<j_decompress_ptr>(any)->input_scan_number <= kMostScans) return;
+  reinterpret_cast<JpegErrors*>(any->err)->refusal = fmt::format("it has more than {} scans", kMostScans);
+  any->err->error_exit(any);
+}
+
 // What lies between setjmp and longjmp has nothing to clean up: images and buffers are the callers'.
 
-bool decode_into(jpeg_decompress_struct& info, JpegErrors& errors, const std::vector<unsigned char>& bytes,
-                 cv::Mat& image) {
-  if (setjmp(errors.place) != 0) return false;
+bool decode_into(jpeg_decompress_struct& info, JpegErrors& errors, jpeg_progress_mgr& progress,
+                 const std::vector<unsigned char>& bytes, cv::Mat& image) {
+  if (setjmp(errors.place) != 0) {
+    errors.is_other = errors.base.msg_code == JERR_NO_HUFF_TABLE;  // a camera's, which has the usual ones
+    return false;
+  }
   jpeg_create_decompress(&info);
+  info.progress = &progress;
   jpeg_mem_src(&info, bytes.data(), bytes.size());
   jpeg_read_header(&info, TRUE);
+  errors.refusal = refusal_of(info, bytes.size());
+  if (!errors.refusal.empty()) return false;
   const bool grey = info.jpeg_color_space == JCS_GRAYSCALE;
-  if (!grey && info.jpeg_color_space != JCS_YCbCr && info.jpeg_color_space != JCS_RGB) return false;
+  errors.is_other = !grey && info.jpeg_color_space != JCS_YCbCr && info.jpeg_color_space != JCS_RGB;
+  if (errors.is_other) return false;
   info.out_color_space = grey ? JCS_GRAYSCALE : JCS_EXT_BGR;
   jpeg_start_decompress(&info);
   image.create(static_cast<int>(info.output_height), static_cast<int>(info.output_width),
@@ -42,7 +79,7 @@ bool decode_into(jpeg_decompress_struct& info, JpegErrors& errors, const std::ve
     jpeg_read_scanlines(&info, &row, 1);
   }
   jpeg_finish_decompress(&info);
-  return errors.base.num_warnings == 0;
+  return true;
 }
 
 bool encode_into(jpeg_compress_struct& info, JpegErrors& errors, const cv::Mat& image, int quality,
@@ -67,14 +104,18 @@ bool encode_into(jpeg_compress_struct& info, JpegErrors& errors, const cv::Mat& 
 
 }  // namespace
 
-cv::Mat decode_plain_jpeg(const std::vector<unsigned char>& bytes) {
+cv::Mat decode_plain_jpeg(const std::vector<unsigned char>& bytes, bool* is_damaged) {
   if (bytes.size() < 3 || bytes[0] != 0xFF || bytes[1] != 0xD8 || bytes[2] != 0xFF) return {};
   JpegErrors errors;
   jpeg_decompress_struct info{};
   info.err = &errors.base;
+  jpeg_progress_mgr progress{};
+  progress.progress_monitor = count_scans;
   cv::Mat image;
-  const bool sound = decode_into(info, errors, bytes, image);
+  const bool sound = decode_into(info, errors, progress, bytes, image);
   jpeg_destroy_decompress(&info);
+  if (!errors.refusal.empty()) throw InputError(errors.refusal);
+  if (is_damaged != nullptr) *is_damaged = !sound && !errors.is_other;
   return sound ? image : cv::Mat();
 }
 

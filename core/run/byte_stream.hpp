@@ -18,7 +18,7 @@ template <typename T>
 concept PlainValue = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
 /// Bytes being put together.
-class ByteWriter {
+class ByteStreamWriter {
  public:
   template <PlainValue T>
   void operator()(const T& value) {
@@ -41,14 +41,14 @@ class ByteWriter {
 };
 
 /// Bytes being taken apart.
-class ByteReader {
+class ByteStreamReader {
  public:
-  /// Thrown when more is wanted than there is.
+  /// Thrown when more is wanted than there is, and for what cannot be.
   struct Exhausted : std::runtime_error {
     Exhausted() : std::runtime_error("ends early") {}
   };
 
-  explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+  explicit ByteStreamReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   template <PlainValue T>
   void operator()(T& value) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/sequence/archive/archive_store.hpp"
 #include "core/sequence/file_store.hpp"
 
@@ -20,8 +21,9 @@ std::string estimate_in(const FileStore& results) {
   for (const std::string& name : results.entries(""))
     if (name.ends_with(".tum") || name.ends_with(".kitti")) trajectories.push_back(name);
   if (results.is_file("info.json")) {
-    const auto info = nlohmann::json::parse(results.read_text("info.json"), nullptr, false);
-    const std::string estimate = info.is_object() ? info.value("est_name", "") : "";
+    const auto info = parse_json(results.read_text("info.json"), false);
+    const bool is_named = info.is_object() && info.contains("est_name") && info["est_name"].is_string();
+    const std::string estimate = is_named ? info["est_name"].get<std::string>() : "";
     const std::string name = std::filesystem::path(estimate).filename().string();
     for (const std::string& trajectory : trajectories)
       if (!name.empty() && trajectory.starts_with(name)) return trajectory;

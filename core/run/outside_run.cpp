@@ -87,6 +87,12 @@ std::optional<FeatureFate> fate_of(std::string_view word) {
   return found == kFates.end() ? std::nullopt : std::optional(found->second);
 }
 
+/// An id as a table gives it; kNone for what is none.
+int whole_or_none(const std::optional<double>& number) {
+  constexpr double kLargest = 2e9;
+  return number && *number >= 0 && *number <= kLargest ? static_cast<int>(*number) : kNone;
+}
+
 /// `features.csv`: a head that names the columns stamp (or frame), x, y, state, id, point, then a feature a
 /// row.
 class FeatureTable {
@@ -136,7 +142,8 @@ class FeatureTable {
       when = number(by_number_ ? "frame" : "stamp"), x = number("x"), y = number("y");
       fate = fate_of(cells[static_cast<std::size_t>(column_["state"])]);
     }
-    if (!when || !x || !y || !fate || !std::isfinite(*x) || !std::isfinite(*y)) {
+    constexpr double kFarthest = 1e6;  // px: what is farther out lies in no image
+    if (!when || !x || !y || !fate || !(std::abs(*x) < kFarthest) || !(std::abs(*y) < kFarthest)) {
       if (malformed_++ == 0)
         first_ = fmt::format(
             "{}:{}: is no feature; expected numbers, and a state of inlier, outlier, removed, unmatched or "
@@ -154,7 +161,7 @@ class FeatureTable {
     feature.fate = *fate;
     const auto point = number("point"), id = number("id");
     if (feature.fate == FeatureFate::inlier || feature.fate == FeatureFate::outlier)
-      feature.map_point = static_cast<int>(point ? *point : id.value_or(kNone));
+      feature.map_point = whole_or_none(point ? point : id);
     records_[*frame].features.push_back(feature);
   }
 
@@ -340,8 +347,7 @@ void write_outside_run(const std::string& folder, const RecordedRun& run, const 
   RunReport report = report_on(run.run, source);
   report.method = run.outside;
   report.odometry = "its own";
-  write_run(folder, run.run, report, source, run.origin);
-  records.finish(run.run, run.ground_truth);
+  write_run(folder, run.run, report, source, run.origin, records);
 }
 
 }  // namespace stillpoint

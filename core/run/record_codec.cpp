@@ -19,12 +19,12 @@ void transfer_stamped(Archive& archive, Stamped& stamped) {
   transfer_pose(archive, stamped.world_from_camera);
 }
 
-void transfer_optional_pose(ByteWriter& to, const std::optional<Pose>& pose) {
+void transfer_optional_pose(ByteStreamWriter& to, const std::optional<Pose>& pose) {
   to(pose.has_value());
   if (pose) transfer_pose(to, *pose);
 }
 
-void transfer_optional_pose(ByteReader& from, std::optional<Pose>& pose) {
+void transfer_optional_pose(ByteStreamReader& from, std::optional<Pose>& pose) {
   bool known = false;
   from(known);
   pose.reset();
@@ -46,14 +46,14 @@ void transfer_direct_fields(Archive& archive, Direct& d) {
   for (auto* figure : {&d.rms_before, &d.rms_after, &d.correlation, &d.agreement, &d.share}) archive(*figure);
 }
 
-void transfer_direct(ByteWriter& to, const DirectRecord& direct) {
+void transfer_direct(ByteStreamWriter& to, const DirectRecord& direct) {
   transfer_direct_fields(to, direct);
   to(static_cast<std::uint32_t>(direct.seen ? direct.seen->size() : 0));
   if (direct.seen)
     for (const DirectPatch& patch : *direct.seen) transfer_patch(to, patch);
 }
 
-void transfer_direct(ByteReader& from, DirectRecord& direct) {
+void transfer_direct(ByteStreamReader& from, DirectRecord& direct) {
   constexpr std::size_t kPatchBytes = 16;
   transfer_direct_fields(from, direct);
   std::vector<DirectPatch> seen(from.count(kPatchBytes));
@@ -61,7 +61,7 @@ void transfer_direct(ByteReader& from, DirectRecord& direct) {
   direct.seen = seen.empty() ? nullptr : std::make_shared<const std::vector<DirectPatch>>(std::move(seen));
 }
 
-void transfer_motion_figures(ByteWriter& to, const std::vector<MotionFigure>& figures) {
+void transfer_motion_figures(ByteStreamWriter& to, const std::vector<MotionFigure>& figures) {
   to(static_cast<std::uint32_t>(figures.size()));
   for (const MotionFigure& figure : figures) {
     to(figure.name);
@@ -69,7 +69,7 @@ void transfer_motion_figures(ByteWriter& to, const std::vector<MotionFigure>& fi
   }
 }
 
-void transfer_motion_figures(ByteReader& from, std::vector<MotionFigure>& figures) {
+void transfer_motion_figures(ByteStreamReader& from, std::vector<MotionFigure>& figures) {
   constexpr std::size_t kFigureBytes = 12;
   figures.resize(from.count(kFigureBytes));
   for (MotionFigure& figure : figures) {
@@ -159,17 +159,22 @@ void transfer_point(Archive& archive, SavedPointType& point) {
 constexpr std::size_t kFeatureBytes = 26;
 
 template <typename Thing, typename Transfer>
-void write_all(ByteWriter& to, const std::vector<Thing>& things, const Transfer& transfer) {
+void write_all(ByteStreamWriter& to, const std::vector<Thing>& things, const Transfer& transfer) {
   to(static_cast<std::uint32_t>(things.size()));
   for (const Thing& thing : things) transfer(to, thing);
 }
 
 template <typename Thing, typename Transfer>
-std::vector<Thing> read_all(ByteReader& from, const Transfer& transfer) {
-  std::vector<Thing> things(from.count(1));
+std::vector<Thing> read_all(ByteStreamReader& from, const Transfer& transfer) {
+  ByteStreamWriter one;  // all are of one size
+  const Thing example{};
+  transfer(one, example);
+  std::vector<Thing> things(from.count(one.bytes().size()));
   for (Thing& thing : things) transfer(from, thing);
   return things;
 }
+
+constexpr std::uint16_t kLargestSide = 16384;  // px, as image files have it
 
 // Sixteen bits a run; a longer one goes on after a run of none.
 constexpr std::size_t kLongestRun = 0xFFFF;
@@ -206,40 +211,59 @@ PackedMask pack_mask(const cv::Mat& mask) {
   return pack;
 }
 
-cv::Mat unpack_mask(const PackedMask& pack) {
+cv::Size check_mask(const PackedMask& pack) {
   if (pack.empty()) return {};
-  ByteReader from(pack);
-  std::uint16_t width = 0, height = 0;
+  ByteStreamReader from(pack);
+  std::uint16_t width = 0, height = 0, length = 0;
   from(width);
   from(height);
-  cv::Mat mask(height, width, CV_8UC1, cv::Scalar(0));
-  std::size_t at = 0;
-  for (bool set = false; !from.empty(); set = !set) {
-    std::uint16_t length = 0;
+  if (width > kLargestSide || height > kLargestSide) throw ByteStreamReader::Exhausted();
+  std::size_t left = std::size_t{width} * height;
+  while (!from.empty()) {
     from(length);
-    if (length > mask.total() - at) throw ByteReader::Exhausted();
-    if (set) std::fill_n(mask.data + at, length, std::uint8_t{255});
+    if (length > left) throw ByteStreamReader::Exhausted();
+    left -= length;
+  }
+  if (left != 0) throw ByteStreamReader::Exhausted();
+  return {width, height};
+}
+
+cv::Mat unpack_mask(const PackedMask& pack) {
+  const cv::Size size = check_mask(pack);
+  if (size.empty()) return {};
+  cv::Mat mask(size, CV_8UC1, cv::Scalar(0));
+  ByteStreamReader from(pack);
+  std::uint16_t length = 0;
+  from(length), from(length);  // the sides
+  std::uint8_t* at = mask.data;
+  for (bool set = false; !from.empty(); set = !set) {
+    from(length);
+    if (set) std::fill_n(at, length, std::uint8_t{255});
     at += length;
   }
-  if (at != mask.total()) throw ByteReader::Exhausted();
   return mask;
 }
 
-void write_record(ByteWriter& to, const FrameRecord& record) {
+void write_record(ByteStreamWriter& to, const FrameRecord& record) {
   transfer_fields(to, record);
   to(static_cast<std::uint32_t>(record.features.size()));
   transfer_features(to, record.features);
 }
 
-FrameRecord read_record(ByteReader& from) {
+FrameRecord read_record(ByteStreamReader& from) {
   FrameRecord record;
   transfer_fields(from, record);
   record.features.resize(from.count(kFeatureBytes));
   transfer_features(from, record.features);
+  // What names a kind is looked up by it later.
+  const bool is_known = record.status <= FrameStatus::unreadable && record.pose_start <= PoseStart::direct &&
+                        std::all_of(record.features.begin(), record.features.end(),
+                                    [](const FeatureRecord& f) { return f.fate <= FeatureFate::removed; });
+  if (!is_known) throw ByteStreamReader::Exhausted();
   return record;
 }
 
-void write_end(ByteWriter& to, const RunEnd& end) {
+void write_end(ByteStreamWriter& to, const RunEnd& end) {
   write_all(to, end.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
   write_all(to, end.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
   for (const auto* points : {&end.points, &end.moved})
@@ -250,7 +274,7 @@ void write_end(ByteWriter& to, const RunEnd& end) {
   to(end.interrupted);
 }
 
-RunEnd read_end(ByteReader& from) {
+RunEnd read_end(ByteStreamReader& from) {
   RunEnd end;
   end.scores = read_all<FrameScores>(from, [](auto& a, auto& s) { transfer_scores(a, s); });
   end.keyframes = read_all<SavedKeyframe>(from, [](auto& a, auto& k) { transfer_keyframe(a, k); });

@@ -19,14 +19,19 @@ using PackedMask = std::vector<std::uint8_t>;
 /// @param mask CV_8UC1, zero or not; empty gives an empty pack
 [[nodiscard]] PackedMask pack_mask(const cv::Mat& mask);
 
+/// The size (px) of a packed mask; empty for an empty pack. No image is made for it, which may be thousands
+/// of times as large.
+/// @throws ByteStreamReader::Exhausted for a pack that is not whole
+cv::Size check_mask(const PackedMask& pack);
+
 /// CV_8UC1, 0 and 255; empty for an empty pack.
-/// @throws ByteReader::Exhausted for a pack that is not whole
+/// @throws ByteStreamReader::Exhausted for a pack that is not whole
 [[nodiscard]] cv::Mat unpack_mask(const PackedMask& pack);
 
 /// A record with its features.
-void write_record(ByteWriter& to, const FrameRecord& record);
-/// @throws ByteReader::Exhausted
-[[nodiscard]] FrameRecord read_record(ByteReader& from);
+void write_record(ByteStreamWriter& to, const FrameRecord& record);
+/// @throws ByteStreamReader::Exhausted, for what is of no known kind as well
+[[nodiscard]] FrameRecord read_record(ByteStreamReader& from);
 
 /// What is known once a run has ended.
 struct RunEnd {
@@ -39,8 +44,8 @@ struct RunEnd {
   bool interrupted = false;
 };
 
-void write_end(ByteWriter& to, const RunEnd& end);
-/// @throws ByteReader::Exhausted
-[[nodiscard]] RunEnd read_end(ByteReader& from);
+void write_end(ByteStreamWriter& to, const RunEnd& end);
+/// @throws ByteStreamReader::Exhausted
+[[nodiscard]] RunEnd read_end(ByteStreamReader& from);
 
 }  // namespace stillpoint

@@ -10,7 +10,9 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 
 namespace stillpoint {
@@ -18,7 +20,8 @@ namespace {
 
 constexpr std::string_view kMagic = "STILLREC";
 constexpr char kHeader = 'H', kFrame = 'F', kEnd = 'E';
-constexpr std::uint32_t kMostBytes = 1U << 28U;  // of one chunk: more is damage
+constexpr std::uint32_t kMostBytes = 1U << 28U;  // of one chunk unpacked: more is damage
+constexpr std::uint64_t kMostPacked = 1032;      // bytes that zlib packs into one, at most
 constexpr int kPackingLevel = 1;                 // fast: the run waits for it
 
 std::uint32_t crc_of(const std::vector<std::uint8_t>& bytes) {
@@ -33,6 +36,9 @@ class ChunkReader {
  public:
   explicit ChunkReader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
     if (!file_) throw InputError(fmt::format("{}: cannot be read ({})", path.string(), std::strerror(errno)));
+    std::error_code none;
+    bytes_ = std::filesystem::file_size(path, none);
+    if (none) bytes_ = 0;
     std::string magic(kMagic.size(), ' ');
     std::uint32_t version = 0;
     file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
@@ -54,7 +60,8 @@ class ChunkReader {
     for (std::uint32_t* number : {&size, &unpacked_size, &crc})
       file_.read(reinterpret_cast<char*>(number), sizeof(*number));
     if (!file_) throw CutShort();
-    if (size > kMostBytes || unpacked_size > kMostBytes) throw damaged();
+    if (size > bytes_) throw CutShort();
+    if (unpacked_size > kMostBytes || unpacked_size > kMostPacked * size) throw damaged();
     packed_.resize(size);
     file_.read(reinterpret_cast<char*>(packed_.data()), size);
     if (!file_) throw CutShort();
@@ -77,12 +84,13 @@ class ChunkReader {
  private:
   std::filesystem::path path_;
   std::ifstream file_;
+  std::uintmax_t bytes_ = 0;  // of the file: no chunk has more
   std::vector<std::uint8_t> packed_;
   int frames_ = 0;
 };
 
 void read_header(const std::vector<std::uint8_t>& content, RecordedRun& recorded) {
-  const auto json = nlohmann::json::parse(content.begin(), content.end());
+  const auto json = parse_json({reinterpret_cast<const char*>(content.data()), content.size()});
   recorded.origin = origin_from_json(json.at("sequence"));
   json.at("frames_in_sequence").get_to(recorded.run.frames_in_sequence);
   recorded.outside = json.value("outside", "");
@@ -90,16 +98,20 @@ void read_header(const std::vector<std::uint8_t>& content, RecordedRun& recorded
 }
 
 void read_frame(const std::vector<std::uint8_t>& content, RecordedRun& recorded) {
-  ByteReader from(content);
+  ByteStreamReader from(content);
   recorded.run.records.push_back(read_record(from));
+  const std::vector<FrameRecord>& records = recorded.run.records;
+  const auto first = static_cast<std::int64_t>(records.front().index);
+  if (first < 0 || records.back().index != first + static_cast<std::int64_t>(records.size()) - 1)
+    throw ByteStreamReader::Exhausted();
   PackedMask mask;
   from(mask);
-  (void)unpack_mask(mask);  // one that is damaged is told now, not when it is shown
+  check_mask(mask);  // one that is damaged is told now, not when it is shown
   recorded.masks.push_back(std::move(mask));
 }
 
 void read_tail(const std::vector<std::uint8_t>& content, RecordedRun& recorded) {
-  ByteReader from(content);
+  ByteStreamReader from(content);
   RunEnd end = read_end(from);
   from(recorded.hash);
   RunResult& run = recorded.run;
@@ -126,7 +138,10 @@ void do_without_tail(RecordedRun& recorded, const std::string& cut_short) {
 
 RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin,
                              const Config& config, const std::string& outside)
-    : path_(run_folder / kRecordsName), file_(path_, std::ios::binary) {
+    : path_(run_folder / kRecordsName) {
+  std::error_code none;
+  if (std::filesystem::exists(run_folder / kSummaryName, none)) beside_.emplace(path_);
+  file_.open(beside_ ? beside_->while_written() : path_, std::ios::binary);
   if (!file_)
     throw InputError(fmt::format("{}: cannot be written ({})", path_.string(), std::strerror(errno)));
   file_.write(kMagic.data(), static_cast<std::streamsize>(kMagic.size()));
@@ -157,6 +172,17 @@ void RecordsWriter::finish(const RunResult& run, const Trajectory& ground_truth)
   if (!file_ && error_ == 0) error_ = errno != 0 ? errno : EIO;
   if (error_ != 0)
     throw InputError(fmt::format("{}: cannot be written ({})", path_.string(), std::strerror(error_)));
+}
+
+void RecordsWriter::keep() {
+  if (beside_) beside_->keep();
+}
+
+void RecordsWriter::discard() {
+  file_.close();
+  std::error_code none;
+  if (!beside_) std::filesystem::remove(path_, none);
+  beside_.reset();
 }
 
 void RecordsWriter::put_chunk(char kind) {
@@ -202,7 +228,7 @@ RecordedRun read_records(const std::filesystem::path& run_folder) {
     }
   } catch (const CutShort&) {
     if (recorded.run.records.empty()) throw InputError(chunks.cut_short());
-  } catch (const ByteReader::Exhausted&) {
+  } catch (const ByteStreamReader::Exhausted&) {
     throw chunks.damaged();
   } catch (const nlohmann::json::exception&) {
     throw chunks.damaged();

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/out_folder.hpp"
 #include "core/run/record_codec.hpp"
 #include "core/run/sequence_origin.hpp"
 
@@ -32,7 +34,8 @@ inline constexpr std::uint32_t kRecordsVersion = 8;
 inline constexpr const char* kRecordsName = "records.bin";
 
 /// Writes records.bin while a run goes on. A frame that cannot be written, because the disk is full, does not
-/// end the run: finish() tells.
+/// end the run: finish() tells. In a folder that holds a finished run it is written beside that run's, which
+/// stays until keep().
 class RecordsWriter {
  public:
   /// @throws InputError when the file cannot be made
@@ -46,12 +49,18 @@ class RecordsWriter {
   /// @throws InputError when not everything could be written
   void finish(const RunResult& run, const Trajectory& ground_truth);
 
+  /// What was finished takes its name. @throws InputError when it cannot
+  void keep();
+  /// Takes away what was written.
+  void discard();
+
  private:
   void put_chunk(char kind);
 
   std::filesystem::path path_;
+  std::optional<WholeFile> beside_;
   std::ofstream file_;
-  ByteWriter content_;
+  ByteStreamWriter content_;
   std::vector<std::uint8_t> packed_;
   int error_ = 0;  // errno of the first write that failed
 };

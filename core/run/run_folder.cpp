@@ -73,23 +73,39 @@ std::string map_ply(const RunResult& run) {
 }  // namespace
 
 void prepare_run_folder(const std::filesystem::path& folder, bool force) {
-  prepare_out_folder(folder, {"summary.json", "trajectory.txt"}, force);
+  prepare_out_folder(folder, {kSummaryName, "trajectory.txt"}, force);
 }
 
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,
-               const FrameSource& source, const SequenceOrigin& origin) {
+               const FrameSource& source, const SequenceOrigin& origin, RecordsWriter& records) {
   Trajectory keyframes;
   for (const SavedKeyframe& keyframe : run.keyframes) keyframes.push_back(keyframe.pose);
-  write_tum_trajectory((folder / "trajectory.txt").string(), run.trajectory);
-  write_tum_trajectory((folder / "trajectory_live.txt").string(), run.live);
-  write_tum_trajectory((folder / "keyframes.txt").string(), keyframes);
-  write_text_file(folder / "frames.csv", frames_csv(run, report));
-  write_text_file(folder / "config.toml", to_toml(run.config));
-  write_text_file(folder / "map.ply", map_ply(run));
+  WholeFiles files;
+  files.add(folder / "trajectory.txt", tum_text(run.trajectory));
+  files.add(folder / "trajectory_live.txt", tum_text(run.live));
+  files.add(folder / "keyframes.txt", tum_text(keyframes));
+  files.add(folder / "frames.csv", frames_csv(run, report));
+  files.add(folder / "config.toml", to_toml(run.config));
+  files.add(folder / "map.ply", map_ply(run));
   nlohmann::ordered_json summary = to_summary(report, run, source);
   summary["source"] = to_json(origin, folder);
-  write_text_file(folder / "summary.json",
-                  summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  files.add(folder / kSummaryName,
+            summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  records.finish(run, source.ground_truth());
+  files.keep();
+  records.keep();
+}
+
+std::string why_gone(const std::string& where, const RunResult& run) {
+  std::error_code none;
+  if (where.starts_with("generated:") || std::filesystem::exists(where, none)) return {};
+  // Frames are read ahead of each other, so that the last one may have been read.
+  const auto unread = std::count_if(run.records.begin(), run.records.end(), [](const FrameRecord& record) {
+    return record.status == FrameStatus::unreadable;
+  });
+  if (unread == 0) return {};
+  return fmt::format("{}: went away while it was read; {} of {} frames could not be read", where, unread,
+                     run.records.size());
 }
 
 }  // namespace stillpoint

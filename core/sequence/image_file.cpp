@@ -29,11 +29,22 @@ std::uint32_t big_endian(const unsigned char* p) {
          static_cast<std::uint32_t>(p[2]) << 8 | p[3];
 }
 
+/// Bits of a pixel as a PNG stores it. @param header what its IHDR holds
+std::uint64_t bits_a_pixel(const unsigned char* header) {
+  const int colour_type = header[9];
+  const int channels = colour_type == 2 ? 3 : colour_type == 4 ? 2 : colour_type == 6 ? 4 : 1;
+  return static_cast<std::uint64_t>(channels) * header[8];
+}
+
 /// Why a PNG is not whole, or nothing; `kept` receives it without the chunks that say nothing about pixels,
 /// which are what libpng prints warnings about.
 std::string check_png(const Bytes& bytes, Bytes& kept) {
   kept.reserve(bytes.size());
   kept.assign(bytes.begin(), bytes.begin() + kPngSignature.size());
+  // Deflate packs 1032 bytes into one at most (zlib's technical details), so that what is decoded is bounded
+  // by the file.
+  constexpr std::uint64_t kBitsAByte = 8 * 1032;
+  std::uint64_t width = 0, height = 0, bits = 0, packed = 0;
   for (std::size_t at = kPngSignature.size();;) {
     if (bytes.size() - at < 12) return "is truncated";
     const unsigned char* chunk = bytes.data() + at;
@@ -45,14 +56,19 @@ std::string check_png(const Bytes& bytes, Bytes& kept) {
       return "is damaged (a checksum is wrong)";
     if (at == kPngSignature.size()) {
       if (type != "IHDR" || length != 13) return "is damaged (it has no PNG header)";
-      const std::uint32_t width = big_endian(chunk + 8), height = big_endian(chunk + 12);
+      width = big_endian(chunk + 8), height = big_endian(chunk + 12), bits = bits_a_pixel(chunk + 8);
       if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide)
         return fmt::format("claims a size of {}x{} px, expected 1 to {} px a side", width, height,
                            kLargestSide);
     }
+    if (type == "IDAT") packed += length;
     const bool critical = (chunk[4] & 0x20U) == 0;
     if (critical || type == "tRNS") kept.insert(kept.end(), chunk, chunk + length + 12);
-    if (type == "IEND") return {};
+    if (type == "IEND") {
+      if (width * height * bits <= kBitsAByte * packed) return {};
+      return fmt::format("is damaged (it claims {}x{} px, more than its {} bytes can hold)", width, height,
+                         bytes.size());
+    }
     at += length + 12;
   }
 }
@@ -65,13 +81,25 @@ bool jpeg_has_its_end(const Bytes& bytes) {
   return false;
 }
 
+bool begins_with(const Bytes& bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin(),
+                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
+}
+
+/// Whether the first bytes are those of a format that is read. OpenCV is asked for no other: it would hand
+/// them to whatever decoders it was built with.
+bool is_read_format(const Bytes& bytes) {
+  using namespace std::string_view_literals;
+  for (const std::string_view magic : {"\x89PNG"sv, "\xFF\xD8\xFF"sv, "BM"sv, "II*\0"sv, "MM\0*"sv, "RIFF"sv,
+                                       "P1"sv, "P2"sv, "P3"sv, "P4"sv, "P5"sv, "P6"sv})
+    if (begins_with(bytes, magic)) return true;
+  return false;
+}
+
 /// Formats that depth is kept in and that are not read: what a file of one says, and the way on.
 std::string other_format(const Bytes& bytes) {
-  const auto begins = [&](std::string_view magic) {
-    return bytes.size() >= magic.size() &&
-           std::equal(magic.begin(), magic.end(), bytes.begin(),
-                      [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
-  };
+  const auto begins = [&](std::string_view magic) { return begins_with(bytes, magic); };
   const char* kind = begins("\x93NUMPY")            ? "a NumPy array"
                      : begins("\x76\x2f\x31\x01")   ? "an OpenEXR image"
                      : begins("Pf") || begins("PF") ? "a PFM image"
@@ -132,16 +160,15 @@ ImageRead decode_image(const std::string& path, Bytes bytes) {
         std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
       fault = check_png(bytes, kept);
       bytes.swap(kept);
-    } else if (fault.empty() && bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8 &&
-               !jpeg_has_its_end(bytes)) {
-      fault = "is truncated";
+    } else if (fault.empty() && bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8) {
+      fault = jpeg_has_its_end(bytes) ? "" : "is truncated";
     }
     if (fault.empty()) {
       // The orientation tag is ignored, as it must be: calibrations speak of stored
       // pixels.
       fault = other_format(bytes);
       result.is_other_format = !fault.empty();
-      if (fault.empty()) result.image = decode_pixels(bytes);
+      if (fault.empty() && is_read_format(bytes)) result.image = decode_pixels(bytes);
       if (fault.empty() && result.image.empty()) fault = "is no image that can be decoded";
     }
     if (!fault.empty()) result.problem = fmt::format("{} {}", path, fault);

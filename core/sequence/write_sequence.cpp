@@ -1,13 +1,16 @@
 #include "core/sequence/write_sequence.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -38,21 +41,11 @@ std::vector<std::string> text_files() {
   return files;
 }
 
-void write_bytes(const fs::path& path, const void* bytes, std::size_t size) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-  file.close();  // a full disk may show only now
-  if (!file)
-    throw InputError(fmt::format("{} cannot be written: {}", path.string(),
-                                 errno != 0 ? std::strerror(errno) : "unknown reason"));
-}
-
 void write_png(const fs::path& path, const cv::Mat& image) {
   // Noise hardly packs better at higher levels, and packing must keep up with rendering.
   const std::vector<std::uint8_t> bytes = encode_png(image, 1);
   if (bytes.empty()) throw InputError(fmt::format("{} cannot be packed as PNG", path.string()));
-  write_bytes(path, bytes.data(), bytes.size());
+  write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 bool holds_sequence(const fs::path& folder) {
@@ -79,17 +72,66 @@ void clear_sequence(const fs::path& folder) {
   }
 }
 
+void check_target(const fs::path& folder, bool force) {
+  std::error_code none;
+  if (fs::exists(folder, none) && !fs::is_directory(folder, none))
+    throw InputError(
+        fmt::format("{} is a file, expected a folder to write the sequence to", folder.string()));
+  if (!force && holds_sequence(folder))
+    throw InputError(fmt::format("{} holds a sequence already; give --force to replace it", folder.string()));
+}
+
+/// A folder by its whole name, links followed.
+fs::path whole_name(const fs::path& folder) {
+  std::error_code none;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(folder, none), none);
+  return whole.filename().empty() ? whole.parent_path() : whole;
+}
+
+/// Where a sequence is written before it takes its folder: beside it, as FOLDER.part. The folder itself where
+/// there is no room beside, above a mounted disk.
+fs::path place_while_written(fs::path whole) {
+  struct stat own {
+  }, parent{};
+  const bool is_there = ::stat(whole.c_str(), &own) == 0;
+  if (is_there && (::stat(whole.parent_path().c_str(), &parent) != 0 || own.st_dev != parent.st_dev ||
+                   ::access(whole.parent_path().c_str(), W_OK) != 0))
+    return whole;
+  return whole += ".part";
+}
+
+/// What lies in one folder goes into another, but for what is there already.
+void move_into(const fs::path& from, const fs::path& to) {
+  std::error_code none;
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(from, none)) entries.push_back(entry.path());
+  for (const fs::path& entry : entries) {
+    const fs::path target = to / entry.filename();
+    if (!fs::exists(target, none))
+      fs::rename(entry, target, none);
+    else if (fs::is_directory(entry, none) && fs::is_directory(target, none))
+      move_into(entry, target);
+  }
+  fs::remove(from, none);
+}
+
+/// What was written takes its folder; what others put there stays there.
+void take_place(const fs::path& written, const fs::path& folder) {
+  std::error_code failed;
+  if (fs::equivalent(written, folder, failed)) return;
+  fs::rename(written, folder, failed);  // onto nothing, or an empty folder
+  if (!failed) return;
+  // Both change places in one step, so that the earlier sequence or this one is there, whatever ends the
+  // program.
+  if (::renameat2(AT_FDCWD, written.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) != 0)
+    throw InputError(fmt::format("{} cannot be written to: {}", folder.string(), std::strerror(errno)));
+  clear_sequence(written);
+  move_into(written, folder);
+}
+
 void prepare(const FrameSource& source, const fs::path& folder, const WriteOptions& options) {
   try {
-    if (fs::exists(folder) && !fs::is_directory(folder))
-      throw InputError(
-          fmt::format("{} is a file, expected a folder to write the sequence to", folder.string()));
-    if (holds_sequence(folder)) {
-      if (!options.force)
-        throw InputError(
-            fmt::format("{} holds a sequence already; give --force to replace it", folder.string()));
-      clear_sequence(folder);
-    }
+    if (fs::exists(folder)) clear_sequence(folder);
     if (options.rgbd != nullptr) {
       make_rgbd_folders(*options.rgbd, folder);
     } else if (options.layout == SequenceLayout::tum) {
@@ -307,18 +349,32 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
   if (source.size() == 0) throw InputError(fmt::format("{} has no frames to write", source.name()));
   WriteOptions own = options;
   own.layout = layout_of(source, options);
-  prepare(source, folder, own);
-  const std::vector<WrittenFrame> frames = write_frames(source, folder, own);
-  WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
-  for (int i = 0; i < written.frames; ++i)
-    if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
-  if (!frames.empty() && written.unreadable.size() == frames.size()) {
-    remove_sequence(folder);
-    throw InputError(
-        fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
+  check_target(folder, options.force);
+  const fs::path whole = whole_name(folder), place = place_while_written(whole);
+  try {
+    prepare(source, place, own);
+    const std::vector<WrittenFrame> frames = write_frames(source, place, own);
+    WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
+    for (int i = 0; i < written.frames; ++i)
+      if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
+    if (frames.empty()) {
+      remove_sequence(place);
+      return written;
+    }
+    if (written.unreadable.size() == frames.size())
+      throw InputError(
+          fmt::format("{}: none of the {} frames to write can be read", source.name(), frames.size()));
+    write_lists(source, place, frames, own);
+    take_place(place, whole);
+    return written;
+  } catch (...) {
+    try {
+      remove_sequence(place);
+    } catch (
+        const fs::filesystem_error&) {  // what cannot be taken away stays; the first fault is the one to tell
+    }
+    throw;
   }
-  if (!frames.empty()) write_lists(source, folder, frames, own);
-  return written;
 }
 
 }  // namespace stillpoint

@@ -38,11 +38,11 @@ struct WrittenSequence {
 };
 
 /// Writes a sequence as a folder, RGB-D in TUM RGB-D layout: `rgb/`, `depth/` (16 bit), `mask/` (255 =
-/// moving), the three lists, `groundtruth.txt`, `associations.txt` and `camera.toml`. The lists come last, so
-/// that a folder whose writing was cut short is no sequence. Every frame keeps its number: of one that cannot
-/// be read, or has no depth, the lists name the image that is missing, and who reads the folder is told so.
-/// Stereo pairs are written as they were matched, rectified, in a layout of theirs; masks and their list as
-/// above.
+/// moving), the three lists, `groundtruth.txt`, `associations.txt` and `camera.toml`. It is written beside
+/// the folder, as FOLDER.part, and takes its place when it is whole: until then an earlier sequence stays,
+/// whatever ends the program. Every frame keeps its number: of one that cannot be read, or has no depth, the
+/// lists name the image that is missing, and who reads the folder is told so. Stereo pairs are written as
+/// they were matched, rectified, in a layout of theirs; masks and their list as above.
 /// @throws InputError in one sentence for a sequence without frames or without one that can be read, a layout
 /// that is not the source's kind, a folder
 ///         that holds a sequence already (unless forced), and whatever cannot be written (no permission, disk

@@ -1,10 +1,8 @@
 // The whole program but its command line, without a display: sequences opened and left.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <fstream>
 #include <future>
 #include <mutex>
@@ -12,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "tests/support/full_disk.hpp"
 #include "tests/support/resident_memory.hpp"
 #include "tests/ui/controller_example.hpp"
 #include "ui/shell/offscreen.hpp"
@@ -276,16 +275,11 @@ TEST(Settings, AFullDiskLeavesWhatWasThere) {
   settings.window_size = {800, 600};
   write_settings(path, settings);
   const std::string before = folder.read("settings.json");
-  // As on a full disk: not a byte more may be written.
-  rlimit limit{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit none{0, limit.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
   settings.window_size = {1234, 777};
-  EXPECT_THROW(write_settings(path, settings), InputError);
-  ::setrlimit(RLIMIT_FSIZE, &limit);
-  std::signal(SIGXFSZ, handler);
+  {
+    const FullDisk full;
+    EXPECT_THROW(write_settings(path, settings), InputError);
+  }
   EXPECT_EQ(folder.read("settings.json"), before);
   write_settings(path, settings);
   EXPECT_EQ(read_settings(path, {}).window_size, settings.window_size);

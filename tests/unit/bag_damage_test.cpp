@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <random>
 
+#include "core/sequence/bag/message_log.hpp"
 #include "core/sequence/source.hpp"
 #include "tests/unit/bag_example.hpp"
 #include "tests/unit/temporary_folder.hpp"
@@ -149,6 +151,22 @@ TEST(DamagedLengths, AreBelievedOnlyAsFarAsTheFileGoes) {
   folder.write("r.mcap", std::string("\x89MCAP0\r\n") + '\x03' + std::string(8, '\x7F'));
   EXPECT_THAT(input_error_of([&] { (void)open_sequence(folder.path("r.mcap")); }),
               HasSubstr("holds no colour images"));
+}
+
+TEST(Rosbag2, OfViewsIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("views.db3");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(
+      sqlite3_exec(
+          database,
+          "CREATE VIEW topics AS SELECT 1 AS id, '/a' AS name, 'b' AS type, 'cdr' AS serialization_format;"
+          "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);",
+          nullptr, nullptr, nullptr),
+      SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_THAT(input_error_of([&] { (void)open_rosbag2_db3(path, path); }), HasSubstr("are tables there"));
 }
 
 }  // namespace

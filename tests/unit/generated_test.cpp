@@ -13,6 +13,7 @@
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/generated/primitives.hpp"
 #include "core/sequence/write_sequence.hpp"
+#include "tests/support/full_disk.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -308,14 +309,35 @@ TEST(WriteSequence, SaysWhatCannotBeWritten) {
               testing::HasSubstr("is a file"));
   EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, fs::path(folder.path("file")) / "inside"); }),
               testing::HasSubstr("cannot be written"));
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to stand for a full disk";
-  fs::create_directories(fs::path(folder.path("full")) / "rgb");
-  fs::create_symlink("/dev/full", fs::path(folder.path("full")) / "rgb" / "1000.000000.png");
-  EXPECT_THAT(sentence_of([&] {
-                write_sequence(*sequence, fs::path(folder.path("full")), {true, 1, {}});
-              }),
-              testing::HasSubstr("No space left"));
-  EXPECT_FALSE(fs::exists(fs::path(folder.path("full")) / "rgb.txt"));
+  const FullDisk full(1000);
+  EXPECT_THAT(sentence_of([&] { write_sequence(*sequence, fs::path(folder.path("full"))); }),
+              testing::HasSubstr("File too large"));
+  EXPECT_FALSE(fs::exists(folder.path("full")));
+  EXPECT_FALSE(fs::exists(folder.path("full.part")));
+}
+
+TEST(WriteSequence, AnEarlierOneStaysUntilTheNewOneIsWhole) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path("out");
+  write_sequence(*make_generated_sequence("room", 1, 1), out);
+  folder.write("out/notes/mine.md", std::string("mine"));
+  const auto longer = make_generated_sequence("room", 3, 1);
+  WriteOptions options{
+      .force = true, .threads = 1, .progress = [&](int, int) { EXPECT_EQ(open_sequence(out)->size(), 1); }};
+  write_sequence(*longer, out, options);
+  EXPECT_EQ(open_sequence(out)->size(), 3);
+  options.progress = [](int done, int) {
+    if (done == 2) throw InputError("stopped");
+  };
+  EXPECT_EQ(sentence_of([&] { write_sequence(*longer, out, options); }), "stopped");
+  EXPECT_EQ(open_sequence(out)->size(), 3);
+  EXPECT_EQ(folder.read("out/notes/mine.md"), "mine");
+  fs::create_directory_symlink("out", folder.path("link"));
+  options.progress = {};
+  write_sequence(*make_generated_sequence("room", 2, 1), folder.path("link"), options);
+  EXPECT_TRUE(fs::is_symlink(folder.path("link")));
+  EXPECT_EQ(open_sequence(out)->size(), 2);
+  EXPECT_FALSE(fs::exists(folder.path("out.part")));
 }
 
 }  // namespace

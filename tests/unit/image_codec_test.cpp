@@ -1,12 +1,16 @@
 #include "core/media/image_codec.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/media/jpeg_codec.hpp"
+#include "core/sequence/image_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -84,14 +88,17 @@ TEST(ImageCodecs, JpegsAreReadAndWrittenAsByOpenCv) {
   EXPECT_TRUE(same_pixels(decode_plain_jpeg(progressive), cv::imdecode(progressive, cv::IMREAD_UNCHANGED)));
 }
 
-TEST(ImageCodecs, ADamagedJpegIsLeftToOpenCv) {
+TEST(ImageCodecs, OfADamagedJpegThereIsWhatCanBeDecoded) {
   std::vector<unsigned char> bytes = encode_jpeg(noise(CV_8UC3), 90);
   ASSERT_FALSE(bytes.empty());
   const std::size_t whole = bytes.size();
   bytes.resize(whole / 2);
-  EXPECT_TRUE(decode_plain_jpeg(bytes).empty());
+  bool is_damaged = true;
+  EXPECT_EQ(decode_plain_jpeg(bytes, &is_damaged).size(), noise(CV_8UC3).size());
+  EXPECT_FALSE(is_damaged);
   bytes.resize(12);
-  EXPECT_TRUE(decode_plain_jpeg(bytes).empty());
+  EXPECT_TRUE(decode_plain_jpeg(bytes, &is_damaged).empty());
+  EXPECT_TRUE(is_damaged);
   EXPECT_TRUE(decode_plain_jpeg({0xFF, 0xD8, 0xFF}).empty());
   EXPECT_TRUE(encode_jpeg(noise(CV_16UC1), 90).empty());
   EXPECT_TRUE(encode_jpeg(cv::Mat(), 90).empty());
@@ -106,6 +113,65 @@ TEST(ImageCodecs, AJpegIsNearAndAFileIsWhatItsNameSays) {
     EXPECT_LT(cv::norm(cv::imread(folder.path(name)), plain, cv::NORM_INF), 4.0) << name;
   }
   EXPECT_FALSE(save_image(folder.path("nowhere/a.png"), plain));
+}
+
+/// What is said of a file that should be no image.
+std::string problem_of(std::vector<unsigned char> bytes) {
+  return decode_image("a.image", std::move(bytes)).problem;
+}
+
+TEST(ImageClaims, OfMorePixelsThanAPngsBytesCanHoldAreRefused) {
+  auto bytes = encode_png(cv::Mat::zeros(6, 8, CV_8UC1), 6);
+  ASSERT_EQ(problem_of(bytes), "");
+  // A width of 16000 px, and the header's checksum made right.
+  bytes[18] = 0x3E, bytes[19] = 0x80;
+  const auto crc = ::crc32_z(0, bytes.data() + 12, 17);
+  for (std::size_t i = 0; i < 4; ++i) bytes[29 + i] = static_cast<unsigned char>(crc >> (24 - 8 * i));
+  EXPECT_THAT(problem_of(bytes), ::testing::HasSubstr("claims 16000x6 px, more than its"));
+}
+
+TEST(ImageClaims, OfMorePixelsThanAJpegsBytesCanHoldAreRefused) {
+  auto bytes = encode_jpeg(cv::Mat::zeros(6, 8, CV_8UC1), 90);
+  ASSERT_EQ(problem_of(bytes), "");
+  const std::vector<unsigned char> frame = {0xFF, 0xC0};
+  const auto at = std::search(bytes.begin(), bytes.end(), frame.begin(), frame.end());
+  ASSERT_NE(at, bytes.end());
+  at[5] = at[7] = 0x3E;
+  EXPECT_THAT(problem_of(bytes), ::testing::HasSubstr("px, more than its"));
+}
+
+TEST(ImageClaims, AJpegOfMoreScansThanAnyEncoderMakesIsRefused) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", cv::Mat::zeros(6, 8, CV_8UC1), bytes, {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  ASSERT_EQ(problem_of(bytes), "");
+  const std::vector<unsigned char> scan = {0xFF, 0xDA, 0, 8, 1, 1, 0, 0, 0, 0};
+  for (int i = 0; i < 100; ++i) bytes.insert(bytes.end() - 2, scan.begin(), scan.end());
+  EXPECT_THAT(problem_of(bytes), ::testing::HasSubstr("has more than 100 scans"));
+}
+
+TEST(ImageClaims, FlatImagesOfAnySizeAreRead) {
+  // What packs best of all: their bytes must do.
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1}) {
+    const cv::Mat flat(4000, 6000, type, cv::Scalar::all(7));
+    EXPECT_EQ(problem_of(encode_png(flat, 9)), "");
+    if (type == CV_16UC1) continue;
+    EXPECT_EQ(problem_of(encode_jpeg(flat, 1)), "");
+  }
+  cv::Mat flat(4000, 6000, CV_8UC3, cv::Scalar::all(7));
+  std::vector<unsigned char> progressive;
+  cv::imencode(".jpg", flat, progressive,
+               {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_OPTIMIZE, 1, cv::IMWRITE_JPEG_QUALITY, 1});
+  EXPECT_EQ(problem_of(progressive), "");
+}
+
+TEST(ImageFormats, OthersAreHandedToNoDecoder) {
+  EXPECT_THAT(problem_of(std::vector<unsigned char>(200, 'x')), ::testing::HasSubstr("is no image"));
+  const cv::Mat image = noise(CV_8UC3);
+  for (const char* ending : {".bmp", ".tiff", ".ppm", ".webp"}) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(ending, image, bytes);
+    EXPECT_EQ(problem_of(bytes), "") << ending;
+  }
 }
 
 }  // namespace

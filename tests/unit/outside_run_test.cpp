@@ -149,6 +149,19 @@ TEST_F(OutsideRun, AFolderBringsFeaturesAndMasks) {
                                      HasSubstr("1 rows belong to no frame of the sequence")));
 }
 
+TEST_F(OutsideRun, FeaturesWithoutAPixelOrAnIdAreNone) {
+  folder_.write("run/CameraTrajectory.txt", drifting(0.0));
+  folder_.write("run/features.csv", fmt::format("stamp,x,y,state,id,point\n{0:.4f},10,20,inlier,4,1e300\n"
+                                                "{0:.4f},10,20,inlier,nan,nan\n{0:.4f},1e300,20,inlier,4,1\n",
+                                                SmallSequence::stamp(3)));
+  const RecordedRun run = read("theirs=" + folder_.path("run"));
+  const std::vector<FeatureRecord>& features = run.run.records[3].features;
+  ASSERT_EQ(features.size(), 2U);
+  EXPECT_EQ(features[0].map_point, kNone);
+  EXPECT_EQ(features[1].map_point, kNone);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("features.csv:4: is no feature")));
+}
+
 TEST_F(OutsideRun, WhatIsNoRunIsRefused) {
   EXPECT_THAT(input_error_of([&] { (void)read(folder_.path("none")); }), HasSubstr("there is no such file"));
   folder_.write("empty/readme.txt", std::string("nothing"));

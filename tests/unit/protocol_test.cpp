@@ -277,6 +277,10 @@ TEST(EstimateFiles, OfReplicaAndEvo) {
   const TrajectoryFile evo = read_estimate_file(folder.path("evo.zip"));
   ASSERT_EQ(evo.poses.size(), 2U);
   EXPECT_EQ(evo.poses[1].world_from_camera.translation().x(), 2.0);
+  folder.write("evo/info.json", std::string(R"({"est_name": 7})"));
+  write_archive(folder.path("seven.zip"), folder.path("evo"), "zip", "");
+  EXPECT_THAT(input_error_of([&] { (void)read_estimate_file(folder.path("seven.zip")); }),
+              HasSubstr("does not say which is the estimate"));
   folder.write("two/a.tum", std::string("0 9 0 0 0 0 0 1\n"));
   folder.write("two/b.tum", std::string("0 9 0 0 0 0 0 1\n"));
   write_archive(folder.path("two.zip"), folder.path("two"), "zip", "");

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/run/open_run.hpp"
 #include "core/run/records_file.hpp"
+#include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/worst_frames.hpp"
 #include "core/sequence/fingerprint.hpp"
@@ -145,6 +146,42 @@ TEST_F(Records, MovedWithTheirSequenceTheyStillFindIt) {
   EXPECT_TRUE(opened.source->read(0).readable());
 }
 
+TEST_F(Records, OfAFinishedRunStayUntilAnotherIsFinished) {
+  out_.write("run/summary.json", std::string("{}\n"));  // what a finished run has
+  const std::string whole = out_.read(records());
+  {
+    RecordsWriter writer(run_folder(), origin_, config_);
+    writer.add({});
+    EXPECT_EQ(out_.read(records()), whole);
+  }
+  EXPECT_EQ(out_.read(records()), whole);
+  EXPECT_FALSE(fs::exists(out_.path("run/records.bin.part")));
+  RecordsWriter writer(run_folder(), origin_, config_);
+  writer.finish({}, {});
+  writer.keep();
+  EXPECT_NE(out_.read(records()), whole);
+}
+
+TEST_F(Records, OfFramesThatDoNotFollowEachOtherAreRefused) {
+  RecordsWriter writer(run_folder(), origin_, config_);
+  FrameResult frame;
+  for (frame.record.index = 0; frame.record.index < 4; frame.record.index += 2) writer.add(frame);
+  EXPECT_THAT(error_when_opened(), HasSubstr("is damaged"));
+}
+
+TEST_F(Records, ARunSaysWhereItsSequenceWentAway) {
+  RunResult run;
+  run.records.resize(3);
+  for (int i = 0; i < 3; ++i) run.records[static_cast<std::size_t>(i)].index = i;
+  run.records[0].status = FrameStatus::tracked;
+  run.records[1].status = run.records[2].status = FrameStatus::unreadable;
+  EXPECT_EQ(why_gone(sequence_.path(), run), "");
+  EXPECT_EQ(why_gone("generated:room", run), "");
+  EXPECT_THAT(why_gone(out_.path("gone"), run), HasSubstr("2 of 3 frames could not be read"));
+  run.records[1].status = run.records[2].status = FrameStatus::tracked;
+  EXPECT_EQ(why_gone(out_.path("gone"), run), "");
+}
+
 TEST_F(Records, WithoutTheirSequenceTheRestStaysUsable) {
   fs::remove_all(sequence_.path());
   const OpenedRun opened = open_run(run_folder());
@@ -237,7 +274,31 @@ TEST(PackedMasks, GiveBackWhatWasPacked) {
   EXPECT_EQ(cv::norm(unpack_mask(pack_mask(mask)), mask, cv::NORM_INF), 0.0);
   PackedMask cut = pack_mask(mask);
   cut.resize(cut.size() / 2);
-  EXPECT_THROW((void)unpack_mask(cut), ByteReader::Exhausted);
+  EXPECT_THROW((void)unpack_mask(cut), ByteStreamReader::Exhausted);
+}
+
+TEST(PackedMasks, OfNoImagesSizeAreRefused) {
+  const PackedMask vast = {0xFF, 0xFF, 0xFF, 0xFF, 0, 0};  // 65535 px a side, and no pixels
+  EXPECT_THROW(check_mask(vast), ByteStreamReader::Exhausted);
+  EXPECT_EQ(check_mask(pack_mask(cv::Mat::zeros(3, 5, CV_8UC1))), cv::Size(5, 3));
+  EXPECT_EQ(check_mask({}), cv::Size());
+}
+
+TEST(RecordCodec, RefusesWhatIsOfNoKnownKind) {
+  FrameRecord record;
+  record.features.resize(2);
+  const auto comes_back = [&record] {
+    ByteStreamWriter to;
+    write_record(to, record);
+    ByteStreamReader from(to.bytes());
+    (void)read_record(from);
+  };
+  EXPECT_NO_THROW(comes_back());
+  record.features[1].fate = static_cast<FeatureFate>(9);
+  EXPECT_THROW(comes_back(), ByteStreamReader::Exhausted);
+  record.features[1].fate = FeatureFate::removed;
+  record.status = static_cast<FrameStatus>(200);
+  EXPECT_THROW(comes_back(), ByteStreamReader::Exhausted);
 }
 
 TEST(Fingerprints, DependOnContentAlone) {

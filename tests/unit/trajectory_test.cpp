@@ -49,7 +49,7 @@ TEST(TumTrajectory, WritesEightColumnsThatReadBackTheSame) {
     EXPECT_LT((read[i].world_from_camera.matrix() - written[i].world_from_camera.matrix()).norm(), 1e-8);
   }
   EXPECT_THAT(input_error_of([&] { write_tum_trajectory(folder.path("no/such/folder.txt"), written); }),
-              HasSubstr("folder.txt: the trajectory cannot be written"));
+              HasSubstr("folder.txt: cannot be written"));
 }
 
 TEST(TumTrajectory, SortsAndDropsRepeatsWithAWarning) {

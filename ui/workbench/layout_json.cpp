@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "ui/workbench/layout.hpp"
 
 namespace stillpoint {
@@ -104,7 +105,7 @@ std::string to_json(const LayoutNode& root) { return node_to_json(root).dump(1) 
 
 LayoutNode parse_layout(const std::string& text, const std::string& name,
                         const std::vector<std::string>& known) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json<Json>(text, false);
   if (json.is_discarded()) throw InputError(fmt::format("{}: is no layout: not JSON", name));
   return LayoutReader(name, known).read(json);
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/out_folder.hpp"
 
 namespace stillpoint {
@@ -66,7 +67,7 @@ Settings read_settings(const fs::path& path, const std::vector<std::string>& kno
   const auto text = read_whole(path);
   if (!text) return {};
   try {
-    return from_json(Json::parse(*text), path, known);
+    return from_json(parse_json<Json>(*text), path, known);
   } catch (const InputError& error) {
     if (problem != nullptr) *problem = error.what();
   } catch (const Json::exception&) {
@@ -88,19 +89,7 @@ void write_settings(const fs::path& path, const Settings& settings) {
         {{"where", one.where}, {"reading", one.reading}, {"settings", one.settings}, {"frame", one.frame}});
   if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));
   prepare_out_folder(path.parent_path(), {}, true);
-  // Beside it first, then in its place: on a full disk what was there before stays.
-  fs::path beside = path;
-  beside += ".new";
-  try {
-    write_text_file(beside, json.dump(1) + '\n');
-  } catch (const InputError&) {
-    std::error_code ignored;
-    fs::remove(beside, ignored);
-    throw;
-  }
-  std::error_code failed;
-  fs::rename(beside, path, failed);
-  if (failed) throw InputError(fmt::format("{}: cannot be written ({})", path.string(), failed.message()));
+  write_text_file(path, json.dump(1) + '\n');
 }
 
 void remember(std::vector<RecentSequence>& recent, RecentSequence sequence) {
@@ -114,7 +103,7 @@ LayoutNode read_layout(const fs::path& path, const std::vector<std::string>& kno
   if (!text)
     throw InputError(
         fmt::format("{}: cannot be read; expected a layout as the window saves it", path.string()));
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = parse_json<Json>(*text, false);
   // The window's own settings hold a layout too.
   if (json.is_object() && json.contains("layout"))
     return parse_layout(json["layout"].dump(), path.string(), known);

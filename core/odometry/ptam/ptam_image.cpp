@@ -159,13 +159,12 @@ double PtamPatch::difference(const cv::Mat& image, const cv::Point& at) const {
   constexpr int kHalf = kPatch / 2;
   if (at.x < kHalf || at.y < kHalf || at.x + kHalf > image.cols || at.y + kHalf > image.rows)
     return std::numeric_limits<double>::infinity();
-  float sum = 0.0F, squares = 0.0F, across = 0.0F;
+  float squares = 0.0F, across = 0.0F;
   for (int y = 0; y < kPatch; ++y) {
     const auto* row = image.ptr<std::uint8_t>(at.y - kHalf + y) + at.x - kHalf;
     for (int x = 0; x < kPatch; ++x) {
-      const auto shown = static_cast<float>(row[x]);
-      const float d = shown - values[static_cast<std::size_t>(y * kPatch + x)];
-      sum += shown, squares += d * d, across += d;
+      const float d = static_cast<float>(row[x]) - values[static_cast<std::size_t>(y * kPatch + x)];
+      squares += d * d, across += d;
     }
   }
   constexpr float kPixels = kPatch * kPatch;

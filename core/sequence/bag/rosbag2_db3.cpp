@@ -41,6 +41,7 @@ class Database final : public MessageLog {
  public:
   Database(std::string file, const std::string& path) : path_(path), file_(std::move(file)) {
     open();
+    refuse_views();
     read_topics();
     read_places();
   }
@@ -104,6 +105,15 @@ class Database final : public MessageLog {
   [[nodiscard]] static std::string text(sqlite3_stmt* row, int column) {
     const auto* value = reinterpret_cast<const char*>(sqlite3_column_text(row, column));
     return value == nullptr ? std::string() : printable(value);
+  }
+
+  /// A view is a query of whoever made the file, and need never end.
+  void refuse_views() const {
+    const Statement views =
+        statement("SELECT 1 FROM sqlite_master WHERE type = 'view' AND name IN ('topics', 'messages')");
+    if (sqlite3_step(views.get()) == SQLITE_ROW)
+      throw InputError(
+          fmt::format("{}: is no rosbag2 database: topics and messages are tables there", path_));
   }
 
   void read_topics() {

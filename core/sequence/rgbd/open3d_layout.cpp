@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/rgbd/rgbd_recording.hpp"
@@ -25,7 +26,7 @@ constexpr const char* kMatrix = "intrinsic_matrix";
 std::optional<std::string> intrinsic_json(const FileStore& folder) {
   for (const std::string& name : folder.entries("")) {
     if (!name.ends_with(".json") || !folder.is_file(name)) continue;
-    const auto json = nlohmann::json::parse(folder.read_text(name), nullptr, false);
+    const auto json = parse_json(folder.read_text(name), false);
     if (json.is_object() && json.contains(kMatrix)) return name;
   }
   return std::nullopt;
@@ -55,7 +56,7 @@ std::optional<std::string> trajectory_log(const FileStore& folder) {
 Camera open3d_camera(const FileStore& folder, const std::string& name, std::vector<std::string>& warnings) {
   const std::string path = folder.path_of(name);
   try {
-    const auto json = nlohmann::json::parse(folder.read_text(name));
+    const auto json = parse_json(folder.read_text(name));
     const auto m = json.at(kMatrix).get<std::vector<double>>();
     if (m.size() != 9)
       throw InputError(fmt::format("{}: {} has {} numbers, expected 9", path, kMatrix, m.size()));

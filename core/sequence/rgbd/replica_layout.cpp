@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/geometry/trajectory_file.hpp"
+#include "core/json_text.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/rgbd/rgbd_recording.hpp"
@@ -27,7 +28,7 @@ Camera replica_camera(const FileStore& folder) {
         "FILE does)",
         folder.place(), kParameters));
   try {
-    const auto parameters = nlohmann::json::parse(folder.read_text(name)).at("camera");
+    const auto parameters = parse_json(folder.read_text(name)).at("camera");
     Camera camera;
     camera.name = "replica";
     camera.width = pixels_of(parameters.at("w")), camera.height = pixels_of(parameters.at("h"));

@@ -71,7 +71,7 @@ class SessionDebug : public ::testing::Test {
 /// All that a record holds, times left out, as bytes.
 inline std::vector<std::uint8_t> bytes_of(FrameRecord record) {
   record.ms = {};
-  ByteWriter bytes;
+  ByteStreamWriter bytes;
   write_record(bytes, record);
   return bytes.bytes();
 }

@@ -37,6 +37,21 @@ TEST(Marks, ComeBackAsTheyWereWritten) {
   EXPECT_FALSE(fs::exists(folder.path("m.json.part")));
 }
 
+TEST(Marks, NestedBeyondAllReasonAreRefused) {
+  const TemporaryFolder folder;
+  write_marks(folder.path("m.json"), kSequence, some_marks());
+  std::string text = folder.read("m.json");
+  constexpr std::size_t kDeep = 1'000'000;
+  const std::string before = "\"span\": ";
+  const std::size_t at = text.find(before);
+  ASSERT_NE(at, std::string::npos);
+  text = text.substr(0, at + before.size()) + "{\"first\": " + std::string(kDeep, '[') +
+         std::string(kDeep, ']') + "}}";
+  folder.write("m.json", text);
+  EXPECT_THAT(input_error_of([&] { (void)read_marks(folder.path("m.json"), kSequence); }),
+              ::testing::HasSubstr("\"first\""));
+}
+
 struct BadFile {
   const char* from;
   const char* to;
