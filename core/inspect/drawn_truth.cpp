@@ -245,11 +245,9 @@ std::optional<CarriedTruth> write_drawn_truth(const FrameSource& source, const s
         fs::remove_all(part);
         return std::nullopt;
       }
-      const fs::path list = folder / (std::string(kList) + ".part");
-      write_text_file(list, list_text(source, drawn, names));
       fs::remove_all(folder / kFolder);
       fs::rename(part, folder / kFolder);
-      fs::rename(list, folder / kList);
+      write_text_file(folder / kList, list_text(source, drawn, names));
       return carried;
     });
   } catch (const InputError&) {

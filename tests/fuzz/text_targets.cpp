@@ -120,8 +120,9 @@ Seeds recording_seeds() {
 
 void read_any_marks(std::string_view text) { (void)read_marks(file_of(text, kSidecarName), kMarked); }
 Seeds marks_seeds() {
-  const Marks marks{
-      {{3, "here it is lost"}}, {{4, 10.5, 20.0, "A"}}, {{"rpe > 0.05", true}}, FrameSpan{2, 9}, true};
+  const Marks marks{{{3, "here it is lost"}}, {{4, 10.5, 20.0, "A"}},
+                    {{"rpe > 0.05", true}},   {{5, {{{1.5, 2}, {30, 2}, {30, 40}}}}, {7, {}}},
+                    FrameSpan{2, 9},          true};
   return {written(kSidecarName, [&](const std::string& path) { write_marks(path, kMarked, marks); })};
 }
 
