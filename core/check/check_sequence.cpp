@@ -17,14 +17,16 @@ constexpr std::array<const char*, 4> kMendsForCertain = {"depth-scale", "camera"
 
 }  // namespace
 
-SequenceCheck check_sequence(const FrameSource& source) {
+SequenceCheck check_sequence(const FrameSource& source, const std::stop_token& stop) {
   SequenceCheck check;
   const auto add = [&check](std::vector<Finding> found) {
     for (Finding& finding : found) check.findings.push_back(std::move(finding));
   };
   add(check_frames(source));
-  add(check_odometry(source, kFramesTracked));
-  add(check_camera(source, kFramesByCamera));
+  add(check_registration(source));
+  if (!stop.stop_requested()) add(check_odometry(source, kFramesTracked));
+  if (!stop.stop_requested()) add(check_camera(source, kFramesByCamera));
+  if (stop.stop_requested()) return check;
   check.times = calibrate_time(source, Config(), kShortStretch);
   add(check_times(check.times, source.camera()));
   return check;

@@ -81,28 +81,57 @@ std::string ranges(const std::vector<FrameRecord>& records, Predicate is) {
   return text;
 }
 
-/// Which frames lacked depth, with the first one's reason.
-std::string depth_gaps(const RunResult& run) {
-  if (run.without_depth.empty()) return {};
-  const auto lacks = [&run](const FrameRecord& r) {
-    return std::any_of(run.without_depth.begin(), run.without_depth.end(),
-                       [&r](const DepthGap& gap) { return gap.index == r.index; });
+/// A frame that lacks something, and why.
+struct Lacking {
+  int index = 0;
+  const std::string* why = nullptr;
+};
+
+/// "8 of 40 frames: 2, 11 (no depth image within 0.02 s); 10 (rgb/7.png holds 8 bits)": reasons that differ
+/// in numbers alone (names of files) stand together, and what is rare is told as well as what is common.
+std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking) {
+  constexpr std::size_t kMostReasons = 4;
+  if (lacking.empty()) return {};
+  const auto kind_of = [](std::string why) {
+    std::erase_if(why, [](char c) { return c >= '0' && c <= '9'; });
+    return why;
   };
-  const DepthGap& first = run.without_depth.front();
-  const auto reasons = std::count_if(run.without_depth.begin(), run.without_depth.end(),
-                                     [&first](const DepthGap& gap) { return gap.why != first.why; });
-  return fmt::format("{} of {} frames: {} ({}{})", run.without_depth.size(), run.records.size(),
-                     ranges(run.records, lacks), first.why, reasons > 0 ? ", …" : "");
+  std::vector<std::pair<std::string, std::vector<Lacking>>> kinds;
+  for (const Lacking& one : lacking) {
+    const std::string kind = kind_of(*one.why);
+    auto at = std::find_if(kinds.begin(), kinds.end(), [&kind](const auto& k) { return k.first == kind; });
+    if (at == kinds.end()) at = kinds.insert(kinds.end(), {kind, {}});
+    at->second.push_back(one);
+  }
+  std::string text = fmt::format("{} of {} frames: ", lacking.size(), run.records.size());
+  for (std::size_t k = 0; k < std::min(kinds.size(), kMostReasons); ++k) {
+    const std::vector<Lacking>& of_kind = kinds[k].second;
+    const auto holds = [&of_kind](const FrameRecord& r) {
+      return std::any_of(of_kind.begin(), of_kind.end(),
+                         [&r](const Lacking& one) { return one.index == r.index; });
+    };
+    const bool others = std::any_of(of_kind.begin(), of_kind.end(),
+                                    [&](const Lacking& one) { return *one.why != *of_kind.front().why; });
+    text += fmt::format("{}{} ({}{})", k > 0 ? "; " : "", ranges(run.records, holds), *of_kind.front().why,
+                        others ? ", …" : "");
+  }
+  if (kinds.size() > kMostReasons) text += fmt::format("; and {} more reasons", kinds.size() - kMostReasons);
+  return text;
 }
 
-/// Which frames lacked the mask that was to be given, with the first one's reason.
+/// Which frames lacked depth, and why.
+std::string depth_gaps(const RunResult& run) {
+  std::vector<Lacking> lacking;
+  for (const DepthGap& gap : run.without_depth) lacking.push_back({gap.index, &gap.why});
+  return gaps_text(run, lacking);
+}
+
+/// Which frames lacked the mask that was to be given, and why.
 std::string mask_gaps(const RunResult& run) {
-  const auto lacks = [](const FrameRecord& r) { return !r.mask_problem.empty(); };
-  const auto first = std::find_if(run.records.begin(), run.records.end(), lacks);
-  if (first == run.records.end()) return {};
-  const auto count = std::count_if(run.records.begin(), run.records.end(), lacks);
-  return fmt::format("{} of {} frames: {} ({}{})", count, run.records.size(), ranges(run.records, lacks),
-                     first->mask_problem, count > 1 ? ", …" : "");
+  std::vector<Lacking> lacking;
+  for (const FrameRecord& record : run.records)
+    if (!record.mask_problem.empty()) lacking.push_back({record.index, &record.mask_problem});
+  return gaps_text(run, lacking);
 }
 
 /// What lets truth and estimate fit far better.

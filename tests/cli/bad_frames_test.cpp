@@ -204,5 +204,19 @@ TEST_F(Frames, TheBenchmarkGoesOnToo) {
   }
 }
 
+TEST(FramesWithoutDepth, EveryReasonIsToldWithItsFrames) {
+  const SmallSequence sequence(8);
+  std::string depths;
+  for (int i = 0; i < 8; ++i)
+    if (i != 2) depths += fmt::format("{:.4f} {}\n", SmallSequence::stamp(i), SmallSequence::depth(i));
+  sequence.folder.write("depth.txt", depths);
+  for (const int i : {4, 6})
+    sequence.folder.write(SmallSequence::depth(i),
+                          cv::Mat(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1, cv::Scalar(75)));
+  const CliResult result = run_cli({"run", sequence.path(), "--method", "none"});
+  EXPECT_THAT(result.out, ::testing::HasSubstr("3 of 8 frames: 2 (no depth image within 0.02 s); 4, 6 ("));
+  EXPECT_THAT(result.out, ::testing::HasSubstr("8 bits"));
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -6,6 +6,7 @@
 
 #include "core/check/check_sequence.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/support/rendered.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
@@ -81,6 +82,45 @@ TEST(Check, FindsGapsRepeatsAndWhatWasMended) {
   EXPECT_THAT(findings, Contains(says("stamps", "s, follows frame 7: the odometry will be lost there")));
   EXPECT_THAT(findings, Contains(says("images", "6 of 11 sampled colour images are the same")));
   EXPECT_THAT(findings, Contains(says("camera", "ros_default is assumed")));
+}
+
+/// A sequence whose depth images lie beside its colour images.
+class ShiftedDepth : public FrameSource {
+ public:
+  ShiftedDepth(std::shared_ptr<const FrameSource> source, cv::Point shift)
+      : source_(std::move(source)), shift_(shift) {}
+  [[nodiscard]] const std::string& name() const override { return source_->name(); }
+  [[nodiscard]] const Camera& camera() const override { return source_->camera(); }
+  [[nodiscard]] int size() const override { return source_->size(); }
+  [[nodiscard]] double timestamp(int index) const override { return source_->timestamp(index); }
+  [[nodiscard]] Frame read(int index) const override {
+    Frame frame = source_->read(index);
+    cv::Mat moved = cv::Mat::zeros(frame.depth.size(), CV_32FC1);
+    const cv::Rect image({}, frame.depth.size());
+    const cv::Rect to = (image + shift_) & image;
+    frame.depth(to - shift_).copyTo(moved(to));
+    frame.depth = moved;
+    return frame;
+  }
+  [[nodiscard]] FrameTruth truth(int index) const override { return source_->truth(index); }
+  [[nodiscard]] const Trajectory& ground_truth() const override { return source_->ground_truth(); }
+  [[nodiscard]] bool has_depth() const override { return true; }
+  [[nodiscard]] bool has_masks() const override { return false; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return source_->warnings(); }
+
+ private:
+  std::shared_ptr<const FrameSource> source_;
+  cv::Point shift_;
+};
+
+TEST(Registration, DepthThatLiesBesideColourIsToldByHowFar) {
+  const auto source = rendered("walking_xyz", 12);
+  EXPECT_THAT(check_registration(*source), IsEmpty());
+  EXPECT_THAT(check_registration(ShiftedDepth(source, {2, -2})), IsEmpty());  // a sensor's own
+  const auto findings = check_registration(ShiftedDepth(source, {14, -8}));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0], says("depth", "best 14 px to the left and 8 px down"));
+  EXPECT_FALSE(remedy_of(findings[0]));
 }
 
 TEST(Remedies, AreTheSwitchesThatMendForCertain) {

@@ -206,10 +206,10 @@ void Session::carry_out(const request::ExportSession& wanted) {
 void Session::carry_out(const request::CheckSequence& /*wanted*/) {
   refuse_without_images("There is nothing to question");
   if (debug_.check.asking) return;
-  const auto question = [this] {
+  const auto question = [this](const std::stop_token& stop) {
     CheckView view;
     try {
-      const SequenceCheck check = check_sequence(*source_);
+      const SequenceCheck check = check_sequence(*source_, stop);
       view = {.asking = false,
               .whole = true,
               .findings = check.findings,
@@ -220,13 +220,13 @@ void Session::carry_out(const request::CheckSequence& /*wanted*/) {
     return view;
   };
   if (!worker_.joinable()) {
-    debug_.check = question();
+    debug_.check = question({});
     return;
   }
   debug_.check.asking = true;
   checking_ = true;
-  checker_ = std::jthread([this, question] {
-    CheckView view = question();
+  checker_ = std::jthread([this, question](const std::stop_token& stop) {
+    CheckView view = question(stop);
     const std::lock_guard lock(mutex_);
     checked_ = std::move(view);
     news_ = true;
