@@ -125,8 +125,31 @@ TEST_F(InputPanels, BackspaceTakesTheLastCornerAndDeleteTheOutlineUnderTheMouse)
   EXPECT_EQ(movers()[0].size(), 3U);
   offscreen_.send(MouseMoved{480, 330});
   draw();
+  offscreen_.send(MouseMoved{480, 20});  // away from the picture: nothing is under the mouse
+  draw();
+  strike(Key::kDelete);
+  EXPECT_EQ(movers().size(), 1U);
+  offscreen_.send(MouseMoved{480, 330});
+  draw();
   strike(Key::kDelete);
   EXPECT_THAT(movers(), IsEmpty());
+}
+
+TEST_F(InputPanels, AnOutlineBegunIsThereAgainWhenItsFrameIs) {
+  show("outline");
+  click(300, 300), click(500, 300), click(500, 400);
+  const auto frame = session_.current;
+  auto other = std::make_shared<FrameView>(*frame);
+  other->index = frame->index - 1;
+  session_.current = other;
+  draw();
+  strike(Key::kEnter);  // nothing was begun here
+  EXPECT_THAT(session_.debug.drawn, IsEmpty());
+  session_.current = frame;
+  draw();
+  strike(Key::kEnter);
+  ASSERT_EQ(movers().size(), 1U);
+  EXPECT_EQ(movers()[0].size(), 3U);
 }
 
 TEST_F(InputPanels, MasksAreOutlinesToBeginWithAndAreCarriedWhenAskedFor) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "core/inspect/drawn_truth.hpp"
@@ -62,12 +63,12 @@ class OutlinePanel final : public FramePanel {
     return {
         command(
             "outline_close", "Close the outline being drawn", {{Key::kEnter, {}}, {Key::kKeypadEnter, {}}},
-            [this](const SessionView&) { return unfinished_.size() >= kLeastCorners; },
+            [this](const SessionView&) { return unfinished().size() >= kLeastCorners; },
             [this](const SessionView& session, PanelActions& actions) { close(session, actions); }),
         command(
             "outline_undo", "Take out the last corner drawn", {{Key::kBackspace, {}}},
-            [this](const SessionView&) { return !unfinished_.empty(); },
-            [this](const SessionView&, PanelActions&) { unfinished_.pop_back(); }),
+            [this](const SessionView&) { return !unfinished().empty(); },
+            [this](const SessionView&, PanelActions&) { unfinished().pop_back(); }),
         command(
             "outline_delete", "Take out the outline under the mouse", {{Key::kDelete, {}}},
             [this](const SessionView& session) { return mover_at_cursor(session).has_value(); },
@@ -120,6 +121,10 @@ class OutlinePanel final : public FramePanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
+    if (const std::string& now = session.debug.sequence_hash; !now.empty() && now != sequence_) {
+      if (!sequence_.empty()) unfinished_.clear();
+      sequence_ = now;
+    }
     if (view.index != frame_) {
       forget();
       frame_ = view.index;
@@ -146,6 +151,7 @@ class OutlinePanel final : public FramePanel {
                                   0.4F});
     const ImageResponse response =
         draw_frame_image(frame, "outline", content, *shared_, room_above(frame, footer));
+    if (response.hovered) hovered_in_ = ImGui::GetFrameCount();
     take_mouse(frame, session, actions, response);
     push_clip(response);
     draw_movers(frame, response, movers_of(session));
@@ -173,6 +179,14 @@ class OutlinePanel final : public FramePanel {
     return found;
   }
 
+  /// The outline being drawn in the frame shown: whoever steps on and back finds it as it was.
+  Outline& unfinished() { return unfinished_[frame_]; }
+  [[nodiscard]] const Outline& unfinished() const {
+    static const Outline none;
+    const auto found = unfinished_.find(frame_);
+    return found != unfinished_.end() ? found->second : none;
+  }
+
   [[nodiscard]] bool is_drawn(const SessionView& session) const {
     return asked_ || grabbed_ || drawn_at(session.debug.drawn, session.current->index) != nullptr;
   }
@@ -186,7 +200,7 @@ class OutlinePanel final : public FramePanel {
   }
 
   void forget() {
-    unfinished_.clear(), held_.clear();
+    held_.clear();
     grabbed_.reset(), asked_.reset();
   }
 
@@ -199,12 +213,12 @@ class OutlinePanel final : public FramePanel {
 
   void close(const SessionView& session, PanelActions& actions) {
     std::vector<Outline> movers = movers_of(session);
-    movers.push_back(std::exchange(unfinished_, {}));
+    movers.push_back(std::exchange(unfinished(), {}));
     put(session, actions, std::move(movers));
   }
 
   [[nodiscard]] std::optional<std::size_t> mover_at_cursor(const SessionView& session) const {
-    if (!shared_->pixel) return std::nullopt;
+    if (!shared_->pixel || ImGui::GetFrameCount() - hovered_in_ > 1) return std::nullopt;
     const Corner at{static_cast<double>(shared_->pixel->x()), static_cast<double>(shared_->pixel->y())};
     const std::vector<Outline> movers = movers_of(session);
     for (std::size_t i = movers.size(); i-- > 0;)
@@ -257,7 +271,7 @@ class OutlinePanel final : public FramePanel {
     std::vector<int> frames;
     for (const DrawnFrame& one : session.debug.drawn) frames.push_back(one.frame);
     if (!frames.empty()) footer.caption += fmt::format(" Drawn: {}.", frames_text(frames));
-    footer.caption += unfinished_.empty()
+    footer.caption += unfinished().empty()
                           ? " Click corner after corner round what moves; drag a corner or an edge, "
                             "right-click takes a corner out."
                           : " Enter or the first corner closes it, Backspace takes the last corner out.";
@@ -284,12 +298,12 @@ class OutlinePanel final : public FramePanel {
     }
     if (!response.hovered || !response.image_point) return;
     const float corner_reach = kCornerReach * frame.scale, edge_reach = kEdgeReach * frame.scale;
-    if (unfinished_.empty() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    if (unfinished().empty() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
       held_ = movers_of(session);
       grabbed_ = grab(response, mouse, corner_reach, edge_reach);
       if (grabbed_) return;
     }
-    if (response.right_clicked && unfinished_.empty()) {
+    if (response.right_clicked && unfinished().empty()) {
       std::vector<Outline> movers = movers_of(session);
       if (const auto at = nearest_corner(movers, response, mouse, corner_reach)) {
         Outline& outline = movers[at->mover];
@@ -300,11 +314,11 @@ class OutlinePanel final : public FramePanel {
       }
     }
     if (!response.clicked) return;
-    if (unfinished_.size() >= kLeastCorners &&
-        distance_between(mouse, corner_on(response, unfinished_.front())) < corner_reach)
+    if (unfinished().size() >= kLeastCorners &&
+        distance_between(mouse, corner_on(response, unfinished().front())) < corner_reach)
       close(session, actions);
     else
-      unfinished_.push_back(corner_under_mouse());
+      unfinished().push_back(corner_under_mouse());
   }
 
   static std::optional<CornerOf> nearest_corner(const std::vector<Outline>& movers,
@@ -364,20 +378,22 @@ class OutlinePanel final : public FramePanel {
   }
 
   void draw_unfinished(const UiFrame& frame, const ImageResponse& response) const {
-    if (unfinished_.empty()) return;
+    if (unfinished().empty()) return;
     std::vector<ImVec2> points;
-    for (const Corner& corner : unfinished_) points.push_back(corner_on(response, corner));
+    for (const Corner& corner : unfinished()) points.push_back(corner_on(response, corner));
     std::vector<ImVec2> line = points;
     if (response.hovered) line.push_back(ImGui::GetIO().MousePos);
     draw_line(frame, line, false);
     draw_corners(frame, points);
-    if (unfinished_.size() < kLeastCorners) return;
+    if (unfinished().size() < kLeastCorners) return;
     ImGui::GetWindowDrawList()->AddCircle(points.front(), kCornerReach * frame.scale, to_u32(ink()), 0,
                                           1.5F * frame.scale);
   }
 
+  std::string sequence_;                       // its hash
   int frame_ = -1;                             // that what follows belongs to
-  Outline unfinished_;                         // being drawn
+  std::map<int, Outline> unfinished_;          // being drawn, by frame
+  int hovered_in_ = -2;                        // ImGui's frame in which the mouse was over the picture last
   std::vector<Outline> held_;                  // while a corner of them is dragged
   std::optional<CornerOf> grabbed_;            // that corner
   std::optional<std::vector<Outline>> asked_;  // until the session has them
