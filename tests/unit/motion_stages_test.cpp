@@ -134,6 +134,25 @@ TEST(Difference, IsTheAbsoluteDifferenceWhereValid) {
   EXPECT_EQ(cv::norm(frame_difference(destination, compensated, valid), expected, cv::NORM_INF), 0.0);
 }
 
+TEST(Difference, AnotherExposureIsTheMedianRatioOfMidTones) {
+  cv::Mat compensated(60, 80, CV_8UC1), valid(60, 80, CV_8UC1, cv::Scalar(255));
+  for (int y = 0; y < compensated.rows; ++y)
+    for (int x = 0; x < compensated.cols; ++x)
+      compensated.at<uchar>(y, x) = static_cast<uchar>(60 + 2 * (x % 60));
+  cv::Mat brighter;
+  compensated.convertTo(brighter, CV_8U, 1.1);
+  cv::Mat with_object = brighter.clone();
+  with_object(cv::Rect(0, 0, 30, 60)) = 200;  // over a third of the image something else is seen
+  EXPECT_NEAR(exposure_ratio(with_object, compensated, valid), 1.1, 0.01);
+  EXPECT_NEAR(exposure_ratio(compensated, brighter, valid), 1.0 / 1.1, 0.01);
+  EXPECT_EQ(exposure_ratio(compensated, compensated, valid), 1.0);
+  cv::Mat slightly;
+  compensated.convertTo(slightly, CV_8U, 1.01);
+  EXPECT_EQ(exposure_ratio(slightly, compensated, valid), 1.0);  // as noise may have it
+  valid.setTo(0);
+  EXPECT_EQ(exposure_ratio(brighter, compensated, valid), 1.0);  // nothing tells
+}
+
 TEST(Difference, HistogramCountsValidPixelsOnly) {
   const cv::Mat image = (cv::Mat_<unsigned char>(2, 5) << 0, 0, 3, 255, 3, 3, 9, 255, 0, 9);
   const cv::Mat valid = (cv::Mat_<unsigned char>(2, 5) << 255, 0, 255, 255, 255, 0, 0, 255, 255, 255);

@@ -62,6 +62,10 @@ DirectionTrace look_one_way(std::vector<Track> tracks, const cv::Mat& source, co
   CompensatedFrame carried = compensate(source, seen.homography.matrix, config.border_px);
   seen.compensated = carried.image;
   seen.valid = carried.valid;
+  if (config.follow_exposure) {
+    seen.exposure = exposure_ratio(destination, seen.compensated, seen.valid);
+    if (seen.exposure != 1.0) seen.compensated.convertTo(seen.compensated, CV_8U, seen.exposure);
+  }
   seen.ms.compensation = watch.lap();
   seen.difference = frame_difference(destination, seen.compensated, seen.valid);  // eq. (1)
   seen.ms.difference = watch.lap();

@@ -1,6 +1,8 @@
 #include "core/motion/paper/difference.hpp"
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace stillpoint {
 
@@ -9,6 +11,32 @@ cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated,
   cv::absdiff(destination, compensated, difference);
   cv::bitwise_and(difference, valid, difference);  // valid is 0 or 255: a byte-wise selection
   return difference;
+}
+
+double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid) {
+  constexpr int kDark = 48, kBright = 215;  // grey levels: coarse steps below, cut off above
+  constexpr double kLeast = 0.5, kMost = 2.0, kTold = 0.02;
+  constexpr std::size_t kBins = 3000;  // of 0.0005
+  std::vector<int> ratios(kBins, 0);
+  int count = 0;
+  for (int y = 0; y < destination.rows; y += 2) {
+    const uchar *to = destination.ptr(y), *from = compensated.ptr(y), *usable = valid.ptr(y);
+    for (int x = 0; x < destination.cols; x += 2) {
+      if (usable[x] == 0 || from[x] < kDark || from[x] > kBright || to[x] < kDark || to[x] > kBright)
+        continue;
+      const double ratio = static_cast<double>(to[x]) / from[x];
+      if (ratio < kLeast || ratio >= kMost) continue;
+      ++ratios[static_cast<std::size_t>((ratio - kLeast) / (kMost - kLeast) * static_cast<double>(kBins))];
+      ++count;
+    }
+  }
+  if (count * 40 < static_cast<int>(destination.total())) return 1.0;  // every fourth pixel was looked at
+  int below = 0;
+  std::size_t bin = 0;
+  while (bin + 1 < kBins && 2 * (below += ratios[bin]) < count) ++bin;
+  const double median =
+      kLeast + (static_cast<double>(bin) + 0.5) * (kMost - kLeast) / static_cast<double>(kBins);
+  return std::abs(median - 1.0) > kTold ? median : 1.0;
 }
 
 Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {

@@ -12,6 +12,12 @@ using Histogram = std::array<int, 256>;
 [[nodiscard]] cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated,
                                        const cv::Mat& valid);
 
+/// By how much `destination` is brighter than `compensated`, as a factor: the median over `valid` pixels that
+/// are neither dark nor near white. 1 where it is within 2 % of 1, which noise and dynamic objects reach, or
+/// where fewer than a tenth of the pixels tell. All CV_8UC1 of one size.
+[[nodiscard]] double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated,
+                                    const cv::Mat& valid);
+
 /// The grey levels of `image` at the non-zero pixels of `valid`. Both CV_8UC1 of one size.
 [[nodiscard]] Histogram histogram(const cv::Mat& image, const cv::Mat& valid);
 

@@ -34,6 +34,10 @@ void PaperConfig::list(ParameterTable& table) {
                "fewer static tracks than this and the last homography is kept");
   table.number("reference_gap", reference_gap, 1, 1, 100, "frames",
                "frames between the reference and the target");
+  table.flag(
+      "follow_exposure", follow_exposure, true,
+      "where the camera changed its exposure by more than 2 %, the compensated frame is made as bright as "
+      "the other before they are compared; the paper says nothing of it");
 }
 
 }  // namespace stillpoint

@@ -30,6 +30,7 @@ struct PaperConfig {
   double converged_shift_px;
   int min_tracks;
   int reference_gap;
+  bool follow_exposure;
 };
 
 }  // namespace stillpoint

@@ -171,6 +171,10 @@ class PaperStages {
     compensation.ms = round.forward.ms.compensation + round.backward.ms.compensation;
     compensation.figure("Forward: pixels with data", percent_set(round.forward.valid), "%", 2);
     compensation.figure("Backward: pixels with data", percent_set(round.backward.valid), "%", 2);
+    for (const bool forward : {true, false})
+      if (const double exposure = direction_of(round, forward).exposure; exposure != 1.0)
+        compensation.figure(forward ? "Forward: made brighter by" : "Backward: made brighter by",
+                            100.0 * (exposure - 1.0), "%", 1);
     add_sides(compensation, round, [&](const DirectionTrace& direction, bool forward) {
       return StageSide{{}, {source(forward)}, compensated_layer(direction, forward)};
     });

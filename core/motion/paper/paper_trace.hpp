@@ -37,12 +37,13 @@ struct DirectionTimes {
 struct DirectionTrace {
   std::vector<Track> tracks;
   HomographyEstimate homography;
-  cv::Mat compensated;   ///< CV_8UC1: the source carried into the destination's camera
-  cv::Mat valid;         ///< CV_8UC1: 255 where the warp has data, border margin taken off
-  cv::Mat difference;    ///< CV_8UC1: eq. (1), 0 where not valid
-  double threshold = 0;  ///< grey levels, Otsu's over the valid pixels; eq. (2)
-  cv::Mat raw_mask;      ///< CV_8UC1, 0 or 255: difference above threshold
-  cv::Mat mask;          ///< raw_mask after erosion and dilation, 0 where not valid
+  cv::Mat compensated;    ///< CV_8UC1: the source carried into the destination's camera
+  double exposure = 1.0;  ///< what its grey levels were multiplied by, to be as bright as the destination
+  cv::Mat valid;          ///< CV_8UC1: 255 where the warp has data, border margin taken off
+  cv::Mat difference;     ///< CV_8UC1: eq. (1), 0 where not valid
+  double threshold = 0;   ///< grey levels, Otsu's over the valid pixels; eq. (2)
+  cv::Mat raw_mask;       ///< CV_8UC1, 0 or 255: difference above threshold
+  cv::Mat mask;           ///< raw_mask after erosion and dilation, 0 where not valid
   DirectionTimes ms;
 };
 
