@@ -39,7 +39,8 @@ struct SpreadRow {
 
 /// A table of spreads.
 struct SpreadTable {
-  std::vector<std::string> methods;  ///< of the columns: "paper", or "dso, paper" where there are engines
+  std::vector<std::string>
+      methods;  ///< of the columns: METHOD, or "ENGINE, METHOD" where there are several engines
   std::vector<SpreadRow> rows;
 };
 

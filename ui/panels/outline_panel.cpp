@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <opencv2/imgproc.hpp>
 
 #include "core/inspect/drawn_truth.hpp"
 #include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/outline_drawing.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -16,28 +16,6 @@ namespace {
 
 constexpr float kCornerReach = 8.0F, kEdgeReach = 5.0F;  // design px, for the mouse
 constexpr std::size_t kLeastCorners = 3;
-
-/// Where ImGui draws a corner, whose pixels have their middle at whole numbers.
-ImVec2 corner_on(const ImageResponse& response, const Corner& corner) {
-  return response.to_screen(Eigen::Vector2d(corner.x + 0.5, corner.y + 0.5));
-}
-
-float distance_between(ImVec2 a, ImVec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
-float distance_to_edge(ImVec2 p, ImVec2 a, ImVec2 b) {
-  const ImVec2 along{b.x - a.x, b.y - a.y};
-  const float length = along.x * along.x + along.y * along.y;
-  const float share =
-      length > 0.0F ? std::clamp(((p.x - a.x) * along.x + (p.y - a.y) * along.y) / length, 0.0F, 1.0F) : 0.0F;
-  return distance_between(p, {a.x + share * along.x, a.y + share * along.y});
-}
-
-bool encloses(const Outline& outline, const Corner& at) {
-  std::vector<cv::Point2f> corners;
-  for (const Corner& corner : outline)
-    corners.emplace_back(static_cast<float>(corner.x), static_cast<float>(corner.y));
-  return cv::pointPolygonTest(corners, {static_cast<float>(at.x), static_cast<float>(at.y)}, false) >= 0;
-}
 
 /// Truth by hand: outlines are drawn round what moves in some frames, and carried to the others.
 class OutlinePanel final : public FramePanel {
@@ -350,30 +328,13 @@ class OutlinePanel final : public FramePanel {
     return std::nullopt;
   }
 
-  static void draw_line(const UiFrame& frame, const std::vector<ImVec2>& points, bool closed) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const auto flags = closed ? ImDrawFlags_Closed : ImDrawFlags_None;
-    const int count = static_cast<int>(points.size());
-    list.AddPolyline(points.data(), count, IM_COL32(0, 0, 0, 170), flags, 4.0F * frame.scale);
-    list.AddPolyline(points.data(), count, to_u32(ink()), flags, 1.8F * frame.scale);
-  }
-
-  static void draw_corners(const UiFrame& frame, const std::vector<ImVec2>& points) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    for (const ImVec2& p : points) {
-      const float r = 3.0F * frame.scale;
-      list.AddRectFilled({p.x - r - 1, p.y - r - 1}, {p.x + r + 1, p.y + r + 1}, IM_COL32(0, 0, 0, 200));
-      list.AddRectFilled({p.x - r, p.y - r}, {p.x + r, p.y + r}, to_u32(ink()));
-    }
-  }
-
   static void draw_movers(const UiFrame& frame, const ImageResponse& response,
                           const std::vector<Outline>& movers) {
     for (const Outline& outline : movers) {
       std::vector<ImVec2> points;
       for (const Corner& corner : outline) points.push_back(corner_on(response, corner));
-      draw_line(frame, points, true);
-      draw_corners(frame, points);
+      draw_outline(frame, points, true, ink());
+      draw_corners(frame, points, ink());
     }
   }
 
@@ -383,8 +344,8 @@ class OutlinePanel final : public FramePanel {
     for (const Corner& corner : unfinished()) points.push_back(corner_on(response, corner));
     std::vector<ImVec2> line = points;
     if (response.hovered) line.push_back(ImGui::GetIO().MousePos);
-    draw_line(frame, line, false);
-    draw_corners(frame, points);
+    draw_outline(frame, line, false, ink());
+    draw_corners(frame, points, ink());
     if (unfinished().size() < kLeastCorners) return;
     ImGui::GetWindowDrawList()->AddCircle(points.front(), kCornerReach * frame.scale, to_u32(ink()), 0,
                                           1.5F * frame.scale);
