@@ -74,7 +74,10 @@ TEST_F(OutsideMasksCli, WhatIsWrongWithSomeIsToldOnceAndMarked) {
   cv::imwrite(names[4], cv::Mat(10, 10, CV_8UC1, cv::Scalar(0)));
   cv::imwrite(names[5], cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)));
   const CliResult result = run("gaps", {"--masks", folder_->path("some")});
-  EXPECT_THAT(result.out, HasSubstr("no mask       3 of 8 frames: 2, 4-5 ("));
+  EXPECT_THAT(result.out, HasSubstr("no mask       3 of 8 frames: 2 ("));
+  EXPECT_THAT(result.out, HasSubstr("; 4 ("));
+  EXPECT_THAT(result.out, HasSubstr("is 10x10 px, but the frame is 640x480 px); 5 ("));
+  EXPECT_THAT(result.out, HasSubstr("takes out the whole frame and is not used)"));
   EXPECT_THAT(result.out, HasSubstr("has no mask for this frame"));
   const auto rows = csv_rows(folder_->read("gaps/frames.csv"));
   ASSERT_EQ(rows.size(), static_cast<std::size_t>(kMaskedFrames));
