@@ -204,6 +204,7 @@ CliResult stopped(const std::vector<std::string>& arguments, const fs::path& sig
   CliProcess process(arguments);
   for (int i = 0; i < 1200 && !fs::exists(sign); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(fs::exists(sign)) << sign;
   process.send(SIGINT);
   return process.wait();
 }
@@ -222,7 +223,7 @@ TEST_F(MotionCommand, CtrlCKeepsWhatWasDone) {
 TEST(GenerateCommand, CtrlCLeavesAShorterSequence) {
   const TemporaryFolder folder("film");
   const CliResult result = stopped({"generate", "room", "--frames", "500", "--out", folder.path()},
-                                   folder.path("rgb/1000.033333.png"));
+                                   folder.path() + ".part/rgb/1000.033333.png");
   EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
   EXPECT_FALSE(result.by_signal);
   const CliResult ran = run_cli({"motion", folder.path(), "--frames", "1:2", "--out", folder.path("motion")});
