@@ -171,6 +171,7 @@ FrameRecord handmade_record(int index, double drift_m) {
     feature.depth = 1.5F + 0.005F * static_cast<float>(i);
     feature.residual_px = 0.1F * static_cast<float>(i % 20);
     feature.fate = i % 5 == 0 ? FeatureFate::removed : static_cast<FeatureFate>(i % 3);
+    if (feature.fate == FeatureFate::inlier || feature.fate == FeatureFate::outlier) feature.map_point = i;
     record.features.push_back(feature);
   }
   return record;
@@ -311,6 +312,12 @@ SessionView handmade_example() {
   for (int i = 0; i < 400; ++i)
     view.map_points.push_back(
         {i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+  auto other = std::make_shared<FrameView>();
+  other->index = 22;
+  other->frame = handmade_frame(22);
+  other->record = &run->records[22];
+  view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
+  view.debug.other = std::move(other);
   view.run = run;
   view.baseline = handmade_run("none", 4.0);
   view.revision = 1;

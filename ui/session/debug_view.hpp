@@ -39,6 +39,9 @@ struct ExportView {
   int done = 0, total = 0;  ///< of that
 };
 
+/// Which frame stands beside the one shown.
+enum class OtherFrame { before, keyframe, kept };
+
 /// What the sequence was questioned by.
 struct CheckView {
   bool asking = false;  ///< it is being questioned now
@@ -64,6 +67,9 @@ struct DebugView {
   std::optional<Config> previewed;           ///< the config `preview` was made with
   bool preview_whole = false;  ///< false: its features' matches and its pose are the run's still
   double preview_ms = 0.0;     ///< what computing it took
+  OtherFrame other_is = OtherFrame::before;
+  std::optional<int> kept_frame;           ///< the frame that was kept to stand beside others
+  std::shared_ptr<const FrameView> other;  ///< its images and record alone; null where there is none
   CheckView check;
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
@@ -130,6 +136,12 @@ struct StopExport {};
 struct StagesBeside {
   std::string method;
 };
+/// The frame that stands beside the one shown: the one before, the keyframe it shares most with, or one that is
+/// kept, from now on.
+struct StandBeside {
+  OtherFrame which = OtherFrame::before;
+  std::optional<int> keep{};  ///< … this one; nothing: the one kept so far
+};
 struct SavePreset {
   Config config;
   std::string file;
@@ -140,6 +152,7 @@ using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
                  request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
                  request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
-                 request::CheckSequence, request::StopExport, request::StagesBeside, request::SavePreset>;
+                 request::CheckSequence, request::StopExport, request::StagesBeside, request::StandBeside,
+                 request::SavePreset>;
 
 }  // namespace stillpoint

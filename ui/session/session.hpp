@@ -101,6 +101,7 @@ class Session {
   void refuse_without_images(const char* what) const;
   void process_one();
   void show(int frame);
+  void choose_other();
   void publish();
   [[nodiscard]] DebugView debug_view();
   [[nodiscard]] bool lacks_before() const;
@@ -124,6 +125,7 @@ class Session {
   void carry_out(const request::CheckSequence& wanted);
   void carry_out(const request::StopExport& wanted);
   void carry_out(const request::StagesBeside& wanted);
+  void carry_out(const request::StandBeside& wanted);
   void carry_out(const request::SavePreset& wanted);
   void write_beside(const std::string& folder, ExportJob::Work work);
 

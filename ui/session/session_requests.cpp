@@ -245,6 +245,12 @@ void Session::carry_out(const request::StagesBeside& wanted) {
   show(current_->index);
 }
 
+void Session::carry_out(const request::StandBeside& wanted) {
+  debug_.other_is = wanted.which;
+  if (wanted.keep) debug_.kept_frame = std::clamp(*wanted.keep, 0, source_->size() - 1);
+  choose_other();
+}
+
 void Session::carry_out(const request::SavePreset& wanted) {
   refuse_out_of_range(wanted.config);
   write_text_file(wanted.file, to_toml(wanted.config));

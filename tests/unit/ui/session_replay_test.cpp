@@ -102,6 +102,35 @@ TEST_F(SessionDebug, AnotherMethodsStagesAreLaidBesideTheRuns) {
   EXPECT_THAT(s->view()->message, ::testing::HasSubstr("there is no method 'magic'"));
 }
 
+TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
+  const auto s = session();
+  EXPECT_EQ(debug(*s).other, nullptr);  // nothing lies before the first
+  s->request(request::GoTo{5});
+  ASSERT_NE(debug(*s).other, nullptr);
+  EXPECT_EQ(debug(*s).other->index, 4);
+  ASSERT_NE(debug(*s).other->record, nullptr);
+  EXPECT_EQ(run_hash({*debug(*s).other->record}), run_hash({s->record(4)}));
+  EXPECT_TRUE(debug(*s).other->frame.readable());
+  s->request(request::StandBeside{OtherFrame::kept, 2});
+  ASSERT_NE(debug(*s).other, nullptr);
+  EXPECT_EQ(debug(*s).other->index, 2);
+  s->request(request::GoTo{9});
+  EXPECT_EQ(debug(*s).other->index, 2);
+  s->request(request::GoTo{2});
+  EXPECT_EQ(debug(*s).other, nullptr);  // it is the one shown itself
+  s->request(request::GoTo{9});
+  s->request(request::StandBeside{OtherFrame::keyframe});
+  const int reference = s->view()->current->record->reference_keyframe;
+  ASSERT_NE(debug(*s).other, nullptr);
+  const auto keyframes = s->view()->keyframes;
+  const auto keyframe = std::find_if(keyframes.begin(), keyframes.end(),
+                                     [reference](const SavedKeyframe& one) { return one.id == reference; });
+  ASSERT_NE(keyframe, keyframes.end());
+  EXPECT_EQ(debug(*s).other->index, keyframe->frame_index);
+  s->request(request::StandBeside{OtherFrame::kept});  // what was kept is kept
+  EXPECT_EQ(debug(*s).other->index, 2);
+}
+
 TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   config_.run.method = "stillpoint";
   config_.of<StillpointConfig>().moving_log_odds = -3.9;  // all moves: what is left is too little
