@@ -127,6 +127,7 @@ class Workbench {
                                   const char* button);
   void draw_open_dialog();
   void draw_hand_on_dialog();
+  void draw_save_dialog();
   void draw_exporting();
   void draw_start_page(const LayoutRect& area);
   void draw_opening();
@@ -151,7 +152,8 @@ class Workbench {
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
   Palette palette_;
-  PathDialog open_dialog_, hand_on_dialog_;
+  PathDialog open_dialog_, hand_on_dialog_, save_dialog_;
+  std::optional<FileOffer> offered_, saving_;  // by what is drawn; what the save dialog is for
   bool shortcuts_open_ = false;
   double speed_ = 30.0;  // frames a second
 
