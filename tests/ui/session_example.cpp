@@ -318,6 +318,15 @@ SessionView handmade_example() {
   other->record = &run->records[22];
   view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
   view.debug.other = std::move(other);
+  SweepView sweep{
+      .range = {"paper.border_px", 1, 9, 5}, .values = {1, 3, 5, 7, 9}, .frames = 60, .base = view.config};
+  for (int i = 0; i < 4; ++i) {
+    AblationCell cell;
+    cell.rpe_m = 0.004 + 0.001 * std::abs(i - 2), cell.mask_iou = 0.5 + 0.1 * i, cell.coverage = 1.0;
+    sweep.points.push_back({1.0 + 2.0 * i, cell});
+  }
+  sweep.busy = true;
+  view.debug.sweep = std::move(sweep);
   view.run = run;
   view.baseline = handmade_run("none", 4.0);
   view.revision = 1;

@@ -11,6 +11,7 @@
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
 #include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 
 namespace stillpoint {
 
@@ -51,6 +52,17 @@ struct CheckView {
   std::vector<std::string> times;  ///< the camera's times as its frames tell them, a line each
 };
 
+/// Runs of the sequence's first frames at several values of one parameter.
+struct SweepView {
+  SweepRange range;
+  std::vector<double> values;        ///< all that are asked for, ascending
+  std::vector<SweepPoint> points{};  ///< those done, in their order
+  int frames = 0;                  ///< so many are run each time
+  Config base;                     ///< what every other parameter is
+  bool busy = false;
+  std::string problem{};  ///< why it ended early, one sentence; empty mostly
+};
+
 /// The debugger's part of SessionView.
 struct DebugView {
   std::vector<Bookmark> bookmarks;  ///< by frame
@@ -71,6 +83,7 @@ struct DebugView {
   std::optional<int> kept_frame;           ///< the frame that was kept to stand beside others
   std::shared_ptr<const FrameView> other;  ///< its images and record alone; null where there is none
   CheckView check;
+  std::optional<SweepView> sweep;       ///< the last one asked for
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
   bool masks_written = false;           ///< true masks were written into the sequence since it was opened
@@ -130,14 +143,23 @@ struct ExportSession {
 };
 /// The sequence is questioned by all there is (check_sequence), beside the session.
 struct CheckSequence {};
+/// The sequence's first frames (0 = all) under `base`, once for each value of a parameter, beside the
+/// session.
+struct Sweep {
+  Config base;
+  SweepRange range;
+  int frames = 0;
+};
+/// The sweep ends with what it has.
+struct StopSweep {};
 /// What is being written ends, and is taken away.
 struct StopExport {};
 /// Another method's stages of each frame shown, beside the run's own; an empty name ends it.
 struct StagesBeside {
   std::string method;
 };
-/// The frame that stands beside the one shown: the one before, the keyframe it shares most with, or one that is
-/// kept, from now on.
+/// The frame that stands beside the one shown: the one before, the keyframe it shares most with, or one that
+/// is kept, from now on.
 struct StandBeside {
   OtherFrame which = OtherFrame::before;
   std::optional<int> keep{};  ///< … this one; nothing: the one kept so far
@@ -152,7 +174,7 @@ using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
                  request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
                  request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
-                 request::CheckSequence, request::StopExport, request::StagesBeside, request::StandBeside,
-                 request::SavePreset>;
+                 request::CheckSequence, request::Sweep, request::StopSweep, request::StopExport,
+                 request::StagesBeside, request::StandBeside, request::SavePreset>;
 
 }  // namespace stillpoint

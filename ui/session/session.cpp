@@ -201,7 +201,7 @@ void Session::request_speed(double frames_per_second) {
 
 bool Session::idle() const {
   const std::lock_guard lock(mutex_);
-  return resting_ && requests_.empty() && !exporting_ && !checking_;
+  return resting_ && requests_.empty() && !exporting_ && !checking_ && !sweeping_ && !news_;
 }
 
 void Session::rest(const std::stop_token& stop, bool until_comparison) {

@@ -102,6 +102,31 @@ TEST_F(SessionDebug, AnotherMethodsStagesAreLaidBesideTheRuns) {
   EXPECT_THAT(s->view()->message, ::testing::HasSubstr("there is no method 'magic'"));
 }
 
+TEST_F(SessionDebug, ASweepRunsEachValueBesideTheSession) {
+  StartedSession s(session());
+  s->request(request::Sweep{config_, {"features.count", 200, 400, 3}, 6});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.debug.sweep && !view.debug.sweep->busy && view.debug.sweep->points.size() == 3;
+  }));
+  const SweepView sweep = *s->view()->debug.sweep;
+  EXPECT_THAT(sweep.values, ::testing::ElementsAre(200, 300, 400));
+  EXPECT_EQ(sweep.problem, "");
+  EXPECT_EQ(sweep.points[2].value, 400);
+  // What is reached at the session's own value is the session's own run.
+  EXPECT_EQ(sweep.points[2].reached.hash, run_hash(batch(config_, 6).records));
+  s->request(request::Sweep{config_, {"run.method", 0, 1, 3}, 6});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.message.find("run.method is no number") != std::string::npos;
+  }));
+  EXPECT_EQ(s->view()->debug.sweep->points.size(), 3U);
+  // One that goes on ends with the session, or when it is asked to.
+  s->request(request::Sweep{config_, {"features.count", 200, 1200, 50}, 0});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return view.debug.sweep && view.debug.sweep->busy; }));
+  s->request(request::StopSweep{});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return !view.debug.sweep->busy; }));
+  EXPECT_LT(s->view()->debug.sweep->points.size(), 50U);
+}
+
 TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   const auto s = session();
   EXPECT_EQ(debug(*s).other, nullptr);  // nothing lies before the first
