@@ -57,8 +57,8 @@ struct SweepView {
   SweepRange range;
   std::vector<double> values;        ///< all that are asked for, ascending
   std::vector<SweepPoint> points{};  ///< those done, in their order
-  int frames = 0;                  ///< so many are run each time
-  Config base;                     ///< what every other parameter is
+  int frames = 0;                    ///< so many are run each time
+  Config base;                       ///< what every other parameter is
   bool busy = false;
   std::string problem{};  ///< why it ended early, one sentence; empty mostly
 };
@@ -86,6 +86,7 @@ struct DebugView {
   std::optional<SweepView> sweep;       ///< the last one asked for
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
+  int undo_steps = 0, redo_steps = 0;   ///< changes of marks that can be taken back, and made again
   bool masks_written = false;           ///< true masks were written into the sequence since it was opened
   std::string run_hash;                 ///< of all records so far, as `stillpoint run` prints it
   std::string sequence_hash;            ///< of the sequence, as sidecar and run folder keep it
@@ -164,6 +165,9 @@ struct StandBeside {
   OtherFrame which = OtherFrame::before;
   std::optional<int> keep{};  ///< … this one; nothing: the one kept so far
 };
+/// The last change of bookmarks, pins, breakpoints, outlines or the range is taken back, or made again.
+struct Undo {};
+struct Redo {};
 struct SavePreset {
   Config config;
   std::string file;
@@ -175,6 +179,7 @@ using SessionRequest =
                  request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
                  request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
                  request::CheckSequence, request::Sweep, request::StopSweep, request::StopExport,
-                 request::StagesBeside, request::StandBeside, request::SavePreset>;
+                 request::StagesBeside, request::StandBeside, request::Undo, request::Redo,
+                 request::SavePreset>;
 
 }  // namespace stillpoint

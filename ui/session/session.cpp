@@ -117,6 +117,7 @@ DebugView Session::debug_view() {
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
   debug.masks_written = masks_written_;
+  debug.undo_steps = static_cast<int>(undo_.size()), debug.redo_steps = static_cast<int>(redo_.size());
   if (export_) debug.exporting = export_->view();
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,

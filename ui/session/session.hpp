@@ -128,6 +128,8 @@ class Session {
   void carry_out(const request::StopExport& wanted);
   void carry_out(const request::StagesBeside& wanted);
   void carry_out(const request::StandBeside& wanted);
+  void carry_out(const request::Undo& wanted);
+  void carry_out(const request::Redo& wanted);
   void carry_out(const request::SavePreset& wanted);
   void write_beside(const std::string& folder, ExportJob::Work work);
 
@@ -153,6 +155,8 @@ class Session {
   void open_sidecar();
   [[nodiscard]] Marks marks() const;
   void save_marks();
+  void set_marks(Marks marks);
+  void remember(Marks before, std::size_t request);
 
   std::shared_ptr<const FrameSource> source_;
   SessionOptions options_;
@@ -177,9 +181,12 @@ class Session {
   std::chrono::steady_clock::time_point preview_asked_{};  // when it was asked for last
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
-  std::atomic<bool> masks_written_ = false;  // true masks, into the sequence
-  bool looked_over_ = false;                 // check_frames() has been asked
-  std::unique_ptr<ExportJob> export_;        // the worker's; null while nothing is being written
+  std::vector<Marks> undo_, redo_;                     // as they were, the last at the end
+  std::size_t marked_by_ = 0;                          // the kind of request that changed marks last, …
+  std::chrono::steady_clock::time_point marked_at_{};  // … and when
+  std::atomic<bool> masks_written_ = false;            // true masks, into the sequence
+  bool looked_over_ = false;                           // check_frames() has been asked
+  std::unique_ptr<ExportJob> export_;                  // the worker's; null while nothing is being written
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;

@@ -65,8 +65,49 @@ void Session::request(SessionRequest wanted) {
 }
 
 void Session::carry_out(const SessionRequest& wanted) {
+  Marks before = marks();
   std::visit([this](const auto& one) { carry_out(one); }, wanted);
+  const bool goes_back =
+      std::holds_alternative<request::Undo>(wanted) || std::holds_alternative<request::Redo>(wanted);
+  if (!goes_back && marks() != before) remember(std::move(before), wanted.index());
   save_marks();
+}
+
+void Session::remember(Marks before, std::size_t request) {
+  // What is typed or dragged comes as many requests, and is one change.
+  constexpr auto kOneChange = std::chrono::milliseconds(700);
+  constexpr std::size_t kKept = 200;
+  const auto now = std::chrono::steady_clock::now();
+  const bool goes_on = worker_.joinable() && !undo_.empty() && redo_.empty() && request == marked_by_ &&
+                       now - marked_at_ < kOneChange;
+  marked_by_ = request, marked_at_ = now;
+  redo_.clear();
+  if (goes_on) return;
+  undo_.push_back(std::move(before));
+  if (undo_.size() > kKept) undo_.erase(undo_.begin());
+}
+
+void Session::set_marks(Marks marks) {
+  breakpoints_.set(marks.breakpoints);
+  breakpoints_due_ = true;
+  debug_.bookmarks = std::move(marks.bookmarks);
+  debug_.pins = std::move(marks.pins);
+  debug_.drawn = std::move(marks.drawn);
+  debug_.span = marks.span, debug_.loop = marks.loop;
+}
+
+void Session::carry_out(const request::Undo& /*wanted*/) {
+  if (undo_.empty()) return;
+  redo_.push_back(marks());
+  set_marks(std::move(undo_.back()));
+  undo_.pop_back();
+}
+
+void Session::carry_out(const request::Redo& /*wanted*/) {
+  if (redo_.empty()) return;
+  undo_.push_back(marks());
+  set_marks(std::move(redo_.back()));
+  redo_.pop_back();
 }
 
 void Session::carry_out(const request::GoTo& wanted) {

@@ -179,6 +179,16 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
+  remember_layout();
+}
+
+void Workbench::remember_layout() {
+  constexpr std::size_t kKept = 50;
+  // A divider that is being dragged has not come to rest.
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left) || layout_seen_ == layout_) return;
+  if (layout_seen_) layouts_before_.push_back(std::move(*layout_seen_));
+  if (layouts_before_.size() > kKept) layouts_before_.erase(layouts_before_.begin());
+  layout_seen_ = layout_;
 }
 
 void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices) {

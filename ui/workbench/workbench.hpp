@@ -136,6 +136,7 @@ class Workbench {
   void draw_opening();
   void draw_error();
   void follow_session();
+  void remember_layout();
   void carry_out(const PanelActions& wanted);
   bool action_button(const char* name);
 
@@ -143,6 +144,8 @@ class Workbench {
   WorkbenchHost host_;
   Actions actions_;
   LayoutNode layout_ = default_layout();
+  std::optional<LayoutNode> layout_seen_;   // when nobody was changing it last
+  std::vector<LayoutNode> layouts_before_;  // what it was, the last at the end
   LayoutRect tiles_area_{};
   std::string maximised_, hovered_panel_;
   std::string message_;
