@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/run/open_run.hpp"
@@ -119,11 +121,36 @@ OpenedSource open_source(const SourceArguments& arguments) {
   return opened;
 }
 
-OpenedSource open_source_as(const std::string& where, const SequenceArguments& source, const Config& config) {
-  if (!is_run_folder(where)) return open_sequence_at(where, source, config);
-  SourceArguments run;
-  run.place = where;
-  return open_finished_run(run);
+std::vector<std::string> SourceArguments::words() const {
+  std::vector<std::string> words = source.words();
+  for (const std::string& run : runs) {
+    const OutsideRunFiles files = outside_run_argument(run);
+    words.push_back(
+        fmt::format("run={}={}", files.name, fs::absolute(files.where).lexically_normal().string()));
+  }
+  return words;
+}
+
+OpenedSource open_source_as(const std::string& where, const std::vector<std::string>& reading,
+                            const Config& config) {
+  constexpr std::string_view kRun = "run=";
+  SourceArguments arguments;
+  arguments.place = where;
+  for (const std::string& word : reading)
+    if (word.starts_with(kRun)) arguments.runs.push_back(word.substr(kRun.size()));
+  OpenedSource opened = is_run_folder(where)
+                            ? open_finished_run(arguments)
+                            : open_sequence_at(where, SequenceArguments::from_words(reading), config);
+  const std::vector<std::string> runs = std::exchange(arguments.runs, {});
+  for (const std::string& run : runs) {
+    arguments.runs = {run};
+    try {
+      stand_beside(arguments, opened);
+    } catch (const InputError& error) {
+      opened.runs_missing.emplace_back(error.what());
+    }
+  }
+  return opened;
 }
 
 }  // namespace stillpoint

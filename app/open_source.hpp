@@ -18,6 +18,9 @@ struct SourceArguments {
   ConfigArguments config;
   SequenceArguments source;
 
+  /// How it is read, as RecentSequence keeps it: SequenceArguments::words(), and "run=NAME=FILE" a run.
+  [[nodiscard]] std::vector<std::string> words() const;
+
   /// Adds --baseline, --sequence and --run; the rest is the command's.
   void add_to(CLI::App& command);
 };
@@ -27,8 +30,9 @@ struct SourceArguments {
 [[nodiscard]] OpenedSource open_source(const SourceArguments& arguments);
 
 /// A finished run with its own config, or a sequence to be run with `config`.
+/// @param reading as SourceArguments::words(); a run beside it that is there no more is told as its problem
 /// @throws InputError in one sentence for what cannot be opened
-[[nodiscard]] OpenedSource open_source_as(const std::string& where, const SequenceArguments& source,
+[[nodiscard]] OpenedSource open_source_as(const std::string& where, const std::vector<std::string>& reading,
                                           const Config& config);
 
 }  // namespace stillpoint

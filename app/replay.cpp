@@ -47,7 +47,7 @@ ReplayPlan::ReplayPlan(const std::string& file, const std::string& sequence, Seq
 }
 
 OpenedSource ReplayPlan::open_untimed(const std::string& where) const {
-  OpenedSource place = open_source_as(where, source_arguments_, config_);
+  OpenedSource place = open_source_as(where, source_arguments_.words(), config_);
   // Times differ from run to run; screenshots are not to.
   place.options.keep_times = false;
   return place;

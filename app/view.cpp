@@ -85,7 +85,7 @@ class Viewer {
   ControllerOptions controller_options(const Config& config) const {
     return {.open_source =
                 [](const std::string& where, const Config& wanted, const std::vector<std::string>& reading) {
-                  return open_source_as(where, SequenceArguments::from_words(reading), wanted);
+                  return open_source_as(where, reading, wanted);
                 },
             .config = config,
             .settings = settings_,
@@ -139,7 +139,7 @@ void view(ViewArguments arguments) {
   }
   Viewer viewer(arguments, place ? place->config : arguments.place.config.config());
   if (place)
-    viewer.controller().show(std::move(*place), arguments.place.place, arguments.place.source.words());
+    viewer.controller().show(std::move(*place), arguments.place.place, arguments.place.words());
   else
     viewer.controller().open_last(arguments.place.config.given() ? &viewer.controller().config() : nullptr);
   if (!arguments.record.empty()) viewer.record(arguments.record);

@@ -247,6 +247,9 @@ TEST(AppController, ASequenceComesBackAsItWasLeft) {
     ASSERT_TRUE(until_idle(controller));
     controller.session()->request_frame(2);
     ASSERT_TRUE(until_idle(controller));
+    other.run.method = "none";
+    controller.request(request::AddGhost{other, "without removal", 0});
+    ASSERT_TRUE(until_idle(controller));
     controller.open("second");
     ASSERT_TRUE(until_idle(controller));
     left = controller.settings();
@@ -264,6 +267,10 @@ TEST(AppController, ASequenceComesBackAsItWasLeft) {
     EXPECT_EQ(method, "paper");
     EXPECT_EQ(controller.config().features.count, 777);
     EXPECT_EQ(controller.view()->current->index, 2);
+    ASSERT_EQ(controller.view()->debug.ghosts.size(), 1U);
+    EXPECT_EQ(controller.view()->debug.ghosts[0].name, "without removal");
+    EXPECT_EQ(controller.view()->debug.ghosts[0].config.run.method, "none");
+    EXPECT_EQ(controller.view()->debug.ghosts[0].config.features.count, 777);
     offscreen.make_current();
   }
 }

@@ -199,7 +199,12 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
   settings.look = {ThemeName::kLight, 1.25F};
   settings.layout = default_layout();
   settings.window_size = {1234, 777};
-  const RecentSequence a{"a", {"camera=freiburg3", "frames=60"}, {"run.method=paper"}, 17}, b{"b", {}, {}};
+  const RecentSequence a{"a",
+                         {"camera=freiburg3", "frames=60"},
+                         {"run.method=paper"},
+                         17,
+                         {{"method none", {"run.method=none"}, 0}, {"later", {}, 5}}},
+      b{"b", {}, {}};
   remember(settings.recent, {"a", {}, {}});
   remember(settings.recent, b);
   remember(settings.recent, a);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ui/session/session.hpp"
 
@@ -14,6 +15,7 @@ struct OpenedSource {
   int frames = 0;          ///< to look at: the sequence's, or those of the finished run
   SessionOptions options;  ///< with the finished run and its baseline in it
   std::string problem;  ///< what is missing though it could be opened, one sentence; empty when all is well
+  std::vector<std::string> runs_missing{};  ///< why a run that was to stand beside does not, a sentence each
 };
 
 }  // namespace stillpoint

@@ -152,16 +152,30 @@ RecentSequence AppController::known_as(const std::string& where) const {
 std::optional<Config> AppController::config_of(const RecentSequence& sequence) {
   const auto& recent = options_.settings.recent;
   if (std::find(recent.begin(), recent.end(), sequence) == recent.end()) return std::nullopt;
+  return config_as_left(sequence.where, sequence.settings);
+}
+
+Config AppController::config_as_left(const std::string& where, const std::vector<std::string>& settings) {
   Config config;
   config.run.threads = options_.config.run.threads;
-  for (const std::string& setting : sequence.settings) {
+  for (const std::string& setting : settings) {
     try {
       set_parameter(config, setting);
     } catch (const InputError& error) {
-      workbench_.say(fmt::format("{}: {} is not as it was left: {}", sequence.where, setting, error.what()));
+      workbench_.say(fmt::format("{}: {} is not as it was left: {}", where, setting, error.what()));
     }
   }
   return config;
+}
+
+void AppController::bring_back(const std::vector<KeptGhost>& ghosts) {
+  for (const KeptGhost& ghost : ghosts) {
+    if (ghost.from > 0)
+      workbench_.say(fmt::format("{} is not brought back: it began at frame {} of a run that is made anew",
+                                 ghost.name, ghost.from));
+    else
+      session_->request(request::AddGhost{config_as_left(ghost.name, ghost.settings), ghost.name, 0});
+  }
 }
 
 void AppController::open(const std::string& where) {
@@ -247,9 +261,13 @@ void AppController::take_opened() {
     fit_layout(source.camera().is_stereo());
     workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
+    for (const std::string& run : opened.place->runs_missing) workbench_.say(run, true);
     if (const auto& recorded = opened.place->options.recorded; recorded && !recorded->cut_short.empty())
       workbench_.say(recorded->cut_short, true);
-    if (!opened.place->options.no_images.empty()) workbench_.say(opened.place->options.no_images, true);
+    if (!opened.place->options.no_images.empty())
+      workbench_.say(opened.place->options.no_images, true);
+    else
+      bring_back(opened.sequence.ghosts);
   }
   // Its worker finishes the frame at hand first, which must not hold up the interface.
   if (opened.session)
@@ -294,7 +312,11 @@ void AppController::tell_recent() {
 RecentSequence AppController::as_left() const {
   RecentSequence left = open_;
   left.settings = changed_settings(options_.config);
-  left.frame = session_->view()->current->index;
+  const auto view = session_->view();
+  left.frame = view->current->index;
+  left.ghosts.clear();
+  for (const GhostView& ghost : view->debug.ghosts)
+    if (!ghost.outside) left.ghosts.push_back({ghost.name, changed_settings(ghost.config), ghost.from});
   return left;
 }
 

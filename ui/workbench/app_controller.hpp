@@ -93,6 +93,9 @@ class AppController {
   [[nodiscard]] RecentSequence known_as(const std::string& where) const;
   /// The config a sequence was left with; nothing where it was never open.
   [[nodiscard]] std::optional<Config> config_of(const RecentSequence& sequence);
+  [[nodiscard]] Config config_as_left(const std::string& where, const std::vector<std::string>& settings);
+  /// Has runs beside the session's made again.
+  void bring_back(const std::vector<KeptGhost>& ghosts);
   void take_opened();
   /// Gives the tiles that nobody has moved those of a sequence of this kind.
   void fit_layout(bool stereo);

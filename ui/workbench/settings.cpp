@@ -42,6 +42,10 @@ Settings from_json(const Json& json, const fs::path& path, const std::vector<std
                                .reading = one.value("reading", std::vector<std::string>{}),
                                .settings = one.value("settings", std::vector<std::string>{}),
                                .frame = std::max(one.value("frame", 1), 0)});
+    for (const Json& ghost : one.value("ghosts", Json::array()))
+      settings.recent.back().ghosts.push_back({ghost.at("name").get<std::string>(),
+                                               ghost.value("settings", std::vector<std::string>{}),
+                                               std::max(ghost.value("from", 0), 0)});
   }
   settings.window_size = json.value("window", settings.window_size);
   for (int& side : settings.window_size) side = std::clamp(side, 320, 16384);
@@ -84,9 +88,13 @@ void write_settings(const fs::path& path, const Settings& settings) {
   json["scale"] = settings.look.scale;
   json["window"] = settings.window_size;
   json["recent"] = Json::array();
-  for (const RecentSequence& one : settings.recent)
-    json["recent"].push_back(
-        {{"where", one.where}, {"reading", one.reading}, {"settings", one.settings}, {"frame", one.frame}});
+  for (const RecentSequence& one : settings.recent) {
+    Json kept{
+        {"where", one.where}, {"reading", one.reading}, {"settings", one.settings}, {"frame", one.frame}};
+    for (const KeptGhost& ghost : one.ghosts)
+      kept["ghosts"].push_back({{"name", ghost.name}, {"settings", ghost.settings}, {"from", ghost.from}});
+    json["recent"].push_back(std::move(kept));
+  }
   if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));
   prepare_out_folder(path.parent_path(), {}, true);
   write_text_file(path, json.dump(1) + '\n');

@@ -11,12 +11,22 @@
 
 namespace stillpoint {
 
+/// A second run that stood beside a sequence's.
+struct KeptGhost {
+  std::string name;
+  std::vector<std::string> settings;  ///< constants other than the defaults
+  int from = 0;                       ///< frame it branched off at
+  bool operator==(const KeptGhost&) const = default;
+};
+
 /// A sequence as it was left: opened again, it is the same experiment.
 struct RecentSequence {
   std::string where;
-  std::vector<std::string> reading;   ///< how it was read, "camera=freiburg1", …: what `view` was given
+  std::vector<std::string> reading;   ///< how it was read, "camera=freiburg1", "run=NAME=FILE", …
   std::vector<std::string> settings;  ///< constants other than the defaults, "run.method=paper", …
   int frame = 1;                      ///< the one shown last
+  std::vector<KeptGhost>
+      ghosts{};  ///< runs beside it, but for other programs', which are a matter of reading
   bool operator==(const RecentSequence&) const = default;
 };
 
