@@ -6,7 +6,7 @@
 
 namespace stillpoint {
 
-// What panels show of a layer beside its image.
+// What panels show of a layer, or of a frame, beside its image.
 
 /// How often each grey level occurs among the pixels with data.
 struct LevelHistogram {
@@ -17,6 +17,19 @@ struct LevelHistogram {
 
 /// @param layer CV_8UC1 with a limit
 [[nodiscard]] LevelHistogram level_histogram(const Layer& layer);
+
+/// What of a picture is looked at.
+enum class Channel { all, grey, red, green, blue };
+
+/// A picture as a photographer would look at it: one channel, or all, times two to the power of `stops`, cut
+/// off at white.
+/// @param picture CV_8UC1 or CV_8UC3 (BGR); of a grey one every channel is the grey
+/// @returns CV_8UC1, or of all channels the picture's type
+[[nodiscard]] cv::Mat developed(const cv::Mat& picture, Channel channel, double stops);
+
+/// How often each level occurs in a picture: of a colour one over all three channels together.
+/// @param picture CV_8UC1 or CV_8UC3
+[[nodiscard]] LevelHistogram level_histogram(const cv::Mat& picture);
 
 /// What was seen less the layer, grey levels, CV_32FC1; NaN where the layer has no data.
 /// @param seen CV_8UC1 of the layer's size

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/layer_values.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/plot/plot.hpp"
 #include "ui/theme/colormap.hpp"
 
 namespace stillpoint {
@@ -21,9 +23,15 @@ class InputPanel final : public FramePanel {
     const int gap = std::max(1, view.index - view.reference.index);
     controls.choice("what", {"Frame t", fmt::format("Frame t−{}", gap), "Depth"}, what_);
     if (what_ == kDepth) {
+      controls.choice("map", {"Viridis", "Cividis", "Inferno"}, map_, "The colours of near and far");
+      controls.slider("##near", near_m_, 0.0F, 9.5F, "from %.1f m");
+      controls.slider("##far", to_m_, 0.0F, 20.0F, to_m_ > 0.0F ? "to %.1f m" : "to what there is");
       draw_depth(frame, {session, actions, FrameSpace::kTarget}, view);
       return;
     }
+    controls.choice("channel", {"Colour", "Grey", "R", "G", "B"}, channel_, "Which channel is shown");
+    controls.slider("##exposure", stops_, -4.0F, 4.0F, "%+.1f stops");
+    controls.toggle("Histogram", histogram_, "How often each level occurs, before exposure");
     const bool target = what_ == kFrame;
     draw_picture(frame, {session, actions, target ? FrameSpace::kTarget : FrameSpace::kReference},
                  target ? view.frame : view.reference);
@@ -44,10 +52,35 @@ class InputPanel final : public FramePanel {
                                  shown.problem.empty() ? "" : " ", shown.problem);
     ImageContent content;
     const cv::Mat& picture = picture_of(shown);
-    content.texture = &picture_.get(frame, session.current, what_, [&] { return picture; });
+    const int variant = what_ + 2 * channel_ + 100 * static_cast<int>(std::lround(10.0F * stops_));
+    content.texture = &picture_.get(frame, session.current, variant, [&] {
+      return developed(picture, static_cast<Channel>(channel_), static_cast<double>(stops_));
+    });
     content.values = &picture;
-    draw_frame_image(frame, "image", content, *shared_, room_above(frame, footer), place);
+    ImVec2 room = room_above(frame, footer);
+    const bool has_histogram = histogram_ && room.y > 2.5F * kHistogram * frame.scale;
+    if (has_histogram) room.y -= kHistogram * frame.scale + ImGui::GetStyle().ItemSpacing.y;
+    draw_frame_image(frame, "image", content, *shared_, room, place);
+    if (has_histogram) draw_histogram(frame, session, picture);
     footer.draw(frame);
+  }
+
+  void draw_histogram(const UiFrame& frame, const SessionView& session, const cv::Mat& picture) {
+    if (const auto of = std::pair(session.current.get(), what_ + 2 * channel_); counted_ != of) {
+      counted_ = of;
+      const LevelHistogram counts = level_histogram(developed(picture, static_cast<Channel>(channel_), 0.0));
+      levels_.clear(), counts_.assign(counts.pixels.begin(), counts.pixels.end());
+      for (int level = 0; level < 256; ++level) levels_.push_back(level);
+    }
+    Plot plot{.x_label = "level", .y_label = "pixels"};
+    plot.series.push_back({"pixels", levels_, counts_, frame.theme.accent, SeriesStyle::kBars});
+    plot.x_limits = AxisRange{0.0, 256.0};
+    plot.legend = false;
+    // What is beyond this is white as it is shown.
+    if (stops_ > 0.0F)
+      plot.marks.push_back(
+          {256.0 * std::exp2(-static_cast<double>(stops_)), "white from here", frame.theme.text_dim});
+    draw_plot(frame, "histogram", plot, plot_view_, {0, kHistogram * frame.scale});
   }
 
   void draw_depth(const UiFrame& frame, const FramePlace& place, const FrameView& view) {
@@ -65,12 +98,20 @@ class InputPanel final : public FramePanel {
     scale.none = "not measured";
     scale.none_colour = no_value_colour(frame.theme);
     scale.colour = [this](double z) { return colour_of(z); };
-    const Texture& texture = depth_.get(frame, session.current, 0, [&] {
+    const int variant = map_ + 3 * static_cast<int>(std::lround(10.0F * near_m_)) +
+                        3000 * static_cast<int>(std::lround(10.0F * to_m_));
+    const auto set_range = [&] {
+      shown_low_ =
+          std::min(static_cast<double>(near_m_), (to_m_ > 0.0F ? static_cast<double>(to_m_) : far_m_) - 0.1);
+      shown_high_ = to_m_ > 0.0F ? std::max(static_cast<double>(to_m_), shown_low_ + 0.1) : far_m_;
+      scale.low = shown_low_, scale.high = shown_high_;
+    };
+    const Texture& texture = depth_.get(frame, session.current, variant, [&] {
       find_depth_range(depth);
-      scale.high = far_m_;
+      set_range();
       return coloured(depth, scale, true);
     });
-    scale.high = far_m_;
+    set_range();
     Footer footer;
     footer.caption = fmt::format(
         "{}. Depth on {:.0f} % of the pixels, median {:.2f} m; taken {:+.0f} ms from the colour image.",
@@ -85,7 +126,8 @@ class InputPanel final : public FramePanel {
 
   [[nodiscard]] Rgb colour_of(double z) const {
     // Near is bright: what is near matters most.
-    return map_colour(Colormap::kViridis, static_cast<float>(1.0 - z / far_m_));
+    return map_colour(static_cast<Colormap>(map_),
+                      static_cast<float>(1.0 - (z - shown_low_) / (shown_high_ - shown_low_)));
   }
 
   /// The far end of the scale in half metres, so that it stays while playing; and figures for the caption.
@@ -118,7 +160,15 @@ class InputPanel final : public FramePanel {
     return fmt::format("Frame {} could not be read.", session.current->reference.index);
   }
 
-  int what_ = kFrame;
+  static constexpr float kHistogram = 90.0F;  // design px, high
+
+  int what_ = kFrame, channel_ = 0, map_ = 0;
+  float stops_ = 0.0F, near_m_ = 0.0F, to_m_ = 0.0F;  // exposure; the scale of depth, 0 = as it is found
+  bool histogram_ = false;
+  std::pair<const FrameView*, int> counted_{nullptr, -1};  // what the histogram is of
+  std::vector<double> levels_, counts_;
+  PlotView plot_view_;
+  double shown_low_ = 0.0, shown_high_ = 1.0;  // m, of depth's scale
   FrameTexture picture_, depth_;
   double far_m_ = 1.0, median_m_ = 0.0, covered_ = 0.0;
 };
