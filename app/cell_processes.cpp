@@ -117,8 +117,13 @@ std::string minutes_text(double ms) {
 /// The cells that run, and those that wait for it.
 class CellPool {
  public:
-  CellPool(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells, int jobs)
-      : folder_(folder), plan_(plan), cells_(cells), jobs_(static_cast<std::size_t>(std::max(1, jobs))) {}
+  CellPool(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells, int jobs,
+           bool keeps_stopped)
+      : folder_(folder),
+        plan_(plan),
+        cells_(cells),
+        jobs_(static_cast<std::size_t>(std::max(1, jobs))),
+        keeps_stopped_(keeps_stopped) {}
   /// Leaves none running, whatever was thrown.
   ~CellPool() {
     for (const CellProcess& one : running_) {
@@ -170,7 +175,7 @@ class CellPool {
     std::error_code none;
     const bool has_record = fs::exists(folder_ / cell_record_name(ended.cell), none);
     if (status == 0 && !has_record) status = 1;
-    if (status != 0 && stop_requested()) return;
+    if (status != 0 && stop_requested() && !keeps_stopped_) return;
     std::string how = "done";
     if (status != 0) {
       ++failed_;
@@ -192,15 +197,16 @@ class CellPool {
   const std::string fingerprint_ = plan_.fingerprint();
   std::size_t jobs_, next_ = 0, done_ = 0;
   std::vector<CellProcess> running_;
-  bool is_stopping_ = false;
+  bool keeps_stopped_, is_stopping_ = false;
   int failed_ = 0;
   Stopwatch watch_;
 };
 
 }  // namespace
 
-int run_cells(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells, int jobs) {
-  return CellPool(folder, plan, cells, jobs).run();
+int run_cells(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells, int jobs,
+              bool keeps_stopped) {
+  return CellPool(folder, plan, cells, jobs, keeps_stopped).run();
 }
 
 void run_cell_here(const fs::path& folder, int cell, const std::string& fingerprint) {

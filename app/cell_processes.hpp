@@ -10,11 +10,13 @@ namespace stillpoint {
 /// Runs cells of a plan, so many at a time, each as a process of its own, which leaves its record and its log
 /// in the plan's folder: one that fails, crashes or is killed fails by itself, and its record says so. A line
 /// for each that has ended goes to standard error. Ends when all have, or, asked to stop, when all have
-/// stopped; those leave no record.
+/// stopped.
+/// @param keeps_stopped whether a cell that is stopped has failed, as where Slurm's time is over; otherwise
+/// it leaves no record, as where a person stops all
 /// @returns how many failed
 /// @throws InputError where a process cannot be started or a record cannot be written
 int run_cells(const std::filesystem::path& folder, const CellPlan& plan, const std::vector<int>& cells,
-              int jobs);
+              int jobs, bool keeps_stopped = false);
 
 /// Runs one cell in this process, and writes its record.
 /// @param fingerprint as plan_to_go_by has it

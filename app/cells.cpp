@@ -34,7 +34,7 @@ void run_task(const CellsArguments& arguments) {
     const auto record = read_record(folder, plan, fingerprint, cell);
     if (!record || record->status != 0) cells.push_back(cell);
   }
-  const int failed = run_cells(folder, plan, cells, arguments.jobs);
+  const int failed = run_cells(folder, plan, cells, arguments.jobs, true);
   throw_if_interrupted();
   if (failed > 0) throw ExitStatus{1};
 }

@@ -24,6 +24,11 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kCellsFolder = "cells";
 constexpr std::string_view kProgramName = "stillpoint ";
 
+/// JSON of whatever bytes there are: those that are no UTF-8 are replaced, for paths and logs may hold any.
+std::string text_of(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 Json cell_json(const PlanCell& cell) {
   Json json;
   json["sequence"] = cell.sequence;
@@ -59,7 +64,7 @@ std::string rows_text(const char* name, const Values& values, Write write) {
   std::string text = fmt::format("  \"{}\": [", name);
   const char* between = "\n    ";
   for (const auto& value : values) {
-    text += between + write(value).dump();
+    text += between + text_of(write(value));
     between = ",\n    ";
   }
   return text + (values.empty() ? "]" : "\n  ]");
@@ -79,14 +84,14 @@ Json settings_json(const CellPlan& plan) {
 }
 
 std::string settings_text(const CellPlan& plan) {
-  std::string text = settings_json(plan).dump(2);
+  std::string text = text_of(settings_json(plan), 2);
   text.resize(text.size() - 2);  // without "\n}"
   return text + ",\n" + rows_text("sequences", plan.sequences, sequence_json) + ",\n" +
          rows_text("cells", plan.cells, cell_json);
 }
 
 /// Text by which a cell is found.
-std::string key_of(const PlanCell& cell) { return cell_json(cell).dump(); }
+std::string key_of(const PlanCell& cell) { return text_of(cell_json(cell)); }
 
 /// The number in "000012.json" or ".log"; nothing for other names.
 std::optional<int> number_in(const fs::path& name, const char* extension) {
@@ -144,8 +149,7 @@ std::string CellPlan::fingerprint() const {
 
 std::string to_json_text(const CellPlan& plan) {
   return settings_text(plan) +
-         fmt::format(",\n  \"command\": {},\n  \"replaces\": {},\n", Json(plan.command).dump(),
-                     plan.replaces) +
+         fmt::format(",\n  \"command\": {},\n  \"replaces\": {},\n", text_of(plan.command), plan.replaces) +
          rows_text("known", plan.known,
                    [](const CellResult& known) {
                      Json json = cell_json(known.cell);
@@ -229,7 +233,7 @@ std::string to_json_text(const CellRecord& record) {
   json["status"] = record.status;
   if (!record.said.empty()) json["said"] = record.said;
   if (!record.json.empty()) json["result"] = parse_json<Json>(record.json);
-  return json.dump() + "\n";
+  return text_of(json) + "\n";
 }
 
 CellRecord record_from_json(const std::string& text, const std::string& where) {

@@ -227,7 +227,7 @@ TEST(BenchmarkForce, TheEarlierResultsStayUntilTheNewOnesAreWhole) {
   ASSERT_EQ(run_cli(with_words(words, {"--frames", "6"})).exit_code, 0);
   const std::string before = sequence.folder.read("out/results.json"),
                     table = sequence.folder.read("out/table1.csv");
-  sequence.write_lists(300);
+  sequence.write_lists(120);
   // Killed after its first run, in one process and as jobs.
   for (const Words& how : {Words{}, Words{"--jobs", "1"}}) {
     CliProcess process(with_words(with_words(words, {"--force"}), how));
@@ -243,8 +243,8 @@ TEST(BenchmarkForce, TheEarlierResultsStayUntilTheNewOnesAreWhole) {
     EXPECT_THAT(resumed.err, Not(HasSubstr("features, none")));
     const auto runs = nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs");
     ASSERT_EQ(runs.size(), 2U);
-    EXPECT_EQ(runs.at(0).at("frames"), 300);
-    EXPECT_EQ(runs.at(1).at("frames"), 300);
+    EXPECT_EQ(runs.at(0).at("frames"), 120);
+    EXPECT_EQ(runs.at(1).at("frames"), 120);
     EXPECT_FALSE(fs::exists(sequence.path("out/results.new.json")));
     sequence.folder.write("out/results.json", before);
     sequence.folder.write("out/table1.csv", table);

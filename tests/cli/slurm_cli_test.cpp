@@ -223,7 +223,7 @@ TEST_F(RealSlurm, RunsAnArrayThroughARequeueAndAFailureAndGoesOn) {
   sequence_.write_lists(200);
   sequence_.folder.write("out/sequence/epipolar", std::string("in the way"));
   std::vector<std::string> words = {"benchmark", sequence_.path(), "--methods", "none,epipolar", "--repeat",
-                                    "3",         "--out",          out,         "--slurm",       "--mem",
+                                    "2",         "--out",          out,         "--slurm",       "--mem",
                                     "400M",      "--time",         "5"};
   const CliResult submitted = run_cli(words);
   ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
