@@ -74,8 +74,11 @@ pid_t start_cell(const fs::path& folder, const CellPlan& plan, std::string finge
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  const pid_t child = ::fork();
+  const pid_t parent = ::getpid(), child = ::fork();
   if (child == 0) {
+    // Whoever waits for it may be killed: then it ends, too.
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(128 + SIGTERM);
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(file, STDOUT_FILENO);
     ::dup2(file, STDERR_FILENO);
@@ -176,6 +179,9 @@ class CellPool {
     const bool has_record = fs::exists(folder_ / cell_record_name(ended.cell), none);
     if (status == 0 && !has_record) status = 1;
     if (status != 0 && stop_requested() && !keeps_stopped_) return;
+    // Which signal handed the request on says nothing.
+    if (stop_requested() && (status == 128 + SIGINT || status == 128 + SIGTERM))
+      status = 128 + stop_signal_given();
     std::string how = "done";
     if (status != 0) {
       ++failed_;
@@ -214,8 +220,6 @@ void run_cell_here(const fs::path& folder, int cell, const std::string& fingerpr
   if (cell < 0 || cell >= static_cast<int>(plan.cells.size()))
     throw InputError(fmt::format("{}: its plan has cells 0 to {}, and no {}", folder.string(),
                                  static_cast<int>(plan.cells.size()) - 1, cell));
-  // Whoever waits for this process may be killed: then nobody would.
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   (void)stop_requested();
   const BenchmarkResults here = made_here();
   CellRecord record{cell, plan.fingerprint(), here.commit, here.machine};

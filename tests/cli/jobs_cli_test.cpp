@@ -157,6 +157,25 @@ TEST(Jobs, ACellThatCrashesIsToldByItsSignal) {
   EXPECT_EQ(process_of_cell(out, 1), 0) << "nothing runs on";
 }
 
+TEST(Jobs, KilledLeavesNoCellRunningAndGoesOn) {
+  const SmallSequence sequence(6);
+  sequence.write_lists(100);
+  const std::string out = sequence.path("out");
+  const Words words = {"benchmark", sequence.path(), "--methods", "none,epipolar", "--out",
+                       out,         "--jobs",        "1"};
+  CliProcess process(words);
+  ASSERT_TRUE(comes([&] { return process_of_cell(out, 1) != 0; }));
+  process.send(SIGKILL);
+  (void)process.wait();
+  EXPECT_TRUE(comes([&] { return process_of_cell(out, 1) == 0; }, 10));
+  EXPECT_FALSE(fs::exists(out + "/results.json"));
+  EXPECT_FALSE(fs::exists(out + "/cells/000001.json"));
+  const CliResult resumed = run_cli(with_words(words, {"--resume"}));
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("[1/1] sequence (features, epipolar): done"));
+  EXPECT_EQ(nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs").size(), 2U);
+}
+
 TEST(Jobs, StoppedKeepsWhatWasFinishedAndGoesOn) {
   const SmallSequence sequence(40), longer(6);
   longer.write_lists(2000);
