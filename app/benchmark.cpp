@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "app/arguments.hpp"
+#include "app/benchmark_cells.hpp"
 #include "app/benchmark_tables.hpp"
 #include "app/cell_kinds.hpp"
 #include "app/commands.hpp"
@@ -39,42 +40,6 @@ struct BenchmarkArguments {
   SequenceArguments frames;
   JobArguments work;
 };
-
-/// Results that are to take the place of earlier ones, until they are whole.
-constexpr const char* kUnfinishedName = "results.new.json";
-
-std::vector<BenchmarkResult> runs_of(const std::vector<CellResult>& cells) {
-  std::vector<BenchmarkResult> runs;
-  for (const CellResult& cell : cells) runs.push_back(result_from_json(cell.json, to_text(cell.cell)));
-  return runs;
-}
-
-/// What an earlier benchmark left in the folder, to be gone on with.
-/// @param replaces whether it was to take the place of still earlier results, which stay so long
-/// @throws InputError where its runs are not what these would be
-std::vector<BenchmarkResult> earlier_runs(const BenchmarkArguments& arguments, const Config& config,
-                                          bool& replaces) {
-  if (const auto earlier = earlier_cells(arguments.out, benchmark_cells().name, shared_config(config))) {
-    replaces = earlier->plan.replaces && !earlier->merged.whole;
-    return runs_of(earlier->merged.results);
-  }
-  replaces = std::filesystem::exists(std::filesystem::path(arguments.out) / kUnfinishedName);
-  const std::filesystem::path path =
-      std::filesystem::path(arguments.out) / (replaces ? kUnfinishedName : kResultsName);
-  if (!std::filesystem::exists(path)) return {};
-  const BenchmarkResults earlier = read_results(path.string());
-  if (earlier.commit != made_here().commit)
-    throw InputError(
-        fmt::format("{}: was made by another build (commit {}), so that --resume cannot go on with "
-                    "it; --force begins anew",
-                    path.string(), earlier.commit));
-  if (earlier.config != shared_config(config))
-    throw InputError(
-        fmt::format("{}: was made with other parameters, so that --resume cannot go on with it; "
-                    "--force begins anew",
-                    path.string()));
-  return earlier.runs;
-}
 
 struct OpenedSequence {
   std::string where;
@@ -281,22 +246,6 @@ std::string run_benchmark_cell(const CellPlan& plan, const PlanCell& cell,
   return to_json(reached.value()).dump();
 }
 
-std::string benchmark_cell_tables(const CellPlan& plan, const MergedCells& merged,
-                                  const std::filesystem::path& folder) {
-  BenchmarkResults results = made_here();
-  if (!merged.machines.empty()) results.machine = fmt::format("{}", fmt::join(merged.machines, "; "));
-  results.command = plan.command;
-  results.config = plan.config;
-  results.runs = runs_of(merged.results);
-  results.missing = merged.missing;
-  const BenchmarkColumns columns{plan.engines, plan.methods, plan.repeated, plan.cells.size()};
-  if (merged.whole || !plan.replaces) {
-    write_tables(results, columns, folder.string());
-    std::filesystem::remove(folder / kUnfinishedName);
-  }
-  return tables_text(results, columns);
-}
-
 void benchmark(BenchmarkArguments arguments) {
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
@@ -309,7 +258,7 @@ void benchmark(BenchmarkArguments arguments) {
     replaces = std::filesystem::exists(out / kResultsName);
     std::filesystem::remove(out / kUnfinishedName);
   }
-  if (arguments.resume) results.runs = earlier_runs(arguments, config, replaces);
+  if (arguments.resume) results.runs = earlier_runs(arguments.out, results.config, replaces);
   BenchmarkColumns columns{arguments.engines, arguments.methods, arguments.repeats > 1};
   for (const std::string& outside : arguments.outside)
     columns.methods.push_back(outside_run_argument(outside).name);

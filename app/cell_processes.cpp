@@ -212,6 +212,9 @@ class CellPool {
 
 int run_cells(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells, int jobs,
               bool keeps_stopped) {
+  if (!cells.empty())
+    fmt::print(stderr, "{} of the plan's {} runs are to be made, {} at a time; each has a log in {}\n",
+               cells.size(), plan.cells.size(), jobs, (folder / cell_log_name(0)).parent_path().string());
   return CellPool(folder, plan, cells, jobs, keeps_stopped).run();
 }
 

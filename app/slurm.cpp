@@ -94,48 +94,54 @@ std::vector<int> submissions(const fs::path& jobs) {
   return {numbers.begin(), numbers.end()};
 }
 
-std::string heads(const std::string& name, const SlurmOptions& options) {
-  std::string text = fmt::format("#!/bin/bash\n#SBATCH --job-name={}\n", name);
+/// The user's own options, which stand last, so that they have the last word.
+std::string own_heads(const SlurmOptions& options) {
+  std::string text;
   for (const std::string& other : options.others) text += fmt::format("#SBATCH {}\n", other);
   return text;
 }
 
+std::string this_program() { return shell_word(fs::read_symlink("/proc/self/exe").string()); }
+
 /// @param threads of a cell
 std::string array_script(const fs::path& folder, const CellPlan& plan, const SlurmOptions& options,
                          int number, std::size_t tasks, std::size_t cells_a_task, int threads) {
-  const std::string jobs = (folder / kJobsFolder).string();
-  return heads("stillpoint-" + plan.kind, options) +
-         fmt::format(
-             "#SBATCH --array=0-{tasks}\n"
-             "#SBATCH --mem={mem}\n"
-             "#SBATCH --time={minutes}\n"
-             "#SBATCH --cpus-per-task={threads}\n"
-             "# A task that is preempted, or whose node is lost, begins anew: cells that have a record are "
-             "not run again,\n"
-             "# and logs go on where they were.\n"
-             "#SBATCH --requeue\n"
-             "#SBATCH --open-mode=append\n"
-             "#SBATCH --output={jobs}/{number}_%a.log\n"
-             "exec {program} cells {folder} --plan {plan} \\\n"
-             "  --only \"$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" {jobs}/{number}.tasks)\"\n",
-             fmt::arg("tasks", tasks - 1), fmt::arg("mem", options.mem),
-             fmt::arg("minutes", slurm_minutes(options.time) * static_cast<int>(cells_a_task)),
-             fmt::arg("threads", threads), fmt::arg("jobs", jobs), fmt::arg("number", number),
-             fmt::arg("program", shell_word(fs::read_symlink("/proc/self/exe").string())),
-             fmt::arg("folder", folder.string()), fmt::arg("plan", plan.fingerprint()));
+  return fmt::format(
+      "#!/bin/bash\n"
+      "#SBATCH --job-name=stillpoint-{kind}\n"
+      "#SBATCH --array=0-{last}\n"
+      "#SBATCH --mem={mem}\n"
+      "#SBATCH --time={minutes}\n"
+      "#SBATCH --cpus-per-task={threads}\n"
+      "# A task that is preempted, or whose node is lost, begins anew: cells that have a result are not run "
+      "again,\n"
+      "# and logs go on where they were.\n"
+      "#SBATCH --requeue\n"
+      "#SBATCH --open-mode=append\n"
+      "#SBATCH --output={jobs}/{number}_%a.log\n"
+      "{own}"
+      "exec {program} cells {folder} --plan {plan} \\\n"
+      "  --only \"$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" {jobs}/{number}.tasks)\"\n",
+      fmt::arg("kind", plan.kind), fmt::arg("last", tasks - 1), fmt::arg("mem", options.mem),
+      fmt::arg("minutes", slurm_minutes(options.time) * static_cast<int>(cells_a_task)),
+      fmt::arg("threads", threads), fmt::arg("jobs", (folder / kJobsFolder).string()),
+      fmt::arg("number", number), fmt::arg("own", own_heads(options)), fmt::arg("program", this_program()),
+      fmt::arg("folder", folder.string()), fmt::arg("plan", plan.fingerprint()));
 }
 
 std::string merge_script(const fs::path& folder, const CellPlan& plan, const SlurmOptions& options,
                          int number) {
-  return heads("stillpoint-merge", options) + fmt::format(
-                                                  "#SBATCH --mem={}\n"
-                                                  "#SBATCH --time=30\n"
-                                                  "#SBATCH --open-mode=append\n"
-                                                  "#SBATCH --output={}/{}.merge.log\n"
-                                                  "exec {} merge {} --plan {}\n",
-                                                  options.mem, (folder / kJobsFolder).string(), number,
-                                                  shell_word(fs::read_symlink("/proc/self/exe").string()),
-                                                  folder.string(), plan.fingerprint());
+  return fmt::format(
+      "#!/bin/bash\n"
+      "#SBATCH --job-name=stillpoint-merge\n"
+      "#SBATCH --mem={}\n"
+      "#SBATCH --time=30\n"
+      "#SBATCH --open-mode=append\n"
+      "#SBATCH --output={}/{}.merge.log\n"
+      "{}"
+      "exec {} merge {} --plan {}\n",
+      options.mem, (folder / kJobsFolder).string(), number, own_heads(options), this_program(),
+      folder.string(), plan.fingerprint());
 }
 
 /// sbatch reads quotes, blanks, % and backslashes in the head of a script in ways of its own.

@@ -222,9 +222,13 @@ TEST_F(RealSlurm, RunsAnArrayThroughARequeueAndAFailureAndGoesOn) {
   const std::string out = sequence_.path("out");
   sequence_.write_lists(200);
   sequence_.folder.write("out/sequence/epipolar", std::string("in the way"));
-  std::vector<std::string> words = {"benchmark", sequence_.path(), "--methods", "none,epipolar", "--repeat",
-                                    "2",         "--out",          out,         "--slurm",       "--mem",
-                                    "400M",      "--time",         "5"};
+  std::vector<std::string> words = {"benchmark", sequence_.path(),
+                                    "--methods", "none,epipolar",
+                                    "--repeat",  "2",
+                                    "--out",     out,
+                                    "--slurm",   "--mem",
+                                    "400M",      "--time",
+                                    "5",         "--sbatch=--cpus-per-task=1"};
   const CliResult submitted = run_cli(words);
   ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
   EXPECT_THAT(submitted.out, HasSubstr("4 cells in 2 tasks")) << "MaxArraySize is 3 there";
@@ -241,6 +245,8 @@ TEST_F(RealSlurm, RunsAnArrayThroughARequeueAndAFailureAndGoesOn) {
   EXPECT_THAT(read("out/jobs/1_0.log"), HasSubstr("DUE TO JOB REQUEUE"))
       << "the requeue left the log as it was";
   EXPECT_THAT(read("out/jobs/1_0.log"), HasSubstr("[1/1] sequence (features, none, repeat 1): done"));
+  EXPECT_THAT(shell("scontrol show job " + job + "_1").out, HasSubstr("CPUs/Task=1 "))
+      << "one's own options have the last word";
   // The job that merges came after all of them, and names the cell that failed.
   EXPECT_THAT(read("out/jobs/1.merge.log"), HasSubstr("Of 4 runs, 1 has no result:"));
   EXPECT_THAT(read("out/jobs/1.merge.log"), HasSubstr("cells/000002.log"));
