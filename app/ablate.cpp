@@ -199,7 +199,7 @@ void ablate(const AblateArguments& arguments) {
   const auto sequences = open_all(arguments, config);
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"ablation.csv", kPlanName}, arguments.force || arguments.resume);
-  if (arguments.work.given())
+  if (arguments.work.given() || arguments.resume)
     return run_by_cells(arguments.work, ablation_plan(arguments, config, variants, sequences), arguments.out);
   if (!arguments.out.empty()) remove_plan(arguments.out);
   std::vector<AblationRow> rows = rows_of(variants);

@@ -214,7 +214,8 @@ int run_cells(const fs::path& folder, const CellPlan& plan, const std::vector<in
               bool keeps_stopped) {
   if (!cells.empty())
     fmt::print(stderr, "{} of the plan's {} runs are to be made, {} at a time; each has a log in {}\n",
-               cells.size(), plan.cells.size(), jobs, (folder / cell_log_name(0)).parent_path().string());
+               cells.size(), plan.cells.size(), std::max(1, jobs),
+               (folder / cell_log_name(0)).parent_path().string());
   return CellPool(folder, plan, cells, jobs, keeps_stopped).run();
 }
 

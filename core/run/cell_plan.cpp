@@ -297,7 +297,8 @@ CellRecords read_records(const fs::path& folder, const CellPlan& plan) {
         log && *log < static_cast<int>(plan.cells.size()))
       records.begun[static_cast<std::size_t>(*log)] = true;
     const auto number = number_in(file.filename(), ".json");
-    if (!number) continue;
+    // One that failed is taken away when its cell is run again, perhaps just now.
+    if (std::error_code none; !number || !fs::exists(file, none)) continue;
     CellRecord record = checked_record(file, plan, fingerprint, *number);
     records.of_cell[static_cast<std::size_t>(*number)] = std::move(record);
   }

@@ -54,9 +54,17 @@ pid_t process_of_cell(const std::string& folder, int cell) {
 TEST(Jobs, ABenchmarksResultsAreThoseOfOneProcess) {
   const SmallSequence sequence(40);
   fs::copy(sequence.path(), sequence.path("../twin"), fs::copy_options::recursive);
-  const Words words = {"benchmark", sequence.path(), sequence.path("../twin"),
-                       "--methods", "none,epipolar", "--repeat",
-                       "2",         "--frames",      "35"};
+  const Words words = {"benchmark",
+                       sequence.path(),
+                       sequence.path("../twin"),
+                       "--methods",
+                       "none,epipolar",
+                       "--repeat",
+                       "2",
+                       "--frames",
+                       "35",
+                       "--run",
+                       "truth=" + sequence.path("groundtruth.txt")};
   ASSERT_EQ(run_cli(with_words(words, {"--out", sequence.path("one")})).exit_code, 0);
   const CliResult jobs = run_cli(with_words(words, {"--out", sequence.path("jobs"), "--jobs", "2"}));
   ASSERT_EQ(jobs.exit_code, 0) << jobs.err;
@@ -80,6 +88,17 @@ TEST(Jobs, ABenchmarksResultsAreThoseOfOneProcess) {
   EXPECT_EQ(run_cli({"cells", sequence.path("jobs"), "--inside", "3"}).exit_code, 0);
 }
 
+TEST(Jobs, EachEngineHasItsCells) {
+  const SmallSequence sequence(6);
+  const Words words = {"benchmark", sequence.path(), "--methods", "none", "--odometry", "features,ptam"};
+  ASSERT_EQ(run_cli(with_words(words, {"--out", sequence.path("one")})).exit_code, 0);
+  ASSERT_EQ(run_cli(with_words(words, {"--out", sequence.path("jobs"), "--jobs", "2"})).exit_code, 0);
+  EXPECT_EQ(results_but_times(sequence.folder, "jobs/results.json"),
+            results_but_times(sequence.folder, "one/results.json"));
+  EXPECT_EQ(sequence.folder.read("jobs/table1_ptam.csv"), sequence.folder.read("one/table1_ptam.csv"));
+  EXPECT_THAT(sequence.folder.read("jobs/results.json"), HasSubstr("\"odometry\": \"ptam\""));
+}
+
 TEST(Jobs, AnAblationsResultsAreThoseOfOneProcess) {
   const SmallSequence sequence(36);
   const Words words = {"ablate", sequence.path(), "--without", "prior,huber"};
@@ -92,7 +111,7 @@ TEST(Jobs, AnAblationsResultsAreThoseOfOneProcess) {
   EXPECT_THAT(sequence.folder.read("jobs/ablation.json"), HasSubstr("\"set\": ["));
 
   // One ingredient more: what is there is not run again.
-  Words more = with_words(by_jobs, {"--resume"});
+  Words more = with_words(words, {"--out", sequence.path("jobs"), "--resume"});
   more[3] = "prior,huber,smoother";
   const CliResult resumed = run_cli(more);
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;

@@ -173,6 +173,9 @@ TEST(CellMerge, RefusesWhatIsOfAnotherPlanOrBuild) {
   folder.write(cell_record_name(2), std::string("{\"cell\""));
   EXPECT_THAT(refusal(), HasSubstr("000002.json: is no record of a cell"));
   write_record(folder.path(), good_record(plan, 2));
+  CellRecord odd{1, plan.fingerprint(), plan.commit, "a machine", 1, "no \xff.png"};
+  EXPECT_EQ(record_from_json(to_json_text(odd), "a record").said, "no \xEF\xBF\xBD.png")
+      << "logs may hold any bytes";
   folder.write("cells/000004.json.part_node_17", std::string("half"));  // is being written by another
   EXPECT_THAT(missing_cells(plan, read_records(folder.path(), plan)), ElementsAre(0, 1, 3, 4, 5));
 }
