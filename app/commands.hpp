@@ -23,6 +23,7 @@ void add_tables_command(CLI::App& app);
 void add_ablate_command(CLI::App& app);
 void add_cells_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
+void add_sweep_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);

@@ -101,6 +101,7 @@ class Session {
   void refuse_without_images(const char* what) const;
   void process_one();
   void show(int frame);
+  void choose_other();
   void publish();
   [[nodiscard]] DebugView debug_view();
   [[nodiscard]] bool lacks_before() const;
@@ -122,8 +123,11 @@ class Session {
   void carry_out(const request::ExportFrames& wanted);
   void carry_out(const request::ExportSession& wanted);
   void carry_out(const request::CheckSequence& wanted);
+  void carry_out(const request::Sweep& wanted);
+  void carry_out(const request::StopSweep& wanted);
   void carry_out(const request::StopExport& wanted);
   void carry_out(const request::StagesBeside& wanted);
+  void carry_out(const request::StandBeside& wanted);
   void carry_out(const request::SavePreset& wanted);
   void write_beside(const std::string& folder, ExportJob::Work work);
 
@@ -188,8 +192,12 @@ class Session {
   std::atomic<bool> news_ = false;      // of what goes on beside the session
   std::atomic<bool> exporting_ = false, checking_ = false;
   std::optional<CheckView> checked_;  // what the last questioning found
-  std::jthread checker_;              // ends before what it works with
-  std::jthread worker_;               // last: it ends before what it works with
+  std::vector<SweepPoint> swept_;     // not yet taken into debug_.sweep
+  std::string sweep_problem_;
+  std::atomic<bool> sweeping_ = false, stop_sweep_ = false;
+  std::jthread sweeper_;  // ends before what it works with
+  std::jthread checker_;  // ends before what it works with
+  std::jthread worker_;   // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

@@ -234,6 +234,53 @@ void Session::carry_out(const request::CheckSequence& /*wanted*/) {
   });
 }
 
+void Session::carry_out(const request::Sweep& wanted) {
+  refuse_without_images("There is nothing to sweep over");
+  refuse_out_of_range(wanted.base);
+  if (sweeping_) throw InputError("another sweep still goes on");
+  SweepView view{.range = wanted.range,
+                 .values = sweep_values(wanted.base, wanted.range),
+                 .frames = std::clamp(wanted.frames, 0, source_->size()),
+                 .base = wanted.base,
+                 .busy = true};
+  // One thread: it gives way to what a person looks at meanwhile, and gives the same runs.
+  view.base.run.threads = 1;
+  const auto run = [this, view](const std::stop_token& stop) {
+    const std::stop_callback ends(stop, [this] { stop_sweep_ = true; });
+    std::string problem;
+    try {
+      for (const double value : view.values) {
+        auto point = sweep_point(*source_, view.base, view.range.parameter, value, view.frames, &stop_sweep_);
+        if (!point) break;
+        const std::lock_guard lock(mutex_);
+        swept_.push_back(std::move(*point));
+        news_ = true;
+        asked_.notify_all();
+      }
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    sweep_problem_ = problem;
+    sweeping_ = false;
+    news_ = true;
+    asked_.notify_all();
+  };
+  if (sweeper_.joinable()) sweeper_.join();
+  (void)take_news();
+  debug_.sweep = view;
+  stop_sweep_ = false;
+  sweeping_ = true;
+  if (worker_.joinable()) {
+    sweeper_ = std::jthread(run);
+  } else {
+    run({});
+    (void)take_news();
+  }
+}
+
+void Session::carry_out(const request::StopSweep& /*wanted*/) { stop_sweep_ = true; }
+
 void Session::carry_out(const request::StopExport& /*wanted*/) {
   if (export_) export_->stop();
 }
@@ -243,6 +290,12 @@ void Session::carry_out(const request::StagesBeside& wanted) {
   run_->lay_beside(wanted.method);
   beside_ = wanted.method;
   show(current_->index);
+}
+
+void Session::carry_out(const request::StandBeside& wanted) {
+  debug_.other_is = wanted.which;
+  if (wanted.keep) debug_.kept_frame = std::clamp(*wanted.keep, 0, source_->size() - 1);
+  choose_other();
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

@@ -85,7 +85,7 @@ LayoutRect below_heading(const LayoutRect& rect, float heading) {
 }  // namespace
 
 Workbench::Workbench(std::vector<std::unique_ptr<Panel>> panels, WorkbenchHost host)
-    : panels_(std::move(panels)), host_(std::move(host)) {
+    : panels_(std::move(panels)), host_(std::move(host)), open_dialog_(host_.look) {
   set_layout(default_layout());
   add_actions();
 }
@@ -143,7 +143,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame.log = &log_;
   frame.busy = !opening_.empty() || (session != nullptr && session->busy);
   if (const auto before = std::exchange(before_frame_, {})) before();
-  const bool overlay = palette_.open || open_dialog_.open || hand_on_dialog_.open;
+  frame.offer = &offered_;
+  const bool overlay = palette_.open || open_dialog_.is_open() || hand_on_dialog_.open || save_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
   tell_notice();
@@ -169,6 +170,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_palette();
   draw_open_dialog();
   draw_hand_on_dialog();
+  draw_save_dialog();
   draw_exporting();
   look_ = frame.wanted_look;
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
