@@ -94,6 +94,10 @@ std::vector<int> submissions(const fs::path& jobs) {
   return {numbers.begin(), numbers.end()};
 }
 
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 /// The user's own options, which stand last, so that they have the last word.
 std::string own_heads(const SlurmOptions& options) {
   std::string text;
@@ -218,9 +222,10 @@ void submit_cells(const fs::path& folder, const CellPlan& plan, const std::vecto
   }
   write_text_file(numbers, array_job + "\n" + merge_job + "\n");
   fmt::print(
-      "{} cells in {} tasks are submitted as Slurm's job {}; job {} merges them into {} when all have ended\n"
+      "{} in {} submitted as Slurm's job {}; job {} merges them into {} when all have ended\n"
       "stillpoint merge {}   merges what there is so far, and names the cells that are missing\n",
-      cells.size(), tasks, array_job, merge_job, folder.string(), folder.string());
+      counted(cells.size(), "cell"), counted(tasks, "task"), array_job, merge_job, folder.string(),
+      folder.string());
 }
 
 void throw_if_queued(const fs::path& folder) {

@@ -82,7 +82,7 @@ TEST_F(StandIns, AnArrayIsSubmittedAndThenAJobThatMerges) {
   const CliResult result =
       run_cli(words({"--mem", "800M", "--time", "1:30:10", "--sbatch=--partition=long"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("4 cells in 2 tasks are submitted as Slurm's job 1; job 2 merges them"));
+  EXPECT_THAT(result.out, HasSubstr("4 cells in 2 tasks submitted as Slurm's job 1; job 2 merges them"));
   EXPECT_EQ(bin_.read("asked"), "sbatch --parsable " + out_ + "/jobs/1.sbatch\n" +
                                     "sbatch --parsable --dependency=afterany:1 " + out_ +
                                     "/jobs/1.merge.sbatch\n");
@@ -257,7 +257,7 @@ TEST_F(RealSlurm, RunsAnArrayThroughARequeueAndAFailureAndGoesOn) {
   words.push_back("--resume");
   const CliResult resumed = run_cli(words);
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_THAT(resumed.out, HasSubstr("1 cells in 1 tasks"));
+  EXPECT_THAT(resumed.out, HasSubstr("1 cell in 1 task "));
   ASSERT_TRUE(comes([&] { return queue_is_empty(); }));
   EXPECT_THAT(read("out/jobs/2.merge.log"), Not(HasSubstr("no result")));
   words.resize(6);
