@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,11 +11,14 @@
 #include <vector>
 
 #include "app/arguments.hpp"
+#include "app/cell_kinds.hpp"
 #include "app/commands.hpp"
+#include "app/jobs.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/ablation.hpp"
+#include "core/run/cell_plan.hpp"
 
 namespace stillpoint {
 namespace {
@@ -23,10 +28,13 @@ namespace fs = std::filesystem;
 struct AblateArguments {
   std::vector<std::string> sequences, without;
   std::string out;
-  bool force = false;
+  bool force = false, resume = false;
   ConfigArguments config;
   SequenceArguments frames;
+  JobArguments work;
 };
+
+constexpr const char* kAblationName = "ablation.json";
 
 /// The variants asked for: the whole method first, then without each ingredient.
 std::vector<std::optional<Ingredient>> variants_of(const AblateArguments& arguments,
@@ -42,72 +50,186 @@ std::vector<std::optional<Ingredient>> variants_of(const AblateArguments& argume
   return variants;
 }
 
-std::vector<std::unique_ptr<FrameSource>> open_all(const AblateArguments& arguments, const Config& config) {
-  std::vector<std::unique_ptr<FrameSource>> sources;
-  for (const std::string& sequence : expanded_sequences(arguments.sequences))
-    sources.push_back(arguments.frames.open(sequence, config, {.depth = true, .questioned = true}));
-  return sources;
+struct AblatedSequence {
+  std::string where, name;  ///< as it was named; as tables show it, numbered where several share it
+  SequenceArguments reading;
+  std::unique_ptr<FrameSource> source;
+};
+
+std::vector<AblatedSequence> open_all(const AblateArguments& arguments, const Config& config) {
+  std::vector<AblatedSequence> sequences;
+  std::set<std::string> names;
+  for (const std::string& where : expanded_sequences(arguments.sequences)) {
+    const SequenceArguments reading = arguments.frames.fixed(where, config);
+    auto source = reading.open(where, config, {.depth = true, .questioned = true});
+    std::string name = source->name();
+    for (int number = 2; !names.insert(name).second; ++number)
+      name = fmt::format("{} {}", source->name(), number);
+    sequences.push_back({where, name, reading, std::move(source)});
+  }
+  return sequences;
 }
 
-AblationCell run_variant(const FrameSource& source, const Config& config, int frames, const std::string& name,
-                         bool& interrupted) {
+int frames_ablated(const FrameSource& source, int asked) {
+  return asked > 0 ? std::min(asked, source.size()) : source.size();
+}
+
+/// Nothing where it was interrupted.
+std::optional<AblationCell> run_variant(const FrameSource& source, const std::string& sequence,
+                                        const Config& config, int frames, const std::string& without) {
   RunOptions options;
   options.count = frames;
   options.stop = &stop_requested();
-  const int total = frames > 0 ? std::min(frames, source.size()) : source.size();
-  Progress progress(fmt::format("{} ({})", source.name(), name), total);
+  const std::string name = without.empty() ? "whole method" : "without " + without;
+  Progress progress(fmt::format("{} ({})", sequence, name), frames_ablated(source, frames));
   options.on_frame = [&progress](const FrameResult& frame) {
     progress.advance(std::string(to_string(frame.record.status)));
   };
   const RunResult result = run_sequence(source, config, options);
-  interrupted = result.interrupted;
+  if (result.interrupted) return std::nullopt;
   return ablation_cell(report_on(result, source));
 }
 
+/// A row a variant, still without cells.
+std::vector<AblationRow> rows_of(const std::vector<std::optional<Ingredient>>& variants) {
+  std::vector<AblationRow> rows;
+  for (const auto& variant : variants)
+    rows.push_back(
+        {variant ? variant->name : "", variant ? variant->assignments : std::vector<std::string>{}, {}});
+  return rows;
+}
+
 void write_results(const fs::path& folder, const std::string& method, const std::vector<AblationRow>& rows,
-                   const std::vector<std::string>& names) {
-  write_text_file(folder / "ablation.md", to_markdown(ablation_summary(method, rows, names)) + "\n" +
-                                              to_markdown(ablation_errors(rows, names)));
+                   const std::vector<std::string>& names, const std::vector<MissingRun>& missing = {},
+                   std::size_t asked = 0) {
+  std::string text =
+      to_markdown(ablation_summary(method, rows, names)) + "\n" + to_markdown(ablation_errors(rows, names));
+  nlohmann::ordered_json json = ablation_json(method, rows, names);
+  if (!missing.empty()) text += "\n" + missing_text(missing, asked);
+  for (const MissingRun& run : missing) json["missing"].push_back(to_json(run));
+  write_text_file(folder / "ablation.md", text);
   write_text_file(folder / "ablation.csv", to_csv(ablation_list(rows, names)));
-  write_text_file(folder / "ablation.json", ablation_json(method, rows, names).dump(1) + "\n");
+  write_text_file(folder / kAblationName, json.dump(1) + "\n");
+}
+
+std::string ablation_text(const std::string& method, const std::vector<AblationRow>& rows,
+                          const std::vector<std::string>& names) {
+  return fmt::format(
+      "Method {}, one ingredient left out at a time. Changes are against the whole method; RPE is "
+      "translational, over 1 s, its mean change the geometric mean over the sequences.\n\n{}\n{}",
+      method, to_markdown(ablation_summary(method, rows, names)), to_markdown(ablation_errors(rows, names)));
+}
+
+/// Runs one cell of a plan as ablate() does.
+std::string run_ablation_cell(const CellPlan& plan, const PlanCell& cell, const fs::path&) {
+  const PlannedSequence& sequence = plan.sequence(cell.sequence);
+  const SequenceArguments reading = SequenceArguments::from_words(sequence.reading);
+  Config config = config_from_toml(plan.config, kPlanName);
+  set_parameter(config, "run.odometry=" + cell.odometry);
+  set_parameter(config, "run.method=" + cell.method);
+  const auto source = reading.open(sequence.where, config, {.depth = true});
+  if (frames_ablated(*source, reading.frames) != cell.frames)
+    throw InputError(fmt::format("{}: has {} frames now, and the plan was made for another number",
+                                 sequence.where, source->size()));
+  std::optional<Ingredient> variant;
+  if (!cell.without.empty()) variant = ingredient_by_name(method_of(config), cell.without);
+  const auto reached = run_variant(*source, cell.sequence, ablated(config, variant ? &*variant : nullptr),
+                                   reading.frames, cell.without);
+  throw_if_interrupted();
+  return to_json(reached.value()).dump();
+}
+
+std::string ablation_cell_tables(const CellPlan& plan, const MergedCells& merged, const fs::path& folder) {
+  // A sequence counts when all variants have run on it. Its cells stand together, the whole method first.
+  std::vector<std::optional<Ingredient>> variants;
+  for (const PlanCell& cell : plan.cells) {
+    if (cell.sequence != plan.cells.front().sequence) break;
+    variants.emplace_back();
+    if (!cell.without.empty()) variants.back() = ingredient_by_name(method_named(cell.method), cell.without);
+  }
+  std::map<std::pair<std::string, std::string>, AblationCell> reached;
+  for (const CellResult& result : merged.results)
+    reached.emplace(std::pair(result.cell.sequence, result.cell.without),
+                    ablation_cell_from_json(result.json, to_text(result.cell)));
+  std::vector<AblationRow> rows = rows_of(variants);
+  std::vector<std::string> names;
+  for (const PlannedSequence& sequence : plan.sequences) {
+    const auto has = [&](const AblationRow& row) { return reached.count({sequence.name, row.without}) > 0; };
+    if (!std::all_of(rows.begin(), rows.end(), has)) continue;
+    names.push_back(sequence.name);
+    for (AblationRow& row : rows) row.cells.push_back(reached.at({sequence.name, row.without}));
+  }
+  const std::string& method = plan.methods.front();
+  if (merged.whole || !plan.replaces)
+    write_results(folder, method, rows, names, merged.missing, plan.cells.size());
+  const std::string missing = missing_text(merged.missing, plan.cells.size());
+  return ablation_text(method, rows, names) + (missing.empty() ? missing : "\n" + missing);
+}
+
+/// The ablation as a plan; what an earlier one in the folder reached is known.
+CellPlan ablation_plan(const AblateArguments& arguments, const Config& config,
+                       const std::vector<std::optional<Ingredient>>& variants,
+                       const std::vector<AblatedSequence>& sequences) {
+  CellPlan plan = plan_made_here(ablation_cells().name, shared_config(config));
+  plan.engines = {config.run.odometry};
+  plan.methods = {config.run.method};
+  plan.replaces = arguments.force && fs::exists(fs::path(arguments.out) / kAblationName);
+  for (const AblatedSequence& sequence : sequences) {
+    add_sequence(plan, sequence.name, sequence.where, sequence.reading.words());
+    for (const auto& variant : variants)
+      plan.cells.push_back({sequence.name, config.run.odometry, config.run.method, 0,
+                            variant ? variant->name : "",
+                            frames_ablated(*sequence.source, sequence.reading.frames)});
+  }
+  if (!arguments.resume) return plan;
+  if (const auto earlier = earlier_cells(arguments.out, plan.kind, plan.config)) {
+    plan.replaces = earlier->plan.replaces && !earlier->merged.whole;
+    // What is no cell of this one would be another sequence's or variant's.
+    for (const CellResult& result : earlier->merged.results)
+      if (std::find(plan.cells.begin(), plan.cells.end(), result.cell) != plan.cells.end())
+        plan.known.push_back(result);
+  }
+  return plan;
 }
 
 void ablate(const AblateArguments& arguments) {
   const Config config = arguments.config.config();
   const std::string& method = config.run.method;
   const std::vector<std::optional<Ingredient>> variants = variants_of(arguments, method_of(config));
-  const auto sources = open_all(arguments, config);
-  if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"ablation.csv"}, arguments.force);
-  std::vector<AblationRow> rows;
-  for (const auto& variant : variants)
-    rows.push_back(
-        {variant ? variant->name : "", variant ? variant->assignments : std::vector<std::string>{}, {}});
-
+  const auto sequences = open_all(arguments, config);
+  if (!arguments.out.empty())
+    prepare_out_folder(arguments.out, {"ablation.csv", kPlanName}, arguments.force || arguments.resume);
+  if (arguments.work.given() || arguments.resume)
+    return run_by_cells(arguments.work, ablation_plan(arguments, config, variants, sequences), arguments.out);
+  if (!arguments.out.empty()) remove_plan(arguments.out);
+  std::vector<AblationRow> rows = rows_of(variants);
   std::vector<std::string> names;
-  for (const auto& source : sources) {
+  for (const AblatedSequence& sequence : sequences) {
     // A sequence counts when all variants have run on it.
     std::vector<AblationCell> cells;
-    bool interrupted = false;
     for (const auto& variant : variants) {
-      const std::string name = variant ? "without " + variant->name : "whole method";
-      cells.push_back(run_variant(*source, ablated(config, variant ? &*variant : nullptr),
-                                  arguments.frames.frames, name, interrupted));
-      if (interrupted) break;
+      const auto cell =
+          run_variant(*sequence.source, sequence.name, ablated(config, variant ? &*variant : nullptr),
+                      arguments.frames.frames, variant ? variant->name : "");
+      if (!cell) break;
+      cells.push_back(*cell);
     }
-    if (interrupted) break;
-    names.push_back(source->name());
+    if (cells.size() < variants.size()) break;
+    names.push_back(sequence.name);
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].cells.push_back(cells[i]);
     if (!arguments.out.empty()) write_results(arguments.out, method, rows, names);
   }
-  fmt::print(
-      "Method {}, one ingredient left out at a time. Changes are against the whole method; RPE is "
-      "translational, over 1 s, its mean change the geometric mean over the sequences.\n\n{}\n{}",
-      method, to_markdown(ablation_summary(method, rows, names)), to_markdown(ablation_errors(rows, names)));
+  fmt::print("{}", ablation_text(method, rows, names));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold the sequences that were finished\n");
   throw_if_interrupted();
 }
 
 }  // namespace
+
+const CellKind& ablation_cells() {
+  static const CellKind kind{"ablate", run_ablation_cell, ablation_cell_tables};
+  return kind;
+}
 
 void add_ablate_command(CLI::App& app) {
   const auto arguments = std::make_shared<AblateArguments>();
@@ -125,8 +247,14 @@ void add_ablate_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--out", arguments->out, "Folder for the tables, as Markdown, CSV and JSON");
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
+  command
+      ->add_flag("--resume", arguments->resume,
+                 "Go on with the ablation in the folder of --out, of which --jobs or --slurm left a part")
+      ->needs("--out")
+      ->excludes("--force");
   arguments->config.add_to(*command, true);
   arguments->frames.add_to(*command);
+  arguments->work.add_to(*command);
   command->callback([arguments] { ablate(*arguments); });
 }
 

@@ -3,17 +3,24 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "app/arguments.hpp"
+#include "app/benchmark_cells.hpp"
 #include "app/benchmark_tables.hpp"
+#include "app/cell_kinds.hpp"
 #include "app/commands.hpp"
+#include "app/jobs.hpp"
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/cell_plan.hpp"
 #include "core/run/outside_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/repeats.hpp"
@@ -31,36 +38,12 @@ struct BenchmarkArguments {
   int repeats = 1;
   ConfigArguments config;
   SequenceArguments frames;
+  JobArguments work;
 };
-
-/// The config that all of a benchmark's runs share.
-std::string shared_config(Config config) {
-  config.run.method = RunConfig().method;
-  config.run.odometry = RunConfig().odometry;
-  return to_toml(config);
-}
-
-/// What an earlier benchmark left in the folder, to be gone on with.
-/// @throws InputError where its runs are not what these would be
-std::vector<BenchmarkResult> earlier_runs(const BenchmarkArguments& arguments, const Config& config) {
-  const std::filesystem::path path = std::filesystem::path(arguments.out) / kResultsName;
-  if (!std::filesystem::exists(path)) return {};
-  const BenchmarkResults earlier = read_results(path.string());
-  if (earlier.commit != made_here().commit)
-    throw InputError(
-        fmt::format("{}: was made by another build (commit {}), so that --resume cannot go on with "
-                    "it; --force begins anew",
-                    path.string(), earlier.commit));
-  if (earlier.config != shared_config(config))
-    throw InputError(
-        fmt::format("{}: was made with other parameters, so that --resume cannot go on with it; "
-                    "--force begins anew",
-                    path.string()));
-  return earlier.runs;
-}
 
 struct OpenedSequence {
   std::string where;
+  SequenceArguments reading;
   std::unique_ptr<FrameSource> source;
   OpenOptions options;
 };
@@ -93,11 +76,12 @@ std::vector<OpenedSequence> open_all(const BenchmarkArguments& arguments, Config
   for (const std::string& where : expanded_sequences(arguments.sequences)) {
     const SequenceArguments reading = arguments.frames.fixed(where, config);
     sequences.push_back(
-        {where, reading.open(where, config, {.depth = true, .oracle = wants_masks, .questioned = true}),
+        {where, reading,
+         reading.open(where, config, {.depth = true, .oracle = wants_masks, .questioned = true}),
          reading.options(config)});
   }
   if (!arguments.out.empty())
-    prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv"},
+    prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv", kPlanName},
                        arguments.force || arguments.resume);
   return sequences;
 }
@@ -201,13 +185,80 @@ BenchmarkResult measure_outside(const Place& place, const SequenceOrigin& origin
   return reached;
 }
 
+/// How many frames a run has.
+int frames_of_run(const Place& place, int repeat) {
+  return place.frames - std::min(perturbation(repeat).first_frame, place.frames - 1);
+}
+
+/// The benchmark as a plan: what `results` holds is known.
+CellPlan benchmark_plan(const BenchmarkArguments& arguments, const BenchmarkResults& results,
+                        const BenchmarkColumns& columns, const std::vector<Place>& places,
+                        const std::vector<OpenedSequence>& sequences) {
+  CellPlan plan = plan_made_here(benchmark_cells().name, results.config);
+  plan.engines = columns.engines;
+  plan.methods = columns.methods;
+  plan.repeated = columns.repeated;
+  std::map<std::tuple<std::string, std::string, std::string, int>, int>
+      frames;  // of the runs that are asked for
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& place = places[i];
+    add_sequence(plan, place.name, place.where, sequences[i].reading.words(), place.runs.filename().string());
+    for (const std::string& engine : arguments.engines)
+      for (const std::string& method : arguments.methods)
+        for (int repeat = 0; repeat < arguments.repeats; ++repeat) {
+          plan.cells.push_back({place.name, engine, method, repeat, "", frames_of_run(place, repeat)});
+          frames[{place.name, engine, method, repeat}] = plan.cells.back().frames;
+        }
+  }
+  for (const BenchmarkResult& run : results.runs) {
+    const auto asked = frames.find({run.sequence, run.odometry, run.method, run.repeat});
+    if (asked == frames.end() || asked->second == run.frames)
+      plan.known.push_back(
+          {{run.sequence, run.odometry, run.method, run.repeat, "", run.frames}, to_json(run).dump()});
+  }
+  return plan;
+}
+
+/// Runs one cell of a plan as benchmark() does.
+std::string run_benchmark_cell(const CellPlan& plan, const PlanCell& cell,
+                               const std::filesystem::path& folder) {
+  const PlannedSequence& sequence = plan.sequence(cell.sequence);
+  BenchmarkArguments arguments;
+  arguments.force = true;
+  arguments.frames = SequenceArguments::from_words(sequence.reading);
+  Config config = config_from_toml(plan.config, kPlanName);
+  const auto set_to = [&config](const PlanCell& one) {
+    set_parameter(config, "run.odometry=" + one.odometry);
+    set_parameter(config, "run.method=" + one.method);
+  };
+  set_to(plan.cells.back());  // by which --calibrate-time measured when all were opened
+  const auto source = arguments.frames.open(
+      sequence.where, config, {.depth = true, .oracle = method_named(cell.method).needs.true_mask});
+  Place place{*source, sequence.where, sequence.name, frames_of(*source, arguments.frames.frames)};
+  if (frames_of_run(place, cell.repeat) != cell.frames)
+    throw InputError(fmt::format("{}: has {} frames now, and the plan was made for another number",
+                                 sequence.where, source->size()));
+  set_to(cell);
+  place.origin = origin_of(*source, sequence.where, arguments.frames.options(config));
+  place.runs = folder / sequence.runs;
+  const auto reached = run_and_keep(place, config, cell.repeat, arguments);
+  throw_if_interrupted();
+  return to_json(reached.value()).dump();
+}
+
 void benchmark(BenchmarkArguments arguments) {
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
   const auto sequences = open_all(arguments, config);
   BenchmarkResults results = made_here();
   results.config = shared_config(config);
-  if (arguments.resume) results.runs = earlier_runs(arguments, config);
+  const std::filesystem::path out = arguments.out;
+  bool replaces = false;
+  if (!out.empty() && arguments.force) {
+    replaces = std::filesystem::exists(out / kResultsName);
+    std::filesystem::remove(out / kUnfinishedName);
+  }
+  if (arguments.resume) results.runs = earlier_runs(arguments.out, results.config, replaces);
   BenchmarkColumns columns{arguments.engines, arguments.methods, arguments.repeats > 1};
   for (const std::string& outside : arguments.outside)
     columns.methods.push_back(outside_run_argument(outside).name);
@@ -234,29 +285,52 @@ void benchmark(BenchmarkArguments arguments) {
     }
     places.push_back(std::move(place));
   }
+  if (arguments.work.given()) {
+    CellPlan plan = benchmark_plan(arguments, results, columns, places, sequences);
+    plan.replaces = replaces;
+    return run_by_cells(arguments.work, plan, out);
+  }
+  // After each run, so that an interrupted benchmark keeps what it has; earlier results stay until all is
+  // there.
+  const auto keep = [&](bool whole) {
+    if (arguments.out.empty() || results.runs.empty()) return;
+    if (!whole && replaces) return write_text_file(out / kUnfinishedName, to_json(results).dump(2) + "\n");
+    write_tables(results, columns, arguments.out);
+    std::filesystem::remove(out / kUnfinishedName);
+  };
+  if (!arguments.out.empty() && std::filesystem::exists(out / kPlanName)) {
+    keep(false);  // what it had is among the results
+    remove_plan(out);
+  }
   for (const Place& place : places)
     for (const std::string& engine : arguments.engines)
       for (const std::string& method : arguments.methods)
         for (int repeat = 0; repeat < arguments.repeats && !stop_requested(); ++repeat) {
           const BenchmarkResult* known = results.find(place.name, engine, method, repeat);
-          const int frames = place.frames - std::min(perturbation(repeat).first_frame, place.frames - 1);
-          if (known != nullptr && known->frames == frames) continue;
+          if (known != nullptr && known->frames == frames_of_run(place, repeat)) continue;
           if (known != nullptr) results.runs.erase(results.runs.begin() + (known - results.runs.data()));
           set_parameter(config, "run.odometry=" + engine);
           set_parameter(config, "run.method=" + method);
           const auto reached = run_and_keep(place, config, repeat, arguments);
           if (!reached) continue;
           results.runs.push_back(*reached);
-          // After each run, so that an interrupted benchmark keeps what it has.
-          if (!arguments.out.empty()) write_tables(results, columns, arguments.out);
+          keep(false);
         }
-  if (!arguments.out.empty() && !results.runs.empty()) write_tables(results, columns, arguments.out);
+  keep(!stop_requested());
   fmt::print("{}", tables_text(results, columns));
-  if (stop_requested()) fmt::print("\nstopped early; the tables hold what was finished\n");
+  if (stop_requested())
+    fmt::print("\nstopped early; {}\n", replaces
+                                            ? "the earlier tables stay until --resume has made these whole"
+                                            : "the tables hold what was finished");
   throw_if_interrupted();
 }
 
 }  // namespace
+
+const CellKind& benchmark_cells() {
+  static const CellKind kind{"benchmark", run_benchmark_cell, benchmark_cell_tables};
+  return kind;
+}
 
 void add_benchmark_command(CLI::App& app) {
   const auto arguments = std::make_shared<BenchmarkArguments>();
@@ -292,6 +366,7 @@ void add_benchmark_command(CLI::App& app) {
                       "it; {} in it stands for the sequence's name");
   arguments->config.add_to(*command, false);
   arguments->frames.add_to(*command);
+  arguments->work.add_to(*command);
   command->callback([arguments] { benchmark(*arguments); });
 }
 

@@ -23,6 +23,12 @@ std::string table_one_text(const BenchmarkResults& results, const BenchmarkColum
   return text;
 }
 
+/// Which runs are missing, where any is.
+std::string after_tables(const BenchmarkResults& results, const BenchmarkColumns& columns) {
+  const std::string text = missing_text(results.missing, columns.asked);
+  return text.empty() ? text : "\n" + text;
+}
+
 }  // namespace
 
 BenchmarkResult result_of(const RunReport& report, bool judges) {
@@ -57,36 +63,38 @@ BenchmarkResult result_of(const RunReport& report, bool judges) {
 }
 
 std::string tables_text(const BenchmarkResults& results, const BenchmarkColumns& columns) {
+  const std::string missing = after_tables(results, columns);
   if (!columns.repeated)
     return fmt::format(
-        "Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}",
-        table_one_text(results, columns), to_markdown(details_table(results)));
+        "Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}{}",
+        table_one_text(results, columns), to_markdown(details_table(results)), missing);
   const SpreadTable table = spread_of_runs(results, columns.engines, columns.methods);
   return fmt::format(
       "Translational RPE over 1 s, RMSE in m: median of several runs and half the distance of their "
       "quartiles;\n"
       "runs differ by a few features, the seed and the first frame. Best and second are marked only where "
       "the\n"
-      "quartiles do not overlap.\n\n{}",
-      spread_text(table.rows, table.methods, "RPE 1 s, RMSE [m]", TableMarkup::markdown));
+      "quartiles do not overlap.\n\n{}{}",
+      spread_text(table.rows, table.methods, "RPE 1 s, RMSE [m]", TableMarkup::markdown), missing);
 }
 
 void write_tables(const BenchmarkResults& results, const BenchmarkColumns& columns, const std::string& to) {
   const std::filesystem::path folder = to;
   write_text_file(folder / kResultsName, to_json(results).dump(2) + "\n");
-  write_text_file(folder / "table1.md", table_one_text(results, columns));
+  write_text_file(folder / "table1.md", table_one_text(results, columns) + after_tables(results, columns));
   for (const std::string& engine : columns.engines)
     write_text_file(
         folder / (engine == columns.engines.front() ? "table1.csv" : fmt::format("table1_{}.csv", engine)),
         to_csv(table_one(results, engine, columns.methods, baseline_method().name)));
-  write_text_file(folder / "details.md", to_markdown(details_table(results)));
+  write_text_file(folder / "details.md",
+                  to_markdown(details_table(results)) + after_tables(results, columns));
   write_text_file(folder / "details.csv", to_csv(details_table(results)));
   if (!columns.repeated) return;
   const SpreadTable table = spread_of_runs(results, columns.engines, columns.methods);
   const auto text = [&table](TableMarkup markup) {
     return spread_text(table.rows, table.methods, "RPE 1 s, RMSE [m]", markup);
   };
-  write_text_file(folder / "repeats.md", text(TableMarkup::markdown));
+  write_text_file(folder / "repeats.md", text(TableMarkup::markdown) + after_tables(results, columns));
   write_text_file(folder / "repeats.csv", text(TableMarkup::csv));
   write_text_file(folder / "repeats.tex", text(TableMarkup::latex));
   write_text_file(folder / "repeats.json", spread_json(table.rows, table.methods).dump(2) + "\n");

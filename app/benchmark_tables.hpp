@@ -15,6 +15,7 @@ struct BenchmarkColumns {
   std::vector<std::string> engines;
   std::vector<std::string> methods;  ///< and after them other programs' runs
   bool repeated = false;             ///< each was run several times
+  std::size_t asked = 0;             ///< runs, where they were made as jobs
 };
 
 /// What a run reached. @param judges whether it says what is dynamic, so that its masks can be scored

@@ -21,6 +21,8 @@ void add_check_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
 void add_tables_command(CLI::App& app);
 void add_ablate_command(CLI::App& app);
+void add_cells_command(CLI::App& app);
+void add_merge_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);

@@ -37,6 +37,8 @@ const std::atomic<bool>& stop_requested() {
   return stop_flag;
 }
 
+int stop_signal_given() { return stop_signal; }
+
 void throw_if_interrupted() {
   if (stop_requested()) throw Interrupted{stop_signal};
 }

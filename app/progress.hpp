@@ -11,6 +11,9 @@ namespace stillpoint {
 /// Turns true at the first Ctrl-C (or SIGTERM); a second one ends the program at once.
 [[nodiscard]] const std::atomic<bool>& stop_requested();
 
+/// The signal that asked for it; 0 before.
+[[nodiscard]] int stop_signal_given();
+
 /// Thrown by a command that ended early because it was asked to, once what was done is written and told: the
 /// program then ends with status 128 + signal, as shells expect, so that no script takes a part for the
 /// whole.

@@ -49,8 +49,8 @@ void WholeFile::keep() {
   kept_ = true;
 }
 
-void WholeFiles::add(const std::filesystem::path& path, std::string_view text) {
-  const WholeFile& whole = files_.emplace_back(path);
+void WholeFiles::add(const std::filesystem::path& path, std::string_view text, std::string_view ending) {
+  const WholeFile& whole = files_.emplace_back(path, ending);
   errno = 0;
   std::ofstream file(whole.while_written(), std::ios::binary);
   file << text;
@@ -64,9 +64,9 @@ void WholeFiles::keep() {
   for (WholeFile& file : files_) file.keep();
 }
 
-void write_text_file(const std::filesystem::path& path, std::string_view text) {
+void write_text_file(const std::filesystem::path& path, std::string_view text, std::string_view ending) {
   WholeFiles files;
-  files.add(path, text);
+  files.add(path, text, ending);
   files.keep();
 }
 

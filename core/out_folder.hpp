@@ -41,8 +41,9 @@ class WholeFile {
 /// Files that take their names together, once all of them are whole.
 class WholeFiles {
  public:
+  /// @param ending as WholeFile has it
   /// @throws InputError when it cannot be written; none has taken its name then
-  void add(const std::filesystem::path& path, std::string_view text);
+  void add(const std::filesystem::path& path, std::string_view text, std::string_view ending = {});
   /// @throws InputError when one cannot take its name
   void keep();
 
@@ -51,7 +52,8 @@ class WholeFiles {
 };
 
 /// Writes a file, whole or not at all.
+/// @param ending as WholeFile has it: of its own where several processes may write the same file
 /// @throws InputError when it cannot be written whole: no rights, a full disk.
-void write_text_file(const std::filesystem::path& path, std::string_view text);
+void write_text_file(const std::filesystem::path& path, std::string_view text, std::string_view ending = {});
 
 }  // namespace stillpoint

@@ -22,32 +22,6 @@ void read_optional(const nlohmann::json& json, const char* key, std::optional<Va
   if (const auto it = json.find(key); it != json.end() && !it->is_null()) value = it->get<Value>();
 }
 
-nlohmann::ordered_json run_json(const BenchmarkResult& r) {
-  nlohmann::ordered_json json;
-  json["sequence"] = r.sequence;
-  json["odometry"] = r.odometry;
-  json["method"] = r.method;
-  json["repeat"] = r.repeat;
-  json["frames"] = r.frames;
-  json["coverage"] = r.coverage;
-  json["ate_m"] = or_null(r.ate_m);
-  json["rpe_m"] = or_null(r.rpe_m);
-  json["rpe_deg"] = or_null(r.rpe_deg);
-  json["rpe_frame_m"] = or_null(r.rpe_frame_m);
-  json["pairs"] = r.pairs;
-  json["precision"] = or_null(r.precision);
-  json["recall"] = or_null(r.recall);
-  json["iou"] = or_null(r.iou);
-  json["partial_recall"] = or_null(r.partial_recall);
-  json["removed_rightly"] = or_null(r.right);
-  json["removed_wrongly"] = or_null(r.wrong);
-  json["median_ms"] = r.median_ms;
-  json["p99_ms"] = r.p99_ms;
-  json["orb_units"] = r.units;
-  json["run_hash"] = r.hash;
-  return json;
-}
-
 BenchmarkResult run_from(const nlohmann::json& json) {
   BenchmarkResult r;
   json.at("sequence").get_to(r.sequence);
@@ -74,6 +48,19 @@ BenchmarkResult run_from(const nlohmann::json& json) {
   return r;
 }
 
+MissingRun missing_from(const nlohmann::json& json) {
+  MissingRun run;
+  json.at("sequence").get_to(run.sequence);
+  json.at("odometry").get_to(run.odometry);
+  json.at("method").get_to(run.method);
+  json.at("repeat").get_to(run.repeat);
+  run.without = json.value("without", std::string());
+  read_optional(json, "status", run.status);
+  json.at("log").get_to(run.log);
+  json.at("said").get_to(run.said);
+  return run;
+}
+
 std::string figure(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
 }
@@ -98,6 +85,45 @@ std::vector<std::string> BenchmarkResults::sequences() const {
   return names;
 }
 
+nlohmann::ordered_json to_json(const BenchmarkResult& r) {
+  nlohmann::ordered_json json;
+  json["sequence"] = r.sequence;
+  json["odometry"] = r.odometry;
+  json["method"] = r.method;
+  json["repeat"] = r.repeat;
+  json["frames"] = r.frames;
+  json["coverage"] = r.coverage;
+  json["ate_m"] = or_null(r.ate_m);
+  json["rpe_m"] = or_null(r.rpe_m);
+  json["rpe_deg"] = or_null(r.rpe_deg);
+  json["rpe_frame_m"] = or_null(r.rpe_frame_m);
+  json["pairs"] = r.pairs;
+  json["precision"] = or_null(r.precision);
+  json["recall"] = or_null(r.recall);
+  json["iou"] = or_null(r.iou);
+  json["partial_recall"] = or_null(r.partial_recall);
+  json["removed_rightly"] = or_null(r.right);
+  json["removed_wrongly"] = or_null(r.wrong);
+  json["median_ms"] = r.median_ms;
+  json["p99_ms"] = r.p99_ms;
+  json["orb_units"] = r.units;
+  json["run_hash"] = r.hash;
+  return json;
+}
+
+nlohmann::ordered_json to_json(const MissingRun& run) {
+  nlohmann::ordered_json json;
+  json["sequence"] = run.sequence;
+  json["odometry"] = run.odometry;
+  json["method"] = run.method;
+  json["repeat"] = run.repeat;
+  if (!run.without.empty()) json["without"] = run.without;
+  json["status"] = or_null(run.status);
+  json["log"] = run.log;
+  json["said"] = run.said;
+  return json;
+}
+
 nlohmann::ordered_json to_json(const BenchmarkResults& results) {
   nlohmann::ordered_json json;
   json["program"] = "stillpoint " + results.version;
@@ -107,7 +133,8 @@ nlohmann::ordered_json to_json(const BenchmarkResults& results) {
   json["command"] = results.command;
   json["config"] = results.config;
   json["runs"] = nlohmann::ordered_json::array();
-  for (const BenchmarkResult& r : results.runs) json["runs"].push_back(run_json(r));
+  for (const BenchmarkResult& r : results.runs) json["runs"].push_back(to_json(r));
+  for (const MissingRun& run : results.missing) json["missing"].push_back(to_json(run));
   return json;
 }
 
@@ -124,9 +151,19 @@ BenchmarkResults results_from_json(const std::string& text, const std::string& w
     json.at("command").get_to(results.command);
     json.at("config").get_to(results.config);
     for (const nlohmann::json& run : json.at("runs")) results.runs.push_back(run_from(run));
+    if (const auto missing = json.find("missing"); missing != json.end())
+      for (const nlohmann::json& run : *missing) results.missing.push_back(missing_from(run));
     return results;
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: holds no results of a benchmark ({})", where, printable(error.what())));
+  }
+}
+
+BenchmarkResult result_from_json(const std::string& text, const std::string& where) {
+  try {
+    return run_from(parse_json(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: is no result of a benchmark ({})", where, printable(error.what())));
   }
 }
 
@@ -164,6 +201,32 @@ Table details_table(const BenchmarkResults& results) {
                           whole(r.wrong), time(r.median_ms, 1), time(r.p99_ms, 1), time(r.units, 2)});
   }
   return table;
+}
+
+std::string exit_text(int status) {
+  constexpr int kBySignal = 128;
+  if (status <= kBySignal) return fmt::format("exit status {}", status);
+  return fmt::format("exit status {} (signal {})", status, status - kBySignal);
+}
+
+std::string why_missing(const MissingRun& run) {
+  if (run.status) return exit_text(*run.status);
+  return run.log.empty() ? "has not begun" : "has not ended";
+}
+
+std::string missing_text(const std::vector<MissingRun>& missing, std::size_t asked) {
+  if (missing.empty()) return {};
+  constexpr std::size_t kShown = 50;
+  Table table;
+  table.header = {"missing", "odometry", "method", "repeat", "without", "why", "log", "it said last"};
+  for (const MissingRun& run : missing) {
+    if (table.rows.size() == kShown) break;
+    table.rows.push_back({run.sequence, run.odometry, run.method, std::to_string(run.repeat), run.without,
+                          why_missing(run), run.log, run.said});
+  }
+  return fmt::format(
+      "Of {} runs, {} {} no result{}:\n\n{}", asked, missing.size(), missing.size() == 1 ? "has" : "have",
+      missing.size() > kShown ? fmt::format(", of which the first {} are", kShown) : "", to_markdown(table));
 }
 
 }  // namespace stillpoint

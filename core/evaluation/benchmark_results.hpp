@@ -33,6 +33,18 @@ struct BenchmarkResult {
   bool operator==(const BenchmarkResult&) const = default;
 };
 
+/// A run that was asked for and has no result.
+struct MissingRun {
+  std::string sequence, odometry, method;
+  int repeat = 0;
+  std::string without{};  ///< an ingredient's name; empty = the whole method
+  std::optional<int>
+      status{};        ///< exit status, 128 + signal where one ended it; nothing where it has not ended
+  std::string log{};   ///< from the results' folder; empty where it has not begun
+  std::string said{};  ///< the last line of it
+  bool operator==(const MissingRun&) const = default;
+};
+
 /// In place of an engine's name, for another program's run: it stands beside the runs behind any engine.
 inline constexpr const char* kItsOwnOdometry = "its own";
 
@@ -44,6 +56,7 @@ struct BenchmarkResults {
   std::string command;          ///< what was typed
   std::string config;           ///< TOML, but for method and odometry
   std::vector<BenchmarkResult> runs;
+  std::vector<MissingRun> missing{};  ///< where runs were made as jobs: those that failed or have not ended
 
   /// Null where there is none. Another program's run is found behind any engine.
   [[nodiscard]] const BenchmarkResult* find(const std::string& sequence, const std::string& odometry,
@@ -53,6 +66,12 @@ struct BenchmarkResults {
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const BenchmarkResults& results);
+
+/// One run's object in it.
+[[nodiscard]] nlohmann::ordered_json to_json(const BenchmarkResult& result);
+[[nodiscard]] nlohmann::ordered_json to_json(const MissingRun& run);
+/// @throws InputError where the text is none
+[[nodiscard]] BenchmarkResult result_from_json(const std::string& text, const std::string& where);
 
 /// @param where names the text in messages: a file's name
 /// @throws InputError where it holds no results of a benchmark
@@ -68,5 +87,15 @@ struct BenchmarkResults {
 
 /// What Table 1 leaves out: a row a run with its other errors, coverage, masks and speed.
 [[nodiscard]] Table details_table(const BenchmarkResults& results);
+
+/// "exit status 1", "exit status 139 (signal 11)".
+[[nodiscard]] std::string exit_text(int status);
+
+/// The same, "has not ended", "has not begun".
+[[nodiscard]] std::string why_missing(const MissingRun& run);
+
+/// A sentence with how many of `asked` runs have no result, and a row for each of the first of them: why, its
+/// log and what it said last. Empty where none is missing.
+[[nodiscard]] std::string missing_text(const std::vector<MissingRun>& missing, std::size_t asked);
 
 }  // namespace stillpoint

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -98,6 +100,29 @@ AblationCell ablation_cell(const RunReport& report) {
   return cell;
 }
 
+nlohmann::ordered_json to_json(const AblationCell& cell) {
+  return {{"rpe_1s_m", or_null(cell.rpe_m)},
+          {"mask_iou", or_null(cell.mask_iou)},
+          {"coverage", cell.coverage},
+          {"median_ms", cell.median_ms},
+          {"run_hash", cell.hash}};
+}
+
+AblationCell ablation_cell_from_json(const std::string& text, const std::string& where) {
+  try {
+    const nlohmann::json json = parse_json(text);
+    AblationCell cell;
+    if (!json.at("rpe_1s_m").is_null()) cell.rpe_m = json.at("rpe_1s_m").get<double>();
+    if (!json.at("mask_iou").is_null()) cell.mask_iou = json.at("mask_iou").get<double>();
+    json.at("coverage").get_to(cell.coverage);
+    json.at("median_ms").get_to(cell.median_ms);
+    json.at("run_hash").get_to(cell.hash);
+    return cell;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: is no result of an ablation ({})", where, printable(error.what())));
+  }
+}
+
 AblationChange change_of(const AblationRow& row, const AblationRow& whole) {
   AblationChange change;
   double logs = 0.0, iou = 0.0;
@@ -173,13 +198,9 @@ nlohmann::ordered_json ablation_json(const std::string& method, const std::vecto
   for (const AblationRow& row : rows) {
     nlohmann::ordered_json runs = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      const AblationCell& cell = row.cells[i];
-      runs.push_back({{"sequence", sequences[i]},
-                      {"rpe_1s_m", or_null(cell.rpe_m)},
-                      {"mask_iou", or_null(cell.mask_iou)},
-                      {"coverage", cell.coverage},
-                      {"median_ms", cell.median_ms},
-                      {"run_hash", cell.hash}});
+      nlohmann::ordered_json run = {{"sequence", sequences[i]}};
+      run.update(to_json(row.cells[i]));
+      runs.push_back(run);
     }
     const AblationChange change = change_of(row, rows.front());
     nlohmann::ordered_json variant;

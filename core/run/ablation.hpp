@@ -36,6 +36,11 @@ struct AblationCell {
 
 [[nodiscard]] AblationCell ablation_cell(const RunReport& report);
 
+/// As ablation_json has it, but for the sequence.
+[[nodiscard]] nlohmann::ordered_json to_json(const AblationCell& cell);
+/// @throws InputError where the text is none
+[[nodiscard]] AblationCell ablation_cell_from_json(const std::string& text, const std::string& where);
+
 /// All that one variant reached, a cell a sequence, in their order.
 struct AblationRow {
   std::string without;                     ///< an ingredient's name; empty = the whole method

@@ -11,6 +11,7 @@
 #include "core/geometry/camera_yaml.hpp"
 #include "core/geometry/trajectory_file.hpp"
 #include "core/inspect/sidecar.hpp"
+#include "core/run/cell_plan.hpp"
 #include "core/run/condition.hpp"
 #include "core/sequence/list_file.hpp"
 #include "core/sequence/write_sequence.hpp"
@@ -134,6 +135,27 @@ Seeds results_seeds() {
   return {to_json(results).dump(1)};
 }
 
+void read_any_plan(std::string_view text) {
+  const CellPlan plan = plan_from_json(std::string(text), kPlanName);
+  (void)merge_cells(plan, {std::vector<std::optional<CellRecord>>(plan.cells.size()),
+                           std::vector<bool>(plan.cells.size())});
+  (void)plan.fingerprint();
+}
+Seeds plan_seeds() {
+  CellPlan plan;
+  plan.kind = "benchmark", plan.engines = {"features"}, plan.methods = {"none"};
+  plan.sequences = {{"street", "/data/street", "street", {"depth_scale=1000"}}};
+  plan.cells = {{"street", "features", "none", 0, "", 9}, {"street", "features", "none", 1, "huber", 8}};
+  plan.known = {{plan.cells[0], "{\"rpe_m\": 0.5}"}};
+  return {to_json_text(plan)};
+}
+
+void read_any_cell_record(std::string_view text) { (void)record_from_json(std::string(text), "000001.json"); }
+Seeds cell_record_seeds() {
+  return {to_json_text(CellRecord{1, "0123", "abcd", "a machine", 0, "", "{\"rpe_m\": 0.5}"}),
+          to_json_text(CellRecord{2, "0123", "abcd", "a machine", 139, "frame 3"})};
+}
+
 void read_any_page(std::string_view text) {
   BenchmarkResults results;
   results.runs.resize(2);
@@ -165,7 +187,9 @@ std::vector<Target> text_targets() {
           {"recording", kWords, read_any_recording, recording_seeds},
           {"sidecar", kWords, read_any_marks, marks_seeds},
           {"results", kWords, read_any_results, results_seeds},
-          {"page", kWords, read_any_page, page_seeds}};
+          {"page", kWords, read_any_page, page_seeds},
+          {"plan", kWords, read_any_plan, plan_seeds},
+          {"cell_record", kWords, read_any_cell_record, cell_record_seeds}};
 }
 
 }  // namespace stillpoint::fuzz
