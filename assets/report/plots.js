@@ -140,7 +140,7 @@ const plots = (() => {
     });
     canvas.addEventListener("dblclick", () => setRange(0, end()));
     select.addEventListener("input", () => { tell(); soon(); });
-    all.push({canvas, soon, tell});
+    all.push({canvas, soon, tell, select});
   }
 
   /// Within the sequence, and no less than some frames of it.
@@ -152,14 +152,25 @@ const plots = (() => {
     for (const plot of all) plot.soon();
   }
 
-  const known = (names) => names.filter((name) => figureNamed(name));
-  const chosen = known(["rpe_1s", "rpe", "inliers", "mask"]).slice(0, 2);
-  for (const name of chosen) addPlot(name);
+  const isKnown = (name) => cursor.shown.runs.some((run) => run.figures[name]?.some((value) => value !== null));
+  const usual = ["rpe_1s", "rpe", "inliers", "mask", "ms.total"];
+
+  /// Plots of what the sequence knows nothing of show something that it knows.
+  function chooseFigures() {
+    for (const plot of all) {
+      if (isKnown(plot.select.value)) continue;
+      const free = usual.find((name) => isKnown(name) && all.every((other) => other.select.value !== name));
+      if (free) plot.select.value = free;
+    }
+  }
+
+  for (const name of usual.filter(figureNamed).slice(0, 2)) addPlot(name);
 
   let sequence = null;
   cursor.followers.push(() => {
     if (sequence !== cursor.shown) {
       sequence = cursor.shown;
+      chooseFigures();
       setRange(0, end());
     }
     const now = sequence.seconds[cursor.place], length = range.to - range.from;

@@ -70,6 +70,7 @@ cursor.followers.push(() => {
   slider.value = cursor.place;
   const state = row === undefined ? "not in this run" : shownRun.status[row] + (shownRun.note[row] ? `: ${shownRun.note[row]}` : "");
   element("where").textContent = `Frame ${cursor.frame} · ${shown.seconds[cursor.place].toFixed(2)} s · ${state}`;
+  element("where").title = element("where").textContent;
   element("where").classList.toggle("lost", row === undefined || !shownRun.positions[row]);
   // Browsers refuse an address that changes at every frame of a play.
   clearTimeout(writing);

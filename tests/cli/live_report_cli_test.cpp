@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -295,6 +296,24 @@ constexpr const char* kVisit = R"js(<script>
   found.lostMarked = $("#where").classList.contains("lost");
   found.note = $("#picture-note").textContent;
   found.dash = $("#plots .legend").textContent;
+  const drag = (canvas, dx, dy, more = {}) => {
+    const box = canvas.getBoundingClientRect(), at = {pointerId: 8, bubbles: true, buttons: 1, clientX: box.left + 100, clientY: box.top + 100, ...more};
+    canvas.dispatchEvent(new PointerEvent("pointerdown", at));
+    canvas.dispatchEvent(new PointerEvent("pointermove", {...at, clientX: at.clientX + dx, clientY: at.clientY + dy}));
+    canvas.dispatchEvent(new PointerEvent("pointerup", {...at, clientX: at.clientX + dx, clientY: at.clientY + dy}));
+  };
+  const seen = () => { const a = page.screenOf(1, 0), b = page.screenOf(1, 9); return [a[0], a[1], Math.hypot(a[0] - b[0], a[1] - b[1]), b[0] - a[0], b[1] - a[1]]; };
+  const start = seen();
+  drag($("#orbit"), 30, 20, {shiftKey: true});
+  const moved = seen();
+  found.moved = [moved[0] - start[0], moved[1] - start[1]];
+  $("#orbit").dispatchEvent(new WheelEvent("wheel", {deltaY: -400, cancelable: true}));
+  found.zoomed = seen()[2] / start[2];
+  const before3d = seen();
+  drag($("#orbit"), 200, 0);
+  const after3d = seen();
+  found.turned = Math.hypot(after3d[3] - before3d[3], after3d[4] - before3d[4]) / before3d[2];
+  $("#orbit").dispatchEvent(new MouseEvent("dblclick"));
   click($("#orbit"), page.screenOf(1, 2)); found.path = [page.run, page.frame];
   $("#frames tr[data-frame='8']").cells[1].click(); found.row = page.frame;
   const inliers = [...document.querySelectorAll("#frames th")].findIndex((th) => th.textContent.startsWith("Inliers"));
@@ -346,6 +365,13 @@ TEST_F(LiveReport, GoesAboutInABrowser) {
   EXPECT_THAT(found.at("note").get<std::string>(), HasSubstr("Frame 6 has no picture; this is frame 5."));
   EXPECT_EQ(found.at("dash"), "none –stillpoint –");
   EXPECT_THAT(found.at("legend").get<std::string>(), Not(HasSubstr("NaN")));
+  // The scene follows the mouse: what is nearer than the middle farther. Nearer it is larger; turned, the way
+  // points elsewhere.
+  const double right = found.at("moved").at(0), down = found.at("moved").at(1);
+  EXPECT_NEAR(right / down, 30.0 / 20.0, 0.02);
+  EXPECT_NEAR(right, 30.0, 15.0);
+  EXPECT_GT(found.at("zoomed"), 1.3);
+  EXPECT_GT(found.at("turned"), 0.3);
   EXPECT_EQ(found.at("path"), nlohmann::json({1, 2}));
   EXPECT_EQ(found.at("row"), 8);
   EXPECT_EQ(found.at("ariaSort"), "ascending");  // few inliers are the bad ones
