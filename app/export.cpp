@@ -84,7 +84,11 @@ void add_export_command(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Replace a sequence in that folder, or the file");
   arguments->source.add_to(*command, "--length");
   command->callback([arguments] {
-    const bool map = std::filesystem::path(arguments->to).extension() == ".ply";
+    const std::string ending = std::filesystem::path(arguments->to).extension().string();
+    const bool map = ending == ".ply";
+    if (!arguments->to.empty() && !map && ending != ".mcap")
+      throw InputError(
+          fmt::format("{}: expected a name that ends in .mcap, or in .ply for its map", arguments->to));
     if (map && !arguments->layers.empty())
       throw InputError("--layers: go into an .mcap file, not into a .ply file");
     if (map)

@@ -141,6 +141,7 @@ void add_report_command(CLI::App& app) {
           "--layers", arguments->pictures.layers,
           "Ids of stages' layers to lay over its pictures, with commas between: difference,forward_mask")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->needs(interactive);
   command->add_flag("--force", arguments->force, "Overwrite an earlier report");
   command->callback([arguments] { report(*arguments); });

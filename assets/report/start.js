@@ -82,7 +82,13 @@ cursor.followers.push(() => {
 function redraw() {
   for (const view of [orbit, pictures, framesTable, ...plots.all]) view.soon();
 }
-window.addEventListener("hashchange", goToHash);
+window.addEventListener("hashchange", () => {
+  goToHash();
+  // A link to a frame from far below leads to where the frame is shown.
+  const box = element("live").getBoundingClientRect();
+  if (location.hash.startsWith("#frame=") && (box.bottom < 0 || box.top > window.innerHeight))
+    element("live").scrollIntoView();
+});
 dark.addEventListener("change", () => cursor.tell());
 new ResizeObserver(redraw).observe(element("live"));
 

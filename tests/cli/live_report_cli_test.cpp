@@ -138,9 +138,9 @@ TEST_F(LiveReport, HasTheFiguresOfTheRecords) {
 
 TEST_F(LiveReport, LaysMasksAndLayersOverPictures) {
   ASSERT_EQ(run_cli({"run", sequence_.path(), "--method", "paper", "--out", run("paper")}).exit_code, 0);
-  const CliResult made =
-      run_cli({"report", run("none"), run("stillpoint"), run("paper"), "--interactive", "--worst", "0",
-               "--picture-width", "160", "--layers", "difference", "--out", sequence_.path("live.html")});
+  const CliResult made = run_cli({"report", "--layers", "difference", run("none"), run("stillpoint"),
+                                  run("paper"), "--interactive", "--worst", "0", "--picture-width", "160",
+                                  "--out", sequence_.path("live.html")});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const nlohmann::json pictures = page_data(page("live.html")).at("sequences").at(0).at("pictures");
   EXPECT_EQ(pictures.at("size"), nlohmann::json({160, 120}));
@@ -325,7 +325,9 @@ constexpr const char* kVisit = R"js(<script>
   found.sortedBack = column();
   const canvas = $("#plots canvas");
   click(canvas, [canvas.clientWidth - 13, 60]); found.plotEnd = page.frame;
+  window.scrollTo(0, document.body.scrollHeight);
   location.hash = "#frame=4"; await breath(); found.hash = page.frame;
+  found.inSight = $("#live").getBoundingClientRect().bottom > 0;
   location.hash = "#frame=999999"; await breath(); found.beyond = page.frame;
   await new Promise((done) => setTimeout(done, 500)); found.address = location.hash;
   press("Home"); press(" "); found.playing = $("#play").textContent;
@@ -387,6 +389,7 @@ TEST_F(LiveReport, GoesAboutInABrowser) {
   }
   EXPECT_EQ(found.at("plotEnd"), 9);
   EXPECT_EQ(found.at("hash"), 4);
+  EXPECT_EQ(found.at("inSight"), true);
   EXPECT_EQ(found.at("beyond"), 9);
   EXPECT_EQ(found.at("address"), "#frame=9&amp;run=2");  // as markup has it
   EXPECT_EQ(found.at("playing"), "Pause");
