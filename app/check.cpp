@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cctype>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/geometry/trajectory_file.hpp"
+#include "core/inspect/openable.hpp"
 
 namespace stillpoint {
 namespace {
@@ -63,14 +66,6 @@ void check_estimate(const CheckArguments& arguments, const FrameSource& source,
   for (Finding& finding : check_truth(truth, file.poses, true)) findings.push_back(std::move(finding));
 }
 
-/// How a sensor's depth is stored.
-std::string depth_words(const Camera& camera) {
-  std::string words = fmt::format("at {:g} a metre", camera.depth_scale);
-  if (const auto& depth = camera.depth_camera)
-    words += fmt::format(", registered from {}x{} px", depth->camera.width, depth->camera.height);
-  return words;
-}
-
 void check(const CheckArguments& arguments) {
   const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, Config());
   const auto source = open_sequence(arguments.sequence, reading.options(Config()));
@@ -90,15 +85,13 @@ void check(const CheckArguments& arguments) {
     json["findings"] = nlohmann::json(findings);
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    fmt::print(
-        "{}: {} frames, {:.3f} s, camera {} ({}x{} px), depth {}, masks {}, ground truth {}\n",
-        source->name(), source->size(), source->timestamp(source->size() - 1) - source->timestamp(0),
-        camera.name, camera.width, camera.height,
-        !source->has_depth() ? "none"
-        : camera.is_stereo() ? fmt::format("by stereo, {:.4g} m apart", camera.baseline_m)
-                             : depth_words(camera),
-        source->has_masks() ? "yes" : "none",
-        source->ground_truth().empty() ? "none" : fmt::format("{} poses", source->ground_truth().size()));
+    std::vector<std::string> facts;
+    for (const SequenceFact& fact : sequence_facts(*source)) {
+      std::string name = fact.name;
+      name.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(name.front())));
+      facts.push_back(facts.empty() ? fact.value : name + " " + fact.value);
+    }
+    fmt::print("{}: {}\n", source->name(), fmt::join(facts, ", "));
     for (const std::string& line : source->contents()) fmt::print("  topic     {}\n", line);
     if (arguments.estimate.empty())
       for (const std::string& line : to_lines(times, camera)) fmt::print("  time      {}\n", line);

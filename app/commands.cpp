@@ -9,6 +9,7 @@ void add_commands(CLI::App& app) {
   add_benchmark_command(app);
   add_tables_command(app);
   add_ablate_command(app);
+  add_sweep_command(app);
   add_generate_command(app);
   add_motion_command(app);
   add_snapshot_command(app);

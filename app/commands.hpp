@@ -21,6 +21,7 @@ void add_check_command(CLI::App& app);
 void add_benchmark_command(CLI::App& app);
 void add_tables_command(CLI::App& app);
 void add_ablate_command(CLI::App& app);
+void add_sweep_command(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_motion_command(CLI::App& app);
 void add_snapshot_command(CLI::App& app);

@@ -13,6 +13,7 @@
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
 #include "core/error.hpp"
+#include "core/run/open_run.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/window.hpp"
 #include "ui/workbench/app_controller.hpp"

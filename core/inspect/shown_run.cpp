@@ -237,6 +237,13 @@ std::shared_ptr<const FrameView> ShownRun::frame_view(int index, std::shared_ptr
   return hold(std::move(view), processed ? std::optional(track_.record(index)) : std::nullopt);
 }
 
+std::shared_ptr<const FrameView> ShownRun::record_view(int index) {
+  FrameView view;
+  view.index = index;
+  view.frame = frames_->read(index);
+  return hold(std::move(view), track_.record(index));
+}
+
 std::shared_ptr<const RunView> ShownRun::run_view() {
   if (!view_) view_ = std::make_shared<const RunView>(track_.view());
   return view_;

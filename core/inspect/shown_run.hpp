@@ -33,6 +33,9 @@ class ShownRun {
   [[nodiscard]] std::shared_ptr<const FrameView> frame_view(
       int index, std::shared_ptr<const FrameView> before = nullptr);
 
+  /// The images and the record of a frame that was processed, without stages: quick to have.
+  [[nodiscard]] std::shared_ptr<const FrameView> record_view(int index);
+
   /// The run for panels; the same object until another frame was processed.
   [[nodiscard]] std::shared_ptr<const RunView> run_view();
 

@@ -13,6 +13,32 @@ namespace {
 
 using ::testing::HasSubstr;
 
+TEST(SweepCommand, RunsEachValueAndWritesWhatItReached) {
+  const SmallSequence sequence(34);
+  const std::vector<std::string> command = {
+      "sweep",    sequence.path(), "--parameter", "features.count=200:600:2",
+      "--method", "none",          "--out",       sequence.path("out")};
+  const CliResult result = run_cli(command);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("| features.count"));
+  const auto json = nlohmann::json::parse(sequence.folder.read("out/sweep.json"));
+  ASSERT_EQ(json.size(), 1U);
+  ASSERT_EQ(json[0]["points"].size(), 2U);
+  EXPECT_EQ(json[0]["points"][0]["value"], 200.0);
+  EXPECT_NE(json[0]["points"][0]["run_hash"], json[0]["points"][1]["run_hash"]);
+  for (const auto& point : json[0]["points"]) {
+    EXPECT_EQ(point["coverage"], 1.0);
+    EXPECT_TRUE(point["iou"].is_null());  // nothing is judged, so nothing is scored
+    EXPECT_LT(point["rpe_m"].get<double>(), 0.02);
+  }
+  const std::string csv = sequence.folder.read("out/sweep.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  expect_one_sentence(run_cli(command), "--force");
+  expect_one_sentence(run_cli({"sweep", sequence.path(), "--parameter", "run.method=1:2"}), "is no number");
+  expect_one_sentence(run_cli({"sweep", sequence.path(), "--parameter", "nothing.at_all"}),
+                      "there is no parameter nothing.at_all");
+}
+
 TEST(AblateCommand, RunsTheWholeMethodAndEachWithoutOne) {
   const SmallSequence sequence(34);
   const CliResult result = run_cli(

@@ -171,6 +171,7 @@ FrameRecord handmade_record(int index, double drift_m) {
     feature.depth = 1.5F + 0.005F * static_cast<float>(i);
     feature.residual_px = 0.1F * static_cast<float>(i % 20);
     feature.fate = i % 5 == 0 ? FeatureFate::removed : static_cast<FeatureFate>(i % 3);
+    if (feature.fate == FeatureFate::inlier || feature.fate == FeatureFate::outlier) feature.map_point = i;
     record.features.push_back(feature);
   }
   return record;
@@ -311,6 +312,21 @@ SessionView handmade_example() {
   for (int i = 0; i < 400; ++i)
     view.map_points.push_back(
         {i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+  auto other = std::make_shared<FrameView>();
+  other->index = 22;
+  other->frame = handmade_frame(22);
+  other->record = &run->records[22];
+  view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
+  view.debug.other = std::move(other);
+  SweepView sweep{
+      .range = {"paper.border_px", 1, 9, 5}, .values = {1, 3, 5, 7, 9}, .frames = 60, .base = view.config};
+  for (int i = 0; i < 4; ++i) {
+    AblationCell cell;
+    cell.rpe_m = 0.004 + 0.001 * std::abs(i - 2), cell.mask_iou = 0.5 + 0.1 * i, cell.coverage = 1.0;
+    sweep.points.push_back({1.0 + 2.0 * i, cell});
+  }
+  sweep.busy = true;
+  view.debug.sweep = std::move(sweep);
   view.run = run;
   view.baseline = handmade_run("none", 4.0);
   view.revision = 1;

@@ -186,6 +186,11 @@ TEST_F(WorkbenchTest, SplittersAreDragged) {
   render(workbench, *session);
   EXPECT_GT(workbench.layout().children[0].children[0].share, before.children[0].children[0].share + 0.03);
   EXPECT_EQ(workbench.layout().children[1], before.children[1]);
+  // The whole drag is taken back at once.
+  EXPECT_TRUE(workbench.actions().run("undo_layout"));
+  render(workbench, *session);
+  EXPECT_EQ(workbench.layout(), before);
+  EXPECT_FALSE(workbench.actions().run("undo_layout"));
 }
 
 TEST(Settings, ComeBackAsTheyWereLeft) {

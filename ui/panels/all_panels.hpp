@@ -47,6 +47,9 @@ enum class FeatureMoment { kBefore, kAfter };
 [[nodiscard]] std::unique_ptr<Panel> make_removal_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_inspector_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_check_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_two_frames_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_sweep_panel(Shared shared);
+[[nodiscard]] std::unique_ptr<Panel> make_figures_panel(Shared shared);
 [[nodiscard]] std::unique_ptr<Panel> make_log_panel(Shared shared);
 
 }  // namespace stillpoint

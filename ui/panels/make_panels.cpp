@@ -37,6 +37,9 @@ std::vector<std::unique_ptr<Panel>> make_panels() {
   panels.push_back(make_pose_panel(shared));
   panels.push_back(make_outline_panel(shared));
   panels.push_back(make_check_panel(shared));
+  panels.push_back(make_two_frames_panel(shared));
+  panels.push_back(make_sweep_panel(shared));
+  panels.push_back(make_figures_panel(shared));
   panels.push_back(make_log_panel(shared));
   return panels;
 }

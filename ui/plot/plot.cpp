@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "ui/plot/plot_file.hpp"
 #include "ui/plot/plot_paint.hpp"
 
 namespace stillpoint {
@@ -45,10 +47,10 @@ AxisRange x_extent(const Plot& plot) {
 }
 
 void set_ranges(const Plot& plot, const PlotView& view, PlotPaint& paint) {
-  paint.x.range = view.x.value_or(x_extent(plot));
-  paint.y.scale = view.log_y ? AxisScale::kLog : AxisScale::kLinear;
-  const bool usable = view.y && (!view.log_y || view.y->low > 0.0);
-  paint.y.range = usable ? *view.y : y_extent(plot, paint.x.range, paint.y.scale);
+  const PlotAxes axes = axes_of(plot, view);
+  paint.x.range = axes.x;
+  paint.y.scale = axes.y_scale;
+  paint.y.range = axes.y;
 }
 
 /// Wheel, drags and double click on the plot's area.
@@ -78,6 +80,24 @@ void handle_mouse(const PlotPaint& paint, PlotView& view, PlotResponse& response
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) response.clicked_x = paint.x.to_value(mouse_x);
 }
 
+/// A right click in place offers the plot as a file.
+void offer_file(const UiFrame& frame, const char* id, const Plot& plot, const PlotView& view) {
+  if (frame.offer == nullptr) return;
+  constexpr const char* kMenu = "##plot menu";
+  constexpr float kInPlace = 16.0F;  // px², as far as a hand trembles
+  if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
+      ImGui::GetIO().MouseDragMaxDistanceSqr[ImGuiMouseButton_Right] < kInPlace)
+    ImGui::OpenPopup(kMenu);
+  if (!ImGui::BeginPopup(kMenu)) return;
+  if (ImGui::MenuItem("Save this plot…"))
+    *frame.offer = FileOffer{std::string(id) + ".svg", kPlotEndings,
+                             [figure = std::make_shared<const PlotFigure>(plot, view)](
+                                 const std::string& path) { write_plot(*figure, path); }};
+  if (ImGui::MenuItem("Copy its values"))
+    ImGui::SetClipboardText(plot_values(PlotFigure(plot, view)).c_str());
+  ImGui::EndPopup();
+}
+
 /// Leaves room beside the area for ticks and labels; y ticks decide how much.
 void lay_out(const UiFrame& frame, const Plot& plot, ImVec2 low, ImVec2 high, PlotPaint& paint) {
   const float scale = frame.scale;
@@ -101,6 +121,15 @@ void lay_out(const UiFrame& frame, const Plot& plot, ImVec2 low, ImVec2 high, Pl
 
 }  // namespace
 
+PlotAxes axes_of(const Plot& plot, const PlotView& view) {
+  PlotAxes axes;
+  axes.x = view.x.value_or(x_extent(plot));
+  axes.y_scale = view.log_y ? AxisScale::kLog : AxisScale::kLinear;
+  const bool usable = view.y && (!view.log_y || view.y->low > 0.0);
+  axes.y = usable ? *view.y : y_extent(plot, axes.x, axes.y_scale);
+  return axes;
+}
+
 PlotResponse draw_plot(const UiFrame& frame, const char* id, const Plot& plot, PlotView& view, ImVec2 size) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   if (size.x <= 0.0F) size.x = available.x;
@@ -121,6 +150,7 @@ PlotResponse draw_plot(const UiFrame& frame, const char* id, const Plot& plot, P
       ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
           ImGuiButtonFlags_MouseButtonMiddle);
   handle_mouse(paint, view, response);
+  offer_file(frame, id, plot, view);
   // What the mouse changed shows in this frame, not the next.
   set_ranges(plot, view, paint);
   lay_out(frame, plot, low, high, paint);

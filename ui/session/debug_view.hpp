@@ -11,6 +11,7 @@
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
 #include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 
 namespace stillpoint {
 
@@ -39,6 +40,9 @@ struct ExportView {
   int done = 0, total = 0;  ///< of that
 };
 
+/// Which frame stands beside the one shown.
+enum class OtherFrame { before, keyframe, kept };
+
 /// What the sequence was questioned by.
 struct CheckView {
   bool asking = false;  ///< it is being questioned now
@@ -46,6 +50,17 @@ struct CheckView {
   bool whole = false;   ///< by all there is, not by a look at its lists and images alone
   std::vector<Finding> findings;
   std::vector<std::string> times;  ///< the camera's times as its frames tell them, a line each
+};
+
+/// Runs of the sequence's first frames at several values of one parameter.
+struct SweepView {
+  SweepRange range;
+  std::vector<double> values;        ///< all that are asked for, ascending
+  std::vector<SweepPoint> points{};  ///< those done, in their order
+  int frames = 0;                    ///< so many are run each time
+  Config base;                       ///< what every other parameter is
+  bool busy = false;
+  std::string problem{};  ///< why it ended early, one sentence; empty mostly
 };
 
 /// The debugger's part of SessionView.
@@ -64,9 +79,14 @@ struct DebugView {
   std::optional<Config> previewed;           ///< the config `preview` was made with
   bool preview_whole = false;  ///< false: its features' matches and its pose are the run's still
   double preview_ms = 0.0;     ///< what computing it took
+  OtherFrame other_is = OtherFrame::before;
+  std::optional<int> kept_frame;           ///< the frame that was kept to stand beside others
+  std::shared_ptr<const FrameView> other;  ///< its images and record alone; null where there is none
   CheckView check;
+  std::optional<SweepView> sweep;       ///< the last one asked for
   std::optional<ExportView> exporting;  ///< what is being written now
   std::string notice;                   ///< what was written last, one sentence
+  int undo_steps = 0, redo_steps = 0;   ///< changes of marks that can be taken back, and made again
   bool masks_written = false;           ///< true masks were written into the sequence since it was opened
   std::string run_hash;                 ///< of all records so far, as `stillpoint run` prints it
   std::string sequence_hash;            ///< of the sequence, as sidecar and run folder keep it
@@ -124,12 +144,30 @@ struct ExportSession {
 };
 /// The sequence is questioned by all there is (check_sequence), beside the session.
 struct CheckSequence {};
+/// The sequence's first frames (0 = all) under `base`, once for each value of a parameter, beside the
+/// session.
+struct Sweep {
+  Config base;
+  SweepRange range;
+  int frames = 0;
+};
+/// The sweep ends with what it has.
+struct StopSweep {};
 /// What is being written ends, and is taken away.
 struct StopExport {};
 /// Another method's stages of each frame shown, beside the run's own; an empty name ends it.
 struct StagesBeside {
   std::string method;
 };
+/// The frame that stands beside the one shown: the one before, the keyframe it shares most with, or one that
+/// is kept, from now on.
+struct StandBeside {
+  OtherFrame which = OtherFrame::before;
+  std::optional<int> keep{};  ///< … this one; nothing: the one kept so far
+};
+/// The last change of bookmarks, pins, breakpoints, outlines or the range is taken back, or made again.
+struct Undo {};
+struct Redo {};
 struct SavePreset {
   Config config;
   std::string file;
@@ -140,6 +178,8 @@ using SessionRequest =
     std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
                  request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
                  request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
-                 request::CheckSequence, request::StopExport, request::StagesBeside, request::SavePreset>;
+                 request::CheckSequence, request::Sweep, request::StopSweep, request::StopExport,
+                 request::StagesBeside, request::StandBeside, request::Undo, request::Redo,
+                 request::SavePreset>;
 
 }  // namespace stillpoint

@@ -82,9 +82,22 @@ void Session::show(int frame) {
     else
       ghost.current = frame < track.begins_at() ? current_ : ghost.run->frame_view(frame);
   }
+  choose_other();
   debug_.preview.reset();
   preview_due_ = motion_preview_due_ = debug_.preview_config.has_value();
   publish();
+}
+
+void Session::choose_other() {
+  const FrameRecord* record = current_->record;
+  std::optional<int> other;
+  if (debug_.other_is == OtherFrame::before) other = current_->index - 1;
+  if (debug_.other_is == OtherFrame::kept) other = debug_.kept_frame;
+  if (debug_.other_is == OtherFrame::keyframe && record != nullptr)
+    for (const SavedKeyframe& keyframe : run_->track().keyframes())
+      if (keyframe.id == record->reference_keyframe) other = keyframe.frame_index;
+  const bool there = other && *other >= 0 && *other < run_->track().processed() && *other != current_->index;
+  debug_.other = there ? run_->record_view(*other) : nullptr;
 }
 
 bool Session::lacks_before() const {
@@ -104,6 +117,7 @@ DebugView Session::debug_view() {
   debug.breakpoints = breakpoints_.views();
   debug.run_hash = run_->track().hash();
   debug.masks_written = masks_written_;
+  debug.undo_steps = static_cast<int>(undo_.size()), debug.redo_steps = static_cast<int>(redo_.size());
   if (export_) debug.exporting = export_->view();
   for (const Ghost& ghost : ghosts_)
     debug.ghosts.push_back({.name = ghost.name,
@@ -188,7 +202,7 @@ void Session::request_speed(double frames_per_second) {
 
 bool Session::idle() const {
   const std::lock_guard lock(mutex_);
-  return resting_ && requests_.empty() && !exporting_ && !checking_;
+  return resting_ && requests_.empty() && !exporting_ && !checking_ && !sweeping_ && !news_;
 }
 
 void Session::rest(const std::stop_token& stop, bool until_comparison) {

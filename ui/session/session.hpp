@@ -101,6 +101,7 @@ class Session {
   void refuse_without_images(const char* what) const;
   void process_one();
   void show(int frame);
+  void choose_other();
   void publish();
   [[nodiscard]] DebugView debug_view();
   [[nodiscard]] bool lacks_before() const;
@@ -122,8 +123,13 @@ class Session {
   void carry_out(const request::ExportFrames& wanted);
   void carry_out(const request::ExportSession& wanted);
   void carry_out(const request::CheckSequence& wanted);
+  void carry_out(const request::Sweep& wanted);
+  void carry_out(const request::StopSweep& wanted);
   void carry_out(const request::StopExport& wanted);
   void carry_out(const request::StagesBeside& wanted);
+  void carry_out(const request::StandBeside& wanted);
+  void carry_out(const request::Undo& wanted);
+  void carry_out(const request::Redo& wanted);
   void carry_out(const request::SavePreset& wanted);
   void write_beside(const std::string& folder, ExportJob::Work work);
 
@@ -149,6 +155,8 @@ class Session {
   void open_sidecar();
   [[nodiscard]] Marks marks() const;
   void save_marks();
+  void set_marks(Marks marks);
+  void remember(Marks before, std::size_t request);
 
   std::shared_ptr<const FrameSource> source_;
   SessionOptions options_;
@@ -173,9 +181,12 @@ class Session {
   std::chrono::steady_clock::time_point preview_asked_{};  // when it was asked for last
   bool sidecar_due_ = false;
   std::optional<Sidecar> sidecar_;
-  std::atomic<bool> masks_written_ = false;  // true masks, into the sequence
-  bool looked_over_ = false;                 // check_frames() has been asked
-  std::unique_ptr<ExportJob> export_;        // the worker's; null while nothing is being written
+  std::vector<Marks> undo_, redo_;                     // as they were, the last at the end
+  std::size_t marked_by_ = 0;                          // the kind of request that changed marks last, …
+  std::chrono::steady_clock::time_point marked_at_{};  // … and when
+  std::atomic<bool> masks_written_ = false;            // true masks, into the sequence
+  bool looked_over_ = false;                           // check_frames() has been asked
+  std::unique_ptr<ExportJob> export_;                  // the worker's; null while nothing is being written
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable_any asked_;
@@ -188,8 +199,12 @@ class Session {
   std::atomic<bool> news_ = false;      // of what goes on beside the session
   std::atomic<bool> exporting_ = false, checking_ = false;
   std::optional<CheckView> checked_;  // what the last questioning found
-  std::jthread checker_;              // ends before what it works with
-  std::jthread worker_;               // last: it ends before what it works with
+  std::vector<SweepPoint> swept_;     // not yet taken into debug_.sweep
+  std::string sweep_problem_;
+  std::atomic<bool> sweeping_ = false, stop_sweep_ = false;
+  std::jthread sweeper_;  // ends before what it works with
+  std::jthread checker_;  // ends before what it works with
+  std::jthread worker_;   // last: it ends before what it works with
 };
 
 }  // namespace stillpoint

@@ -65,8 +65,49 @@ void Session::request(SessionRequest wanted) {
 }
 
 void Session::carry_out(const SessionRequest& wanted) {
+  Marks before = marks();
   std::visit([this](const auto& one) { carry_out(one); }, wanted);
+  const bool goes_back =
+      std::holds_alternative<request::Undo>(wanted) || std::holds_alternative<request::Redo>(wanted);
+  if (!goes_back && marks() != before) remember(std::move(before), wanted.index());
   save_marks();
+}
+
+void Session::remember(Marks before, std::size_t request) {
+  // What is typed or dragged comes as many requests, and is one change.
+  constexpr auto kOneChange = std::chrono::milliseconds(700);
+  constexpr std::size_t kKept = 200;
+  const auto now = std::chrono::steady_clock::now();
+  const bool goes_on = worker_.joinable() && !undo_.empty() && redo_.empty() && request == marked_by_ &&
+                       now - marked_at_ < kOneChange;
+  marked_by_ = request, marked_at_ = now;
+  redo_.clear();
+  if (goes_on) return;
+  undo_.push_back(std::move(before));
+  if (undo_.size() > kKept) undo_.erase(undo_.begin());
+}
+
+void Session::set_marks(Marks marks) {
+  breakpoints_.set(marks.breakpoints);
+  breakpoints_due_ = true;
+  debug_.bookmarks = std::move(marks.bookmarks);
+  debug_.pins = std::move(marks.pins);
+  debug_.drawn = std::move(marks.drawn);
+  debug_.span = marks.span, debug_.loop = marks.loop;
+}
+
+void Session::carry_out(const request::Undo& /*wanted*/) {
+  if (undo_.empty()) return;
+  redo_.push_back(marks());
+  set_marks(std::move(undo_.back()));
+  undo_.pop_back();
+}
+
+void Session::carry_out(const request::Redo& /*wanted*/) {
+  if (redo_.empty()) return;
+  undo_.push_back(marks());
+  set_marks(std::move(redo_.back()));
+  redo_.pop_back();
 }
 
 void Session::carry_out(const request::GoTo& wanted) {
@@ -234,6 +275,53 @@ void Session::carry_out(const request::CheckSequence& /*wanted*/) {
   });
 }
 
+void Session::carry_out(const request::Sweep& wanted) {
+  refuse_without_images("There is nothing to sweep over");
+  refuse_out_of_range(wanted.base);
+  if (sweeping_) throw InputError("another sweep still goes on");
+  SweepView view{.range = wanted.range,
+                 .values = sweep_values(wanted.base, wanted.range),
+                 .frames = std::clamp(wanted.frames, 0, source_->size()),
+                 .base = wanted.base,
+                 .busy = true};
+  // One thread: it gives way to what a person looks at meanwhile, and gives the same runs.
+  view.base.run.threads = 1;
+  const auto run = [this, view](const std::stop_token& stop) {
+    const std::stop_callback ends(stop, [this] { stop_sweep_ = true; });
+    std::string problem;
+    try {
+      for (const double value : view.values) {
+        auto point = sweep_point(*source_, view.base, view.range.parameter, value, view.frames, &stop_sweep_);
+        if (!point) break;
+        const std::lock_guard lock(mutex_);
+        swept_.push_back(std::move(*point));
+        news_ = true;
+        asked_.notify_all();
+      }
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    sweep_problem_ = problem;
+    sweeping_ = false;
+    news_ = true;
+    asked_.notify_all();
+  };
+  if (sweeper_.joinable()) sweeper_.join();
+  (void)take_news();
+  debug_.sweep = view;
+  stop_sweep_ = false;
+  sweeping_ = true;
+  if (worker_.joinable()) {
+    sweeper_ = std::jthread(run);
+  } else {
+    run({});
+    (void)take_news();
+  }
+}
+
+void Session::carry_out(const request::StopSweep& /*wanted*/) { stop_sweep_ = true; }
+
 void Session::carry_out(const request::StopExport& /*wanted*/) {
   if (export_) export_->stop();
 }
@@ -243,6 +331,12 @@ void Session::carry_out(const request::StagesBeside& wanted) {
   run_->lay_beside(wanted.method);
   beside_ = wanted.method;
   show(current_->index);
+}
+
+void Session::carry_out(const request::StandBeside& wanted) {
+  debug_.other_is = wanted.which;
+  if (wanted.keep) debug_.kept_frame = std::clamp(*wanted.keep, 0, source_->size() - 1);
+  choose_other();
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

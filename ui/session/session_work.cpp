@@ -205,6 +205,12 @@ bool Session::take_news() {
       checked_.reset();
       checking_ = false;
     }
+    if (debug_.sweep) {
+      for (SweepPoint& point : swept_) debug_.sweep->points.push_back(std::move(point));
+      debug_.sweep->busy = sweeping_;
+      debug_.sweep->problem = sweep_problem_;
+    }
+    swept_.clear();
   }
   if (!export_) return true;
   if (const auto outcome = export_->outcome()) {

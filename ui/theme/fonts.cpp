@@ -50,6 +50,11 @@ ImFont* add(const Face& face, float size, const ImWchar* ranges, bool merge = fa
 
 }  // namespace
 
+FontBytes text_font() {
+  return {stillpoint_font_regular,
+          static_cast<std::size_t>(stillpoint_font_regular_end - stillpoint_font_regular)};
+}
+
 Fonts load_fonts(float scale) {
   const Face regular{stillpoint_font_regular, stillpoint_font_regular_end};
   const Face semibold{stillpoint_font_semibold, stillpoint_font_semibold_end};

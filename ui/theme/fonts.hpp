@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include <cstddef>
+
 namespace stillpoint {
 
 /// The faces of the interface, at the current scale. They belong to ImGui's font atlas.
@@ -12,6 +14,15 @@ struct Fonts {
   ImFont* small = nullptr;    ///< Inter, smaller: axes, legends, captions
   ImFont* mono = nullptr;     ///< JetBrains Mono: numbers in columns, paths, keys
 };
+
+/// A font's file, part of the program.
+struct FontBytes {
+  const unsigned char* begin = nullptr;
+  std::size_t size = 0;
+};
+
+/// Inter, what most is written in.
+[[nodiscard]] FontBytes text_font();
 
 /// Fills the current ImGui context's atlas anew with the embedded fonts, `scale` times their design size.
 [[nodiscard]] Fonts load_fonts(float scale);

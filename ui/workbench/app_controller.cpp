@@ -84,6 +84,12 @@ WorkbenchHost AppController::host() {
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
           .open = [this](const std::string& where) { open(where); },
+          .open_as = [this](const OpenAs& place) { open_as(place); },
+          .look =
+              [open = options_.open_source, config = options_.config](const OpenAs& place) {
+                return look_at_place(place,
+                                     [&](const OpenAs& as) { return open(as.where, config, as.reading); });
+              },
           .reopen = [this](const std::string& with) { reopen(with); },
           .request = [this](SessionRequest wanted) { request(std::move(wanted)); },
           .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
@@ -167,6 +173,22 @@ void AppController::open(const std::string& where) {
   // A sequence that was never open is run as the one before it is.
   if (const auto config = config_of(sequence)) options_.config = *config, ++configured_;
   begin_opening(sequence, options_.config, std::nullopt);
+}
+
+void AppController::open_as(const OpenAs& place) {
+  if (opening_.valid()) {
+    workbench_.say(fmt::format("{}: another sequence is being opened", place.where), true);
+    return;
+  }
+  Config config = options_.config;
+  try {
+    if (!place.method.empty()) set_parameter(config, "run.method=" + place.method);
+  } catch (const InputError& error) {
+    workbench_.say(error.what(), true);
+    return;
+  }
+  options_.config = config, ++configured_;
+  begin_opening({.where = place.where, .reading = place.reading, .settings = {}}, config, std::nullopt);
 }
 
 void AppController::reopen(const std::string& with) {

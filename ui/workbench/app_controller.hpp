@@ -44,6 +44,8 @@ class AppController {
   /// Opens a sequence soon, as it was left where it was open before; when that fails the one open stays, and
   /// the workbench says why. Of several asked for meanwhile, the last is opened.
   void open(const std::string& where);
+  /// The same, read and run as it says, whatever it was left like.
+  void open_as(const OpenAs& place);
   /// Opens the sequence shown anew, at the frame shown: its files have changed, or it is to be read
   /// otherwise.
   /// @param with a word of the reading in place of the one of its name: "camera=freiburg1"; empty: none

@@ -84,6 +84,19 @@ void Workbench::add_mark_actions() {
                 .keys = {{Key::kB, {}}},
                 .enabled = can_ask,
                 .run = [this] { toggle_bookmark(); }});
+  actions_.add({.name = "undo",
+                .title = "Take back the last change of marks",
+                .group = "Debug",
+                .icon = icons::kUndo,
+                .keys = {{Key::kZ, kCtrl}},
+                .enabled = [this, can_ask] { return can_ask() && session_->debug.undo_steps > 0; },
+                .run = [this] { ask(request::Undo{}); }});
+  actions_.add({.name = "redo",
+                .title = "Make that change of marks again",
+                .group = "Debug",
+                .keys = {{Key::kZ, {.ctrl = true, .shift = true}}},
+                .enabled = [this, can_ask] { return can_ask() && session_->debug.redo_steps > 0; },
+                .run = [this] { ask(request::Redo{}); }});
   const auto add_span = [this, can_ask](const char* name, const char* title, Key key, bool begins) {
     actions_.add({.name = name,
                   .title = title,
@@ -143,6 +156,20 @@ void Workbench::tell_notice() {
 }
 
 void Workbench::add_layout_actions() {
+  actions_.add({.name = "undo_layout",
+                .title = "Take back the last change of the tiles",
+                .group = "View",
+                .icon = icons::kUndo,
+                .keys = {{Key::kZ, {.ctrl = true, .alt = true}}},
+                .enabled = [this] { return !layouts_before_.empty(); },
+                .run =
+                    [this] {
+                      after_frame_ = [this] {
+                        set_layout(std::move(layouts_before_.back()));
+                        layouts_before_.pop_back();
+                        layout_seen_ = layout_;
+                      };
+                    }});
   int digit = static_cast<int>(Key::k1);
   for (const NamedLayout& layout : named_layouts())
     actions_.add({.name = "layout." + std::string(layout.name),

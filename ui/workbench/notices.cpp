@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <filesystem>
+#include <utility>
 
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
@@ -15,6 +18,13 @@ constexpr ImGuiWindowFlags kNoticeFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize;
 constexpr double kErrorShownSeconds = 20.0, kTurnSeconds = 0.12;
+
+/// A sequence's name as a part of a file's.
+std::string file_name_of(std::string title) {
+  std::replace_if(
+      title.begin(), title.end(), [](char c) { return c == '/' || c == ':' || c == ' '; }, '_');
+  return title;
+}
 
 /// A card over the panels. @param pivot which point of it lies at `at`, as shares
 bool begin_notice(const UiFrame& frame, const char* name, ImVec2 at, ImVec2 pivot, Rgb edge) {
@@ -85,6 +95,28 @@ void Workbench::draw_hand_on_dialog() {
       "A new folder for {} frames, their run and all marks; `stillpoint view` opens it anywhere", frames);
   if (ask_for_path(hand_on_dialog_, "Hand this session on", what.c_str(), "Write"))
     ask(request::ExportSession{hand_on_dialog_.path});
+}
+
+void Workbench::draw_save_dialog() {
+  if (offered_) {
+    saving_ = std::exchange(offered_, std::nullopt);
+    save_dialog_ = {.open = true, .opened_now = true};
+    const std::string title = session_ == nullptr ? "" : file_name_of(session_->title) + "_";
+    const std::string path = (std::filesystem::current_path() / (title + saving_->name)).string();
+    path.copy(save_dialog_.path, sizeof save_dialog_.path - 1);
+  }
+  if (!save_dialog_.open) return;
+  std::error_code none;
+  const bool there = std::filesystem::exists(save_dialog_.path, none);
+  const std::string what = there ? "This file exists and will be replaced"
+                                 : fmt::format("A file that ends in {}", saving_->endings);
+  if (!ask_for_path(save_dialog_, "Save", what.c_str(), "Save")) return;
+  try {
+    saving_->write(save_dialog_.path);
+    say(fmt::format("written to {}", save_dialog_.path));
+  } catch (const std::exception& error) {
+    say(error.what(), true);
+  }
 }
 
 void Workbench::draw_exporting() {

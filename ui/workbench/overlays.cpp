@@ -112,7 +112,7 @@ void Workbench::draw_shortcuts() {
   if (!shortcuts_open_) return;
   const float scale = frame_->scale;
   ImGui::SetNextWindowFocus();
-  if (begin_overlay(*frame_, "##keys", {920.0F * scale, 570.0F * scale}, 0.08F)) {
+  if (begin_overlay(*frame_, "##keys", {920.0F * scale, 640.0F * scale}, 0.08F)) {
     ImGui::PushFont(frame_->fonts.heading);
     ImGui::TextUnformatted("Keys");
     ImGui::PopFont();
@@ -190,9 +190,16 @@ bool Workbench::ask_for_path(PathDialog& dialog, const char* title, const char* 
 }
 
 void Workbench::draw_open_dialog() {
-  if (ask_for_path(open_dialog_, "Open a sequence",
-                   "A folder in the TUM RGB-D layout, a folder of colour frames, or generated:KIND", "Open"))
-    after_frame_ = [this, path = std::string(open_dialog_.path)] { host_.open(path); };
+  const auto chosen = open_dialog_.draw(*frame_, recent_);
+  if (!chosen) return;
+  // What was open before, and is not to be read otherwise, comes back as it was left.
+  const bool as_left = chosen->reading.empty() && chosen->method.empty();
+  after_frame_ = [this, as_left, as = *chosen] {
+    if (as_left || !host_.open_as)
+      host_.open(as.where);
+    else
+      host_.open_as(as);
+  };
 }
 
 }  // namespace stillpoint

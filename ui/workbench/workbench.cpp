@@ -85,7 +85,7 @@ LayoutRect below_heading(const LayoutRect& rect, float heading) {
 }  // namespace
 
 Workbench::Workbench(std::vector<std::unique_ptr<Panel>> panels, WorkbenchHost host)
-    : panels_(std::move(panels)), host_(std::move(host)) {
+    : panels_(std::move(panels)), host_(std::move(host)), open_dialog_(host_.look) {
   set_layout(default_layout());
   add_actions();
 }
@@ -143,7 +143,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame.log = &log_;
   frame.busy = !opening_.empty() || (session != nullptr && session->busy);
   if (const auto before = std::exchange(before_frame_, {})) before();
-  const bool overlay = palette_.open || open_dialog_.open || hand_on_dialog_.open;
+  frame.offer = &offered_;
+  const bool overlay = palette_.open || open_dialog_.is_open() || hand_on_dialog_.open || save_dialog_.open;
   if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
 
   tell_notice();
@@ -169,6 +170,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_palette();
   draw_open_dialog();
   draw_hand_on_dialog();
+  draw_save_dialog();
   draw_exporting();
   look_ = frame.wanted_look;
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
@@ -177,6 +179,16 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
+  remember_layout();
+}
+
+void Workbench::remember_layout() {
+  constexpr std::size_t kKept = 50;
+  // A divider that is being dragged has not come to rest.
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left) || layout_seen_ == layout_) return;
+  if (layout_seen_) layouts_before_.push_back(std::move(*layout_seen_));
+  if (layouts_before_.size() > kKept) layouts_before_.erase(layouts_before_.begin());
+  layout_seen_ = layout_;
 }
 
 void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices) {

@@ -13,6 +13,7 @@
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"
+#include "ui/workbench/open_dialog.hpp"
 
 namespace stillpoint {
 
@@ -21,7 +22,9 @@ struct WorkbenchHost {
   std::function<void(int)> go_to_frame{};
   std::function<void(bool)> play{};
   std::function<void(double)> speed{};             ///< frames a second, while playing
-  std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND
+  std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND, as it was left
+  std::function<void(const OpenAs&)> open_as{};    ///< the same, read as it says
+  OpenDialog::Look look{};                         ///< what is in a place; called on threads of its own
   /// The sequence that is open, anew from its files; with a switch in place of how it was read, unless empty.
   std::function<void(const std::string& with)> reopen{};
   std::function<void(SessionRequest)> request{};  ///< what panels ask of the session
@@ -127,11 +130,13 @@ class Workbench {
                                   const char* button);
   void draw_open_dialog();
   void draw_hand_on_dialog();
+  void draw_save_dialog();
   void draw_exporting();
   void draw_start_page(const LayoutRect& area);
   void draw_opening();
   void draw_error();
   void follow_session();
+  void remember_layout();
   void carry_out(const PanelActions& wanted);
   bool action_button(const char* name);
 
@@ -139,6 +144,8 @@ class Workbench {
   WorkbenchHost host_;
   Actions actions_;
   LayoutNode layout_ = default_layout();
+  std::optional<LayoutNode> layout_seen_;   // when nobody was changing it last
+  std::vector<LayoutNode> layouts_before_;  // what it was, the last at the end
   LayoutRect tiles_area_{};
   std::string maximised_, hovered_panel_;
   std::string message_;
@@ -151,7 +158,9 @@ class Workbench {
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
   Palette palette_;
-  PathDialog open_dialog_, hand_on_dialog_;
+  OpenDialog open_dialog_;
+  PathDialog hand_on_dialog_, save_dialog_;
+  std::optional<FileOffer> offered_, saving_;  // by what is drawn; what the save dialog is for
   bool shortcuts_open_ = false;
   double speed_ = 30.0;  // frames a second
 

@@ -20,7 +20,7 @@ void Workbench::add_actions() {
                 .icon = icons::kFolderOpen,
                 .keys = {{Key::kO, kCtrl}},
                 .enabled = [this] { return static_cast<bool>(host_.open); },
-                .run = [this] { open_dialog_ = {.open = true, .opened_now = true}; }});
+                .run = [this] { open_dialog_.open(recent_.empty() ? "" : recent_.front(), ""); }});
   actions_.add({.name = "open_demo",
                 .title = "Open the generated demo",
                 .group = "File",

@@ -219,5 +219,51 @@ TEST_F(SessionDebug, TheWorkerDoesTheSame) {
       [](const SessionView& v) { return v.debug.preview && v.debug.preview_config->features.count == 310; }));
 }
 
+TEST_F(SessionDebug, ChangesOfMarksAreTakenBackAndMadeAgain) {
+  const auto s = session();
+  s->request(request::Bookmarks{{{3, "here"}}});
+  s->request(request::Pins{{{3, 10.0, 20.0, "A"}}});
+  s->request(request::Breakpoints{{{"lost", true}}});
+  s->request(request::Span{FrameSpan{2, 5}, true});
+  s->request(request::Drawn{{{4, {}}}});
+  EXPECT_EQ(debug(*s).undo_steps, 5);
+  s->request(request::GoTo{6});  // going about changes no marks
+  EXPECT_EQ(debug(*s).undo_steps, 5);
+  s->request(request::Undo{});
+  EXPECT_TRUE(debug(*s).drawn.empty());
+  s->request(request::Undo{});
+  EXPECT_FALSE(debug(*s).span);
+  EXPECT_FALSE(debug(*s).loop);
+  s->request(request::Undo{});
+  EXPECT_TRUE(debug(*s).breakpoints.empty());
+  EXPECT_EQ(debug(*s).pins.size(), 1U);
+  EXPECT_EQ(debug(*s).redo_steps, 3);
+  s->request(request::Redo{});
+  ASSERT_EQ(debug(*s).breakpoints.size(), 1U);
+  EXPECT_EQ(debug(*s).breakpoints[0].breakpoint.expression, "lost");
+  // Another change ends what could be made again.
+  s->request(request::Bookmarks{});
+  EXPECT_EQ(debug(*s).redo_steps, 0);
+  s->request(request::Redo{});
+  EXPECT_TRUE(debug(*s).bookmarks.empty());
+  s->request(request::Undo{});
+  EXPECT_EQ(debug(*s).bookmarks, (std::vector<Bookmark>{{3, "here"}}));
+  for (int i = 0; i < 9; ++i) s->request(request::Undo{});
+  EXPECT_EQ(debug(*s).undo_steps, 0);
+  EXPECT_TRUE(debug(*s).bookmarks.empty());
+  EXPECT_TRUE(debug(*s).pins.empty());
+}
+
+TEST_F(SessionDebug, WhatIsTypedIsOneChange) {
+  StartedSession s(session());
+  for (const char* note : {"h", "he", "her", "here"}) s->request(request::Bookmarks{{{3, note}}});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.debug.bookmarks == std::vector<Bookmark>{{3, "here"}};
+  }));
+  EXPECT_EQ(s->view()->debug.undo_steps, 1);
+  s->request(request::Undo{});
+  EXPECT_TRUE(s.wait_for([](const SessionView& view) { return view.debug.bookmarks.empty(); }));
+}
+
 }  // namespace
 }  // namespace stillpoint

@@ -102,6 +102,60 @@ TEST_F(SessionDebug, AnotherMethodsStagesAreLaidBesideTheRuns) {
   EXPECT_THAT(s->view()->message, ::testing::HasSubstr("there is no method 'magic'"));
 }
 
+TEST_F(SessionDebug, ASweepRunsEachValueBesideTheSession) {
+  StartedSession s(session());
+  s->request(request::Sweep{config_, {"features.count", 200, 400, 3}, 6});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.debug.sweep && !view.debug.sweep->busy && view.debug.sweep->points.size() == 3;
+  }));
+  const SweepView sweep = *s->view()->debug.sweep;
+  EXPECT_THAT(sweep.values, ::testing::ElementsAre(200, 300, 400));
+  EXPECT_EQ(sweep.problem, "");
+  EXPECT_EQ(sweep.points[2].value, 400);
+  // What is reached at the session's own value is the session's own run.
+  EXPECT_EQ(sweep.points[2].reached.hash, run_hash(batch(config_, 6).records));
+  s->request(request::Sweep{config_, {"run.method", 0, 1, 3}, 6});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.message.find("run.method is no number") != std::string::npos;
+  }));
+  EXPECT_EQ(s->view()->debug.sweep->points.size(), 3U);
+  // One that goes on ends with the session, or when it is asked to.
+  s->request(request::Sweep{config_, {"features.count", 200, 1200, 50}, 0});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return view.debug.sweep && view.debug.sweep->busy; }));
+  s->request(request::StopSweep{});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return !view.debug.sweep->busy; }));
+  EXPECT_LT(s->view()->debug.sweep->points.size(), 50U);
+}
+
+TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
+  const auto s = session();
+  EXPECT_EQ(debug(*s).other, nullptr);  // nothing lies before the first
+  s->request(request::GoTo{5});
+  ASSERT_NE(debug(*s).other, nullptr);
+  EXPECT_EQ(debug(*s).other->index, 4);
+  ASSERT_NE(debug(*s).other->record, nullptr);
+  EXPECT_EQ(run_hash({*debug(*s).other->record}), run_hash({s->record(4)}));
+  EXPECT_TRUE(debug(*s).other->frame.readable());
+  s->request(request::StandBeside{OtherFrame::kept, 2});
+  ASSERT_NE(debug(*s).other, nullptr);
+  EXPECT_EQ(debug(*s).other->index, 2);
+  s->request(request::GoTo{9});
+  EXPECT_EQ(debug(*s).other->index, 2);
+  s->request(request::GoTo{2});
+  EXPECT_EQ(debug(*s).other, nullptr);  // it is the one shown itself
+  s->request(request::GoTo{9});
+  s->request(request::StandBeside{OtherFrame::keyframe});
+  const int reference = s->view()->current->record->reference_keyframe;
+  ASSERT_NE(debug(*s).other, nullptr);
+  const auto keyframes = s->view()->keyframes;
+  const auto keyframe = std::find_if(keyframes.begin(), keyframes.end(),
+                                     [reference](const SavedKeyframe& one) { return one.id == reference; });
+  ASSERT_NE(keyframe, keyframes.end());
+  EXPECT_EQ(debug(*s).other->index, keyframe->frame_index);
+  s->request(request::StandBeside{OtherFrame::kept});  // what was kept is kept
+  EXPECT_EQ(debug(*s).other->index, 2);
+}
+
 TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   config_.run.method = "stillpoint";
   config_.of<StillpointConfig>().moving_log_odds = -3.9;  // all moves: what is left is too little

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/run/ablation.hpp"
+#include "core/run/run_sequence.hpp"
+
+namespace stillpoint {
+
+// What one parameter does to a run: the same frames, once for each of several of its values.
+
+/// A numeric parameter and the values it is given.
+struct SweepRange {
+  std::string parameter;  ///< `section.name`
+  double low = 0.0, high = 0.0;
+  int steps = 7;  ///< values from low to high, both among them
+  bool operator==(const SweepRange&) const = default;
+};
+
+/// "section.name=LOW:HIGH:STEPS", or without STEPS.
+/// @throws InputError for a text that is none
+[[nodiscard]] SweepRange sweep_range(const std::string& text);
+
+/// The parameter's whole range, around its value in `config` where that is wide: a quarter to four times it.
+/// @throws InputError for a parameter that there is not or that is no number
+[[nodiscard]] SweepRange usual_sweep(const Config& config, const std::string& parameter);
+
+/// The values, ascending, each once: evenly spaced, or by even factors where the range spans more than a
+/// factor of 20; whole numbers for a parameter of whole numbers; on and off for one that is on or off.
+/// @throws InputError for a parameter that there is not or is no number, and for values beyond its range
+[[nodiscard]] std::vector<double> sweep_values(const Config& config, const SweepRange& range);
+
+/// `config` with the parameter at a value.
+[[nodiscard]] Config swept(const Config& config, const std::string& parameter, double value);
+
+/// What a run reached at one value.
+struct SweepPoint {
+  double value = 0.0;
+  AblationCell reached;
+};
+
+/// Runs the first `frames` frames (0 = all) at one value.
+/// @param stop asked for while it runs: nothing is returned, for half a run is none to compare with
+[[nodiscard]] std::optional<SweepPoint> sweep_point(
+    const FrameSource& source, const Config& config, const std::string& parameter, double value, int frames,
+    const std::atomic<bool>* stop, const std::function<void(const FrameResult&)>& on_frame = {});
+
+/// The value of least RPE over 1 s among those that kept as many frames as any; nothing where none has one.
+[[nodiscard]] std::optional<std::size_t> best_of(const std::vector<SweepPoint>& points);
+
+/// A row a value: RPE over 1 s, IoU, frames with a pose, median time.
+[[nodiscard]] Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points);
+[[nodiscard]] nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange& range,
+                                                const std::vector<SweepPoint>& points);
+
+}  // namespace stillpoint

@@ -1,0 +1,159 @@
+#include "ui/plot/plot_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/error.hpp"
+#include "tests/ui/session_example.hpp"
+#include "tests/unit/temporary_folder.hpp"
+#include "ui/shell/offscreen.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr Rgb kRed{200, 0, 0}, kGreen{0, 130, 0}, kBlue{0, 0, 200};
+
+/// Three flat curves at a quarter, a half and three quarters of an axis from 0 to 10, one with a gap.
+class PlotFile : public ::testing::Test {
+ protected:
+  PlotFile() {
+    high_.assign(11, 7.5), half_.assign(11, 5.0), low_.assign(11, 2.5);
+    half_[4] = half_[5] = half_[6] = std::numeric_limits<double>::quiet_NaN();
+    for (int i = 0; i <= 10; ++i) x_.push_back(i);
+    plot_ = {.x_label = "time", .x_unit = "s", .y_label = "RPE", .y_unit = "mm"};
+    plot_.series = {{"run, \"mine\"", x_, high_, kRed},
+                    {"baseline", x_, half_, kGreen, SeriesStyle::kDashed},
+                    {"ghost", x_, low_, kBlue}};
+    view_.y = AxisRange{0.0, 10.0};
+  }
+  std::string written(const std::string& name) {
+    write_plot(PlotFigure(plot_, view_), folder_.path(name));
+    return folder_.read(name);
+  }
+
+  TemporaryFolder folder_;
+  std::vector<double> x_, high_, half_, low_;
+  Plot plot_;
+  PlotView view_;
+};
+
+/// Rows in which a column has a colour: the middle one, nothing where there is none.
+std::optional<double> row_of(const cv::Mat& image, int column, Rgb colour, int from, int to) {
+  double sum = 0.0;
+  int count = 0;
+  for (int row = from; row < to; ++row) {
+    const cv::Vec3b seen = image.at<cv::Vec3b>(row, column);
+    if (std::abs(seen[2] - colour.r) + std::abs(seen[1] - colour.g) + std::abs(seen[0] - colour.b) > 60)
+      continue;
+    sum += row, ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+TEST_F(PlotFile, HasCurvesWhereTheirValuesAre) {
+  const std::string bytes = written("plot.png");
+  const cv::Mat image = cv::imread(folder_.path("plot.png"), cv::IMREAD_COLOR);
+  ASSERT_FALSE(image.empty());
+  EXPECT_EQ(image.size(), cv::Size(1380, 780));
+  // Below the legend, in a column at a third of the axis: one in which dashes leave nothing out is found.
+  const int from = 120, to = image.rows - 90;
+  std::optional<double> high, half, low;
+  for (int column = 400; column < 430 && !half; ++column) {
+    high = row_of(image, column, kRed, from, to), half = row_of(image, column, kGreen, from, to);
+    low = row_of(image, column, kBlue, from, to);
+  }
+  ASSERT_TRUE(high && half && low);
+  EXPECT_LT(*high, *half);
+  EXPECT_NEAR(*half - *high, *low - *half, 2.0);
+  EXPECT_GT(*half - *high, 100.0);  // a quarter of the axis
+  // Nothing is drawn where nothing is known.
+  for (int column = 680; column < 760; ++column)
+    EXPECT_FALSE(row_of(image, column, kGreen, from, to)) << column;
+}
+
+TEST_F(PlotFile, IsTheSameFileTwice) {
+  for (const char* name : {"plot.svg", "plot.pdf", "plot.png", "plot.csv"}) {
+    const std::string once = written(name);
+    EXPECT_GT(once.size(), 200U) << name;
+    EXPECT_TRUE(written(name) == once) << name;
+  }
+  EXPECT_THAT(folder_.read("plot.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(folder_.read("plot.pdf"), StartsWith("%PDF-"));
+  EXPECT_THAT(folder_.read("plot.pdf"), HasSubstr("%%EOF"));
+}
+
+TEST_F(PlotFile, ValuesAreARowEach) {
+  const std::string text = written("plot.CSV");
+  EXPECT_THAT(text, StartsWith("series,time (s),RPE (mm)\n\"run, \"\"mine\"\"\",0,7.5\n"));
+  EXPECT_THAT(text, HasSubstr("\nbaseline,3,5\nbaseline,4,\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 3 * 11);
+}
+
+TEST_F(PlotFile, OutlivesWhatItWasMadeOf) {
+  const PlotFigure figure(plot_, view_);
+  const std::string before = plot_values(figure);
+  high_.assign(11, 1.0);
+  x_.assign(11, 0.0);
+  EXPECT_EQ(plot_values(figure), before);
+}
+
+TEST_F(PlotFile, RefusesOtherEndingsAndPlacesThatAreNone) {
+  EXPECT_THAT([&] { written("plot.bmp"); }, ::testing::ThrowsMessage<InputError>(HasSubstr(kPlotEndings)));
+  EXPECT_THROW(written("plot"), InputError);
+  EXPECT_THROW(written("nowhere/plot.svg"), InputError);
+  plot_.series.clear();
+  EXPECT_GT(written("empty.svg").size(), 200U);  // axes without a curve
+}
+
+TEST_F(PlotFile, IsOfferedByARightClick) {
+  Offscreen offscreen({.width = 900, .height = 700});
+  Workbench workbench(make_panels());
+  SessionView session = handmade_example();
+  LayoutNode only, root;
+  only.panel = "errors";
+  root.children.push_back(only);
+  workbench.set_layout(root);
+  const auto draw = [&] {
+    for (int i = 0; i < 3; ++i) offscreen.draw([&](UiFrame& frame) { workbench.draw(frame, &session); });
+  };
+  const auto click = [&](float x, float y, int button) {
+    offscreen.send(MouseMoved{x, y});
+    draw();
+    for (const bool down : {true, false}) {
+      offscreen.send(MouseButton{button, down, {}});
+      draw();
+    }
+  };
+  draw();
+  const auto tile = workbench.tile_of("errors");
+  ASSERT_TRUE(tile);
+  const float x = tile->x + 0.5F * tile->width, y = tile->y + 0.4F * tile->height;
+  click(x, y, 1);
+  click(x + 30.0F, y + 20.0F, 0);  // the first of the menu
+  // The path proposed is replaced by one of the test's.
+  const std::string path = folder_.path("mine.svg");
+  offscreen.send(KeyChanged{Key::kA, true, {.ctrl = true}});
+  draw();
+  offscreen.send(KeyChanged{Key::kA, false, {}});
+  draw();
+  for (const char c : path) offscreen.send(TextTyped{static_cast<unsigned>(c)});
+  draw();
+  for (const bool down : {true, false}) {
+    offscreen.send(KeyChanged{Key::kEnter, down, {}});
+    draw();
+  }
+  EXPECT_EQ(workbench.fact("message", &session).value_or(""), "written to " + path);
+  EXPECT_THAT(folder_.read("mine.svg"), HasSubstr("<svg"));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
