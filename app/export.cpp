@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/export_dense.hpp"
+#include "app/export_map.hpp"
 #include "app/export_mcap.hpp"
 #include "app/progress.hpp"
+#include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/run/condition.hpp"
 #include "core/sequence/excerpt.hpp"
@@ -45,14 +48,19 @@ void add_export_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("export",
                                          "Some frames of a sequence as a small TUM RGB-D folder that shows "
                                          "the same problem; or a finished run as "
-                                         "an MCAP file, a dense map, or the room without people");
+                                         "an MCAP file, its map, a dense map, or the room without people");
   command->add_option("SEQUENCE", arguments->sequence, kSequenceOrRunHelp)->required();
   command
       ->add_option("--frames", arguments->frames,
                    "Frames to write: 10:40 (40 not among them), -1 is the last; with commas between")
       ->capture_default_str();
   auto* out = command->add_option("--out", arguments->out, "Folder for the sequence; made if missing");
-  command->add_option("--to", arguments->to, "A finished run goes to this .mcap file")->excludes(out);
+  command
+      ->add_option(
+          "--to", arguments->to,
+          "A finished run goes to this .mcap file, or its map to this .ply file, and its keyframes to "
+          "NAME_keyframes.ply beside it")
+      ->excludes(out);
   command
       ->add_option(
           "--layers", arguments->layers,
@@ -67,14 +75,26 @@ void add_export_command(CLI::App& app) {
   command->add_option("--voxel", arguments->dense.options.voxel_m, "Of the dense map [m]")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
-  command->add_option("--every", arguments->dense.every, "Every so many frames are fused")
+  command
+      ->add_option("--every", arguments->dense.every,
+                   "Every so many frames are fused, or looked at for normals")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--sequence", arguments->sequence_now, "Where the run's sequence lies now");
   command->add_flag("--force", arguments->force, "Replace a sequence in that folder, or the file");
   arguments->source.add_to(*command, "--length");
   command->callback([arguments] {
-    if (!arguments->to.empty())
+    const std::string ending = std::filesystem::path(arguments->to).extension().string();
+    const bool map = ending == ".ply";
+    if (!arguments->to.empty() && !map && ending != ".mcap")
+      throw InputError(
+          fmt::format("{}: expected a name that ends in .mcap, or in .ply for its map", arguments->to));
+    if (map && !arguments->layers.empty())
+      throw InputError("--layers: go into an .mcap file, not into a .ply file");
+    if (map)
+      export_map({arguments->sequence, arguments->sequence_now, arguments->to, arguments->dense.every,
+                  arguments->force});
+    else if (!arguments->to.empty())
       export_mcap(arguments->sequence, arguments->sequence_now, arguments->to, arguments->force,
                   arguments->layers);
     DenseExport& dense = arguments->dense;

@@ -50,6 +50,12 @@ class Painter {
     return panels_chosen_.size() + (workbench_chosen_ ? 1 : 0);
   }
 
+  /// Of the first of them, px.
+  [[nodiscard]] cv::Size picture_size() const {
+    const auto [width, height] = workbench_chosen_ ? options_.workbench_size : options_.panel_size;
+    return {width, height};
+  }
+
   /// Each picture chosen, of the frame shown.
   [[nodiscard]] std::vector<Picture> paint(const SessionView& view);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "app/video_file.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/median.hpp"
 #include "core/motion/methods.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
@@ -26,8 +28,8 @@ namespace fs = std::filesystem;
 struct SnapshotArguments {
   SourceArguments place;
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
-  double scale = 1.0, fps = 30.0;
-  std::string beside;  ///< method whose stages are laid beside the run's; empty = none
+  double scale = 1.0, fps = 0.0;  ///< fps: 0 = frames' own times
+  std::string beside;             ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
 
@@ -46,21 +48,23 @@ PainterOptions painter_options(const SnapshotArguments& arguments, const std::st
 /// Where images go: files one by one, a video, or both.
 class Pictures {
  public:
-  Pictures(const SnapshotArguments& arguments, const Painter& painter) : folder_(arguments.out) {
+  /// @param step_s s between frames, mostly
+  Pictures(const SnapshotArguments& arguments, const Painter& painter, double step_s)
+      : folder_(arguments.out) {
     if (arguments.out.empty() && arguments.video.empty())
       throw InputError("--out or --video must say where the images go");
     if (!arguments.video.empty()) {
       if (painter.picture_count() != 1)
         throw InputError(fmt::format("--video takes one picture of each frame, and --panels names {}",
                                      painter.picture_count()));
-      video_.emplace(arguments.video, arguments.fps, arguments.force);
+      video_.emplace(arguments.video, painter.picture_size(), arguments.fps, step_s, arguments.force);
     }
     if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
 
   void add(const SessionView& view, const std::vector<Painter::Picture>& pictures) {
     for (const auto& [name, image] : pictures) {
-      if (video_) video_->add(image);
+      if (video_) video_->add(image, view.current->frame.timestamp);
       if (folder_.empty()) continue;
       writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
       ++files_;
@@ -94,6 +98,14 @@ class Pictures {
   ImageWriter writer_;
 };
 
+/// The median time between two frames, s.
+double usual_step(const FrameSource& source) {
+  std::vector<double> steps;
+  for (int i = 1; i < source.size(); ++i) steps.push_back(source.timestamp(i) - source.timestamp(i - 1));
+  constexpr double kOfOneFrame = 1.0 / 30.0;
+  return steps.empty() ? kOfOneFrame : std::clamp(median_of(steps), 1.0 / 240.0, 10.0);
+}
+
 std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
   if (arguments.when.empty()) return std::nullopt;
   try {
@@ -122,7 +134,7 @@ void snapshot(const SnapshotArguments& arguments) {
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
   Painter painter(painter_options(arguments, method, place.source->camera().is_stereo()));
-  Pictures pictures(arguments, painter);
+  Pictures pictures(arguments, painter, usual_step(*place.source));
 
   place.options.keep_times = arguments.timings || finished_run;
   place.options.baseline = !arguments.no_baseline;
@@ -182,9 +194,10 @@ void add_snapshot_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing");
   command->add_option("--video", arguments->video,
                       "A video of the frames, .mp4, .mkv or .avi: of the workbench, or of the panel named");
-  command->add_option("--fps", arguments->fps, "Frames a second of the video")
-      ->check(CLI::Range(0.1, 240.0))
-      ->capture_default_str();
+  command
+      ->add_option("--fps", arguments->fps,
+                   "Frames a second of the video; otherwise each is shown at its own time (.mp4, .mkv)")
+      ->check(CLI::Range(0.1, 240.0));
   const PainterOptions sizes;
   command->add_option("--size", arguments->size,
                       fmt::format("Of an image, px; otherwise {}x{} for the workbench and {}x{} for a panel",

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/media/image_codec.hpp"
 
 namespace stillpoint {
@@ -110,12 +112,27 @@ std::string table_html(const std::vector<std::string>& header,
   return html + "</tbody></table></div>\n";
 }
 
-std::string page_html(std::string_view title, std::string_view body) {
+std::string script_json(const nlohmann::ordered_json& json) {
+  using Errors = nlohmann::ordered_json::error_handler_t;
+  const std::string text = json.dump(-1, ' ', true, Errors::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  // `<` is part of texts alone in JSON, and begins whatever a browser might take for markup.
+  for (const char letter : text) {
+    if (letter == '<')
+      safe += "\\u003c";
+    else
+      safe += letter;
+  }
+  return safe;
+}
+
+std::string page_html(std::string_view title, std::string_view body, std::string_view style) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}</title><style>{}</style></head>\n<body>\n{}</body></html>\n",
-      escaped(title), kStyle, body);
+      "<title>{}</title><style>{}{}</style></head>\n<body>\n{}</body></html>\n",
+      escaped(title), kStyle, style, body);
 }
 
 }  // namespace stillpoint

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
@@ -7,7 +8,7 @@
 
 namespace stillpoint {
 
-// Pieces of a page that needs nothing but itself: no scripts, no links, pictures within.
+// Pieces of a page that needs nothing but itself: no links, pictures within.
 
 /// Text fit to stand in HTML, in an attribute too.
 [[nodiscard]] std::string escaped(std::string_view text);
@@ -35,7 +36,11 @@ struct HtmlCell {
 [[nodiscard]] std::string table_html(const std::vector<std::string>& header,
                                      const std::vector<std::vector<HtmlCell>>& rows);
 
-/// The whole page about `body`.
-[[nodiscard]] std::string page_html(std::string_view title, std::string_view body);
+/// JSON fit to stand in a script element: no text in it, of whatever bytes, ends that.
+[[nodiscard]] std::string script_json(const nlohmann::ordered_json& json);
+
+/// The whole page about `body`. @param style after the page's own
+[[nodiscard]] std::string page_html(std::string_view title, std::string_view body,
+                                    std::string_view style = {});
 
 }  // namespace stillpoint

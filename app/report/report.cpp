@@ -6,8 +6,12 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/layered_frames.hpp"
 #include "app/progress.hpp"
 #include "app/report/html.hpp"
+#include "app/report/live_data.hpp"
+#include "app/report/live_page.hpp"
+#include "app/report/live_pictures.hpp"
 #include "app/report/report_pictures.hpp"
 #include "app/report/report_run.hpp"
 #include "app/report/report_sections.hpp"
@@ -23,7 +27,8 @@ struct ReportArguments {
   std::vector<std::string> runs;
   std::string out;
   int worst = 3;
-  bool force = false;
+  bool force = false, interactive = false;
+  LivePictureOptions pictures;
 };
 
 std::string title_of(const std::vector<ReportGroup>& groups) {
@@ -45,6 +50,19 @@ void check_out(const ReportArguments& arguments) {
     throw InputError(fmt::format("--out {}: there is no folder {}", arguments.out, folder.string()));
 }
 
+/// The room for pictures is shared by the sequences.
+std::vector<LivePictures> pictures_of(const std::vector<ReportGroup>& groups,
+                                      const ReportArguments& arguments, const ReportProgress& progress) {
+  std::vector<LivePictures> pictures;
+  std::set<std::string> found;
+  const auto room =
+      static_cast<std::size_t>(arguments.pictures.most_mb * 1e6 / static_cast<double>(groups.size()));
+  for (const ReportGroup& group : groups)
+    pictures.push_back(live_pictures(group, arguments.pictures, room, arguments.worst, found, progress));
+  check_layers(arguments.pictures.layers, found);
+  return pictures;
+}
+
 void report(const ReportArguments& arguments) {
   check_out(arguments);
   const std::vector<ReportGroup> groups = open_report_runs(arguments.runs);
@@ -57,24 +75,37 @@ void report(const ReportArguments& arguments) {
     }
     throw_if_interrupted();
   };
-  std::string body = introduction(groups);
+  std::string body = introduction(groups), scripts, told;
+  if (arguments.interactive) {
+    std::vector<LivePictures> pictures = pictures_of(groups, arguments, progress);
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      told += (groups.size() > 1 ? groups[i].sequence + ": " : "") + pictures_text(pictures[i]) + "\n";
+    body += live_markup();
+    scripts = live_scripts(live_data(groups, pictures));
+  }
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const ReportGroup& group = groups[i];
     body += fmt::format("<h2 id=\"sequence{}\">{}</h2>\n", i + 1, escaped(group.sequence));
     body += summary_table(group);
-    progress(group.sequence + ": errors and trajectories");
-    body += "<h3>Error over time</h3>\n" + error_plots(painter, group);
-    body += "<h3>Trajectories</h3>\n" + trajectories(painter, group);
+    if (!arguments.interactive) {
+      progress(group.sequence + ": errors and trajectories");
+      body += "<h3>Error over time</h3>\n" + error_plots(painter, group);
+      body += "<h3>Trajectories</h3>\n" + trajectories(painter, group);
+    }
     body += "<h3>Stage timings</h3>\n" + stage_timings(group);
-    for (const ReportRun& run : group.runs)
-      body += worst_frame_panels(painter, group, run, arguments.worst, progress);
+    for (std::size_t run = 0; run < group.runs.size(); ++run) {
+      const std::string link =
+          arguments.interactive ? fmt::format("#frame={{}}&run={}&sequence={}", run + 1, i + 1) : "";
+      body += worst_frame_panels(painter, group, group.runs[run], arguments.worst, link, progress);
+    }
   }
-  body += configurations(groups);
+  body += configurations(groups) + scripts;
   if (terminal) std::fputs("\r\033[K", stderr);
-  const std::string page = page_html(title_of(groups), body);
+  const std::string page =
+      page_html(title_of(groups), body, arguments.interactive ? live_style() : std::string());
   write_text_file(arguments.out, page);
-  fmt::print("{} runs, {:.1f} MB, written to {}\n", arguments.runs.size(),
-             static_cast<double>(page.size()) / 1e6, arguments.out);
+  fmt::print("{} runs, {:.1f} MB, written to {}\n{}", arguments.runs.size(),
+             static_cast<double>(page.size()) / 1e6, arguments.out, told);
 }
 
 }  // namespace
@@ -89,6 +120,29 @@ void add_report_command(CLI::App& app) {
   command->add_option("--worst", arguments->worst, "How many of each run's worst frames to show")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
+  CLI::Option* interactive = command->add_flag("--interactive", arguments->interactive,
+                                               "A page to go about in: trajectories to turn, plots, frames "
+                                               "and table with one cursor; needs a browser's "
+                                               "scripts, but no network");
+  command
+      ->add_option("--picture-width", arguments->pictures.width,
+                   "Its pictures are made no wider than this [px]")
+      ->check(CLI::Range(32, 8192))
+      ->capture_default_str()
+      ->needs(interactive);
+  command
+      ->add_option("--picture-mb", arguments->pictures.most_mb,
+                   "Room for its pictures [MB]; where all frames need more, some are left out")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str()
+      ->needs(interactive);
+  command
+      ->add_option(
+          "--layers", arguments->pictures.layers,
+          "Ids of stages' layers to lay over its pictures, with commas between: difference,forward_mask")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(interactive);
   command->add_flag("--force", arguments->force, "Overwrite an earlier report");
   command->callback([arguments] { report(*arguments); });
 }

@@ -6,9 +6,7 @@
 #include <algorithm>
 
 #include "app/report/html.hpp"
-#include "core/run/worst_frames.hpp"
 #include "ui/panels/panel_kit.hpp"
-#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/session/session.hpp"
@@ -37,15 +35,6 @@ struct Curve {
   RunLook look;
 };
 
-/// How a run looks in every plot: as in the panels where its method has a role there, else as a ghost does.
-RunLook look_of_run(const ReportRun& run, std::size_t place) {
-  const ThemeName theme = ThemeName::kLight;
-  if (method_named(run.report.method).baseline)
-    return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
-  if (run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
-  return ghost_look(place, theme);
-}
-
 std::vector<Curve> error_curves(const ReportGroup& group, RelativePoseError TrajectoryEvaluation::*error) {
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < group.runs.size(); ++i) {
@@ -53,7 +42,8 @@ std::vector<Curve> error_curves(const ReportGroup& group, RelativePoseError Traj
     if (!run.report.evaluation) continue;
     const double start = run.result().records.front().timestamp;
     Series series = error_series((*run.report.evaluation).*error, start, false);
-    if (!series.x.empty()) curves.push_back({run.label, std::move(series), look_of_run(run, i)});
+    if (!series.x.empty())
+      curves.push_back({run.label, std::move(series), look_of_run(run, i, ThemeName::kLight)});
   }
   return curves;
 }
@@ -109,6 +99,20 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run,
 
 }  // namespace
 
+RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme) {
+  if (method_named(run.report.method).baseline)
+    return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
+  if (run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
+  return ghost_look(place, theme);
+}
+
+std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count) {
+  const RunResult& result = run.result();
+  const MeasuredFrames frames{result.records, run.report.evaluation ? &*run.report.evaluation : nullptr,
+                              &result.scores};
+  return worst_frames(frames, usual_figure(frames), kApart, static_cast<std::size_t>(count));
+}
+
 std::string error_plots(Painter& painter, const ReportGroup& group) {
   const auto over_second = error_curves(group, &TrajectoryEvaluation::rpe_time),
              over_frame = error_curves(group, &TrajectoryEvaluation::rpe_frame);
@@ -137,13 +141,8 @@ std::string trajectories(Painter& painter, const ReportGroup& group) {
 }
 
 std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const ReportRun& run, int count,
-                               const ReportProgress& progress) {
-  const std::vector<WorstFrame> worst = [&] {
-    const RunResult& result = run.result();
-    const MeasuredFrames frames{result.records, run.report.evaluation ? &*run.report.evaluation : nullptr,
-                                &result.scores};
-    return worst_frames(frames, usual_figure(frames), kApart, static_cast<std::size_t>(count));
-  }();
+                               const std::string& link, const ReportProgress& progress) {
+  const std::vector<WorstFrame> worst = worst_frames_of(run, count);
   if (worst.empty()) return {};
   const bool again = method_named(run.report.method).needs.keeps_state && run.opened.no_images.empty();
   const auto session = session_of(group, run, again);
@@ -154,8 +153,12 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
       progress(fmt::format("{} ({}): stages of frame {}", group.sequence, run.label, frame.index));
     });
     const auto view = session->view();
-    html += fmt::format("<p><strong>Frame {}</strong>, {:.2f} s: {}.</p>\n<div class=\"grid\">\n",
-                        frame.index, view->current->frame.timestamp - start, escaped(frame.why));
+    std::string name = fmt::format("<strong>Frame {}</strong>", frame.index);
+    if (!link.empty())
+      name =
+          fmt::format("<a href=\"{}\">{}</a>", escaped(fmt::format(fmt::runtime(link), frame.index)), name);
+    html += fmt::format("<p>{}, {:.2f} s: {}.</p>\n<div class=\"grid\">\n", name,
+                        view->current->frame.timestamp - start, escaped(frame.why));
     for (const auto& [panel, caption] : panels_of(run, *view->current))
       html += figure_html(painter.paint_panel(*view, panel, kFramePanel), caption, Packing::kSmall);
     html += "</div>\n";

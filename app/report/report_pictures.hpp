@@ -5,11 +5,20 @@
 
 #include "app/painter.hpp"
 #include "app/report/report_run.hpp"
+#include "core/run/worst_frames.hpp"
+#include "ui/panels/run_look.hpp"
 
 namespace stillpoint {
 
 /// What is told of each frame that is processed again for a picture: "walking_xyz (stillpoint)", its status.
 using ReportProgress = std::function<void(const std::string& what)>;
+
+/// How a run looks in every plot: as in the panels where its method has a role there, else as a ghost does.
+/// @param place among its group's runs
+[[nodiscard]] RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme);
+
+/// A run's frames to look at first, worst first, each a failure of its own.
+[[nodiscard]] std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count);
 
 // The parts of a report that are pictures: HTML with the pictures in it.
 
@@ -21,7 +30,9 @@ using ReportProgress = std::function<void(const std::string& what)>;
 
 /// The worst frames of a run with their panels. Frames of method `stillpoint` are processed again as far as
 /// the last of them, for the stages that records do not hold.
+/// @param link what a frame's name leads to, an address that `{}` has the frame's index in; empty = nothing
 [[nodiscard]] std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const ReportRun& run,
-                                             int count, const ReportProgress& progress);
+                                             int count, const std::string& link,
+                                             const ReportProgress& progress);
 
 }  // namespace stillpoint

@@ -7,20 +7,23 @@
 
 namespace stillpoint {
 
-// OpenCV's codecs of images and videos bring some 240 libraries along, which take longer to load than a frame
-// does to process. So they live in a module of their own, loaded when something is to be read or written that
-// image_codec.hpp cannot do alone.
+// Codecs of images and videos, OpenCV's and FFmpeg's, bring some 240 libraries along, which take longer to
+// load than a frame does to process. So they live in a module of their own, loaded when something is to be
+// read or written that image_codec.hpp cannot do alone.
 
-/// A video being written by OpenCV.
+/// A video being written: .mp4 and .mkv in H.264 (MPEG-4 where there is no encoder for it), tagged as BT.709
+/// of limited range; .avi in Motion JPEG. No frame waits for a later one (no B frames).
 class VideoSink {
  public:
   virtual ~VideoSink() = default;
-  /// @param codec four letters
+  /// @param path its ending names the container @param size px, even but for .avi
+  /// @param step_s s between images: all that .avi knows, elsewhere how long the last is shown
   /// @returns whether there is an encoder, and the file could be begun
-  virtual bool open(const std::string& path, const std::string& codec, double frames_per_second,
-                    const cv::Size& size) = 0;
-  virtual void write(const cv::Mat& image) = 0;  ///< CV_8UC3 BGR
-  virtual void close() = 0;
+  virtual bool open(const std::string& path, const cv::Size& size, double step_s) = 0;
+  /// @param image CV_8UC3 BGR @param seconds when it is shown, from 0, later than the one before
+  /// @returns whether it could be
+  virtual bool write(const cv::Mat& image, double seconds) = 0;
+  virtual bool close() = 0;
 };
 
 /// A video being read by OpenCV, a frame after another.
@@ -32,7 +35,7 @@ class VideoReader {
   virtual bool open(const std::string& path) = 0;
   /// Goes to the next frame. @returns false at the end, or where nothing more can be decoded
   virtual bool next() = 0;
-  /// When the frame that next() went to is shown, s, by the file's own stamp.
+  /// When the frame that next() went to is shown, s, by the file's own stamp; 0 where it has none.
   [[nodiscard]] virtual double seconds() const = 0;
   /// The frame that next() went to: CV_8UC3 BGR; empty where it cannot be had.
   virtual cv::Mat image() = 0;

@@ -3,24 +3,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "core/media/libav_video.hpp"
 #include "core/media/media_module.hpp"
 
 namespace stillpoint {
 namespace {
-
-class OpenCvVideo final : public VideoSink {
- public:
-  bool open(const std::string& path, const std::string& codec, double frames_per_second,
-            const cv::Size& size) override {
-    const int tag = cv::VideoWriter::fourcc(codec.at(0), codec.at(1), codec.at(2), codec.at(3));
-    return video_.open(path, cv::CAP_FFMPEG, tag, frames_per_second, size);
-  }
-  void write(const cv::Mat& image) override { video_.write(image); }
-  void close() override { video_.release(); }
-
- private:
-  cv::VideoWriter video_;
-};
 
 class OpenCvVideoReader final : public VideoReader {
  public:
@@ -30,7 +17,12 @@ class OpenCvVideoReader final : public VideoReader {
     return video_.open(path, cv::CAP_FFMPEG);
   }
   bool next() override { return video_.grab(); }
-  [[nodiscard]] double seconds() const override { return video_.get(cv::CAP_PROP_POS_MSEC) / 1000.0; }
+  [[nodiscard]] double seconds() const override {
+    // FFmpeg's mark of no stamp comes through as a number: of every frame of a Matroska file of a few frames.
+    constexpr double kNoStamp = -1e15;
+    const double ms = video_.get(cv::CAP_PROP_POS_MSEC);
+    return ms < kNoStamp ? 0.0 : ms / 1000.0;
+  }
   cv::Mat image() override {
     cv::Mat image;
     if (!video_.retrieve(image)) return {};
@@ -57,7 +49,7 @@ class OpenCvMedia final : public MediaModule {
     if (!cv::imencode(ending, image, bytes, options)) bytes.clear();
     return bytes;
   }
-  [[nodiscard]] std::unique_ptr<VideoSink> video() const override { return std::make_unique<OpenCvVideo>(); }
+  [[nodiscard]] std::unique_ptr<VideoSink> video() const override { return make_libav_video(); }
   [[nodiscard]] std::unique_ptr<VideoReader> video_reader() const override {
     return std::make_unique<OpenCvVideoReader>();
   }

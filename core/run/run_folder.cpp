@@ -10,6 +10,7 @@
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/frame_figures.hpp"
+#include "core/run/map_ply.hpp"
 
 namespace stillpoint {
 namespace {
@@ -52,24 +53,6 @@ std::string frames_csv(const RunResult& run, const RunReport& report) {
   return to_csv(table);
 }
 
-/// Map points in the colours they were seen in, keyframe centres in orange: any mesh viewer opens it.
-std::string map_ply(const RunResult& run) {
-  std::string text = fmt::format(
-      "ply\nformat ascii 1.0\ncomment world coordinates in metres: the first tracked frame's camera\n"
-      "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
-      run.points.size() + run.keyframes.size());
-  const auto vertex = [&text](const Eigen::Vector3d& p, const char* colour) {
-    text += fmt::format("{:.5f} {:.5f} {:.5f} {}\n", p.x(), p.y(), p.z(), colour);
-  };
-  for (const SavedPoint& point : run.points)
-    vertex(point.position,
-           fmt::format("{} {} {}", point.colour[2], point.colour[1], point.colour[0]).c_str());
-  for (const SavedKeyframe& keyframe : run.keyframes)
-    vertex(keyframe.pose.world_from_camera.translation(), "230 159 0");
-  return text;
-}
-
 }  // namespace
 
 void prepare_run_folder(const std::filesystem::path& folder, bool force) {
@@ -86,7 +69,8 @@ void write_run(const std::filesystem::path& folder, const RunResult& run, const 
   files.add(folder / "keyframes.txt", tum_text(keyframes));
   files.add(folder / "frames.csv", frames_csv(run, report));
   files.add(folder / "config.toml", to_toml(run.config));
-  files.add(folder / "map.ply", map_ply(run));
+  files.add(folder / "map.ply", map_ply(run.points, {}, run.keyframes));
+  files.add(folder / "keyframes.ply", keyframes_ply(run.keyframes, source.camera()));
   nlohmann::ordered_json summary = to_summary(report, run, source);
   summary["source"] = to_json(origin, folder);
   files.add(folder / kSummaryName,

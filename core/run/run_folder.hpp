@@ -24,7 +24,8 @@ inline constexpr const char* kSummaryName = "summary.json";
 ///   frames.csv           a row a frame: status, counts, residuals, stage times, errors where truth exists
 ///   summary.json         the figures of the whole run
 ///   config.toml          every parameter
-///   map.ply              map points and keyframe centres
+///   map.ply              map points in their colours, and keyframe centres
+///   keyframes.ply        keyframes as pyramids
 /// records.bin (records_file.hpp) stands beside them, written while the run went on.
 /// @param origin goes into summary.json
 /// @param records of the run, whose frames it has; finished and kept here

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <regex>
 
+#include "tests/cli/base64_text.hpp"
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
 #include "tests/support/places.hpp"
@@ -16,23 +17,6 @@ namespace stillpoint {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::vector<unsigned char> from_base64(const std::string& text) {
-  static const std::string kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned char> bytes;
-  unsigned held = 0;
-  int bits = 0;
-  for (const char letter : text) {
-    const auto value = kLetters.find(letter);
-    if (value == std::string::npos) break;
-    held = (held << 6U) | static_cast<unsigned>(value);
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes.push_back(static_cast<unsigned char>((held >> static_cast<unsigned>(bits)) & 0xFFU));
-  }
-  return bytes;
-}
 
 /// How many pixels have a colour, to the rounding of packed pictures.
 int count_of(const cv::Mat& image, Rgb colour) {

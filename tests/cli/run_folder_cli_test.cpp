@@ -191,8 +191,9 @@ TEST(Video, HoldsAFrameForEachFrame) {
   const SmallSequence sequence(6);
   for (const char* ending : {"mp4", "mkv", "avi"}) {
     const std::string file = sequence.path(std::string("film.") + ending);
-    const CliResult made = run_cli({"snapshot", sequence.path(), "--frames", "1:5", "--panels", "input",
-                                    "--size", "401x301", "--fps", "5", "--video", file});
+    const CliResult made =
+        run_cli({"snapshot", sequence.path(), "--frames", "1:5", "--panels", "input", "--size",
+                 std::string(ending) == "avi" ? "401x301" : "402x302", "--fps", "5", "--video", file});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     cv::VideoCapture video(file, cv::CAP_FFMPEG);
     EXPECT_DOUBLE_EQ(video.get(cv::CAP_PROP_FPS), 5.0);
@@ -200,7 +201,7 @@ TEST(Video, HoldsAFrameForEachFrame) {
     int images = 0;
     while (video.read(image)) {
       ++images;
-      EXPECT_EQ(image.size(), cv::Size(402, 302));
+      EXPECT_EQ(image.size(), std::string(ending) == "avi" ? cv::Size(401, 301) : cv::Size(402, 302));
       cv::Scalar mean, deviation;
       cv::meanStdDev(image, mean, deviation);
       EXPECT_GT(deviation[0], 5.0);
@@ -215,8 +216,25 @@ TEST(Video, HoldsAFrameForEachFrame) {
   wrong({"--video", sequence.path("film.gif")}, "ends in .mp4, .mkv or .avi");
   wrong({"--video", sequence.path("film.mp4")}, "--force");
   wrong({"--video", sequence.path("no/film.mp4")}, "there is no folder");
+  wrong({"--video", sequence.path("odd.mp4"), "--panels", "input", "--size", "401x301"},
+        "H.264 takes even sides alone, and the pictures are 401x301; --size 402x302");
+  EXPECT_FALSE(fs::exists(sequence.path("odd.mp4")));
   wrong({"--video", sequence.path("two.mp4"), "--panels", "input,errors"}, "--panels names 2");
   wrong({}, "--out or --video");
+}
+
+TEST(Video, ShowsFramesAtTheirOwnTimes) {
+  const SmallSequence sequence(14);
+  const std::string file = sequence.path("film.mkv");
+  const CliResult made = run_cli({"snapshot", sequence.path(), "--frames", "1,2,5:14", "--panels", "input",
+                                  "--size", "402x302", "--video", file});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  cv::VideoCapture video(file, cv::CAP_FFMPEG);
+  for (const double frame : {1.0, 2.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0}) {
+    ASSERT_TRUE(video.grab());
+    EXPECT_NEAR(video.get(cv::CAP_PROP_POS_MSEC), (frame - 1.0) * 1000.0 / 30.0, 1.0) << frame;
+  }
+  EXPECT_FALSE(video.grab());
 }
 
 TEST(Figures, AreThePapersOfAnySequence) {

@@ -173,7 +173,7 @@ TEST(FullDisk, StandardOutput) {
 TEST(FullDisk, RunFolders) {
   const SmallSequence sequence(2);
   for (const char* file : {"trajectory.txt", "trajectory_live.txt", "keyframes.txt", "frames.csv",
-                           "config.toml", "map.ply", "summary.json", "records.bin"}) {
+                           "config.toml", "map.ply", "keyframes.ply", "summary.json", "records.bin"}) {
     const std::string out = sequence.path(std::string("out_") + file);
     std::filesystem::create_directory(out);
     std::filesystem::create_symlink("/dev/full", std::filesystem::path(out) / file);

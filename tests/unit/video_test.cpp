@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "core/media/media_module.hpp"
 #include "core/run/run_sequence.hpp"
@@ -34,11 +35,12 @@ cv::Mat numbered(int index) {
 }
 int number_of(const cv::Mat& gray) { return (cv::countNonZero(gray.row(60) > 120) + 2) / 4; }
 
+/// By OpenCV's writer: with B frames, as most videos are.
 void write_video(const std::string& path, const char* codec, int count = kVideoFrames) {
-  const auto video = media_module().video();
-  ASSERT_TRUE(video->open(path, codec, kRate, kSize)) << codec;
-  for (int i = 0; i < count; ++i) video->write(numbered(i));
-  video->close();
+  cv::VideoWriter video(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]),
+                        kRate, kSize);
+  ASSERT_TRUE(video.isOpened()) << codec;
+  for (int i = 0; i < count; ++i) video.write(numbered(i));
 }
 
 struct Kind {
@@ -170,9 +172,9 @@ TEST(Videos, RunWithoutDepth) {
   const TemporaryFolder folder;
   const auto scene = make_generated_sequence("walking_xyz", 4, 1);
   const auto video = media_module().video();
-  ASSERT_TRUE(video->open(folder.path("walk.avi"), "MJPG", 30.0, {640, 480}));
-  for (int i = 0; i < scene->size(); ++i) video->write(scene->read(i).colour);
-  video->close();
+  ASSERT_TRUE(video->open(folder.path("walk.avi"), {640, 480}, 1.0 / 30.0));
+  for (int i = 0; i < scene->size(); ++i) ASSERT_TRUE(video->write(scene->read(i).colour, i / 30.0));
+  ASSERT_TRUE(video->close());
   const auto source = open_sequence(folder.path("walk.avi"));
   ASSERT_EQ(source->size(), 4);
   EXPECT_EQ(source->camera().name, "ros_default");
@@ -182,6 +184,83 @@ TEST(Videos, RunWithoutDepth) {
   const RunResult run = run_sequence(*source, config);
   ASSERT_EQ(run.records.size(), 4U);
   EXPECT_GT(run.records[3].features_found, 100);
+}
+
+const std::array<double, 12> kUneven = {0.0,  0.04, 0.08, 0.5,  0.54, 1.2,
+                                        1.24, 1.28, 1.32, 1.36, 1.46, 1.5};  // s
+
+void write_own(const std::string& path, const cv::Size& size, const cv::Scalar& bgr) {
+  const auto video = media_module().video();
+  ASSERT_TRUE(video->open(path, size, 0.04)) << path;
+  for (const double seconds : kUneven) ASSERT_TRUE(video->write(cv::Mat(size, CV_8UC3, bgr), seconds));
+  ASSERT_TRUE(video->close());
+}
+
+TEST(WrittenVideos, AreTaggedAsTheyAreCoded) {
+  const TemporaryFolder folder;
+  const cv::Scalar red(0, 0, 255);
+  for (const char* name : {"red.mp4", "red.mkv"}) write_own(folder.path(name), kSize, red);
+  // ISO 14496-12, 12.1.5: primaries, transfer and matrix 1 (BT.709), and a byte whose first bit says full
+  // range.
+  const std::string mp4 = folder.read("red.mp4"), nclx("colrnclx\0\1\0\1\0\1\0", 15);
+  EXPECT_NE(mp4.find(nclx), std::string::npos);
+  // Matroska's Colour: matrix, transfer, primaries 1; range 1 (limited).
+  const std::string mkv = folder.read("red.mkv");
+  for (const char* element : {"\x55\xB1\x81\x01", "\x55\xBA\x81\x01", "\x55\xBB\x81\x01", "\x55\xB9\x81\x01"})
+    EXPECT_NE(mkv.find(element), std::string::npos) << mkv.find("\x55\xB0");
+  // Red is Y 63, Cb 102, Cr 240 by BT.709. OpenCV's reader hears no tags, and takes that by BT.601 for
+  // 1.164 (63 - 16) + 1.596 (240 - 128) = 233; coded by BT.601 it would read 254.
+  for (const char* name : {"red.mp4", "red.mkv"}) {
+    const auto reader = media_module().video_reader();
+    ASSERT_TRUE(reader->open(folder.path(name)) && reader->next());
+    const cv::Scalar read = cv::mean(reader->image());
+    EXPECT_NEAR(read[2], 233.0, 4.0) << name;
+    EXPECT_LT(read[1], 4.0) << name;
+  }
+  // JPEG has colours of its own, BT.601 at full range, and no tags.
+  write_own(folder.path("red.avi"), kSize, red);
+  const auto reader = media_module().video_reader();
+  ASSERT_TRUE(reader->open(folder.path("red.avi")) && reader->next());
+  EXPECT_NEAR(cv::mean(reader->image())[2], 254.0, 3.0);
+}
+
+TEST(WrittenVideos, HaveTheirFramesTimesAndTheSameBytes) {
+  const TemporaryFolder folder;
+  for (const char* name : {"own.mp4", "own.mkv", "own.avi"}) {
+    SCOPED_TRACE(name);
+    write_own(folder.path(name), kSize, cv::Scalar(90, 120, 60));
+    const auto source = open_sequence(folder.path(name));
+    ASSERT_EQ(source->size(), static_cast<int>(kUneven.size()));
+    const bool steady = std::string(name).ends_with("avi");
+    for (int i = 0; i < source->size(); ++i)
+      EXPECT_NEAR(source->timestamp(i) - source->timestamp(0),
+                  steady ? 0.04 * i : kUneven[static_cast<std::size_t>(i)], 1.1e-3);
+    const std::string bytes = folder.read(name);
+    std::filesystem::remove(folder.path(name));
+    write_own(folder.path(name), kSize, cv::Scalar(90, 120, 60));
+    EXPECT_TRUE(folder.read(name) == bytes);
+  }
+}
+
+TEST(WrittenVideos, OfAFewFramesHaveStampsToo) {
+  // OpenCV gives no frame of so short a Matroska file a stamp.
+  const TemporaryFolder folder;
+  const auto video = media_module().video();
+  ASSERT_TRUE(video->open(folder.path("short.mkv"), kSize, 0.04));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(video->write(numbered(i), 0.04 * i));
+  ASSERT_TRUE(video->close());
+  const auto source = open_sequence(folder.path("short.mkv"));
+  ASSERT_EQ(source->size(), 5);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(source->timestamp(i) - source->timestamp(0), 0.04 * i, 1.1e-3);
+}
+
+TEST(WrittenVideos, OfOddSizesKeepThemOrAreNotBegun) {
+  const TemporaryFolder folder;
+  write_own(folder.path("odd.avi"), {161, 121}, cv::Scalar(90, 120, 60));
+  const auto reader = media_module().video_reader();
+  ASSERT_TRUE(reader->open(folder.path("odd.avi")) && reader->next());
+  EXPECT_EQ(reader->image().size(), cv::Size(161, 121));
+  EXPECT_FALSE(media_module().video()->open(folder.path("odd.mp4"), {161, 121}, 0.04));
 }
 
 }  // namespace

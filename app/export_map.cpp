@@ -1,0 +1,63 @@
+#include "app/export_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/progress.hpp"
+#include "core/error.hpp"
+#include "core/export/map_export.hpp"
+#include "core/out_folder.hpp"
+#include "core/run/map_ply.hpp"
+#include "core/run/open_run.hpp"
+#include "core/sequence/association.hpp"
+
+namespace stillpoint {
+namespace {
+
+/// None where no depth image can be had.
+std::vector<Eigen::Vector3f> normals_of_map(const OpenedRun& opened, int every) {
+  const RunResult& run = opened.recorded->run;
+  if (!opened.no_images.empty() || !opened.source->has_depth()) return {};
+  PointNormals normals(opened.source->camera());
+  Progress progress("normals", static_cast<int>(run.records.size()));
+  for (const FrameRecord& record : run.records) {
+    progress.advance("");
+    throw_if_interrupted();
+    const auto pose = nearest_pose(run.trajectory, record.timestamp, kAssociationTolerance);
+    if (!record.estimated || !pose || (!record.keyframe && record.index % every != 0)) continue;
+    normals.add(opened.source->read(record.index), record, run.trajectory[*pose].world_from_camera);
+  }
+  return normals.of(run.points);
+}
+
+}  // namespace
+
+void export_map(const MapExport& wanted) {
+  const std::filesystem::path map = wanted.to, keyframes = std::filesystem::path(map).replace_filename(
+                                                   map.stem().string() + "_keyframes.ply");
+  const OpenedRun opened = open_run(wanted.run, wanted.sequence);
+  const RunResult& run = opened.recorded->run;
+  if (run.points.empty()) throw InputError(fmt::format("{}: the run left no map", wanted.run));
+  std::error_code none;
+  const std::filesystem::path folder = map.has_parent_path() ? map.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, none))
+    throw InputError(fmt::format("{}: there is no folder {}", map.string(), folder.string()));
+  for (const auto& file : {map, keyframes})
+    if (!wanted.force && std::filesystem::exists(file, none))
+      throw InputError(fmt::format("{}: is there already; --force replaces it", file.string()));
+  const std::vector<Eigen::Vector3f> normals = normals_of_map(opened, wanted.every);
+  WholeFiles files;
+  files.add(map, map_ply(run.points, normals, {}));
+  files.add(keyframes, keyframes_ply(run.keyframes, opened.source->camera()));
+  files.keep();
+  const auto known =
+      std::count_if(normals.begin(), normals.end(), [](const auto& n) { return !n.isZero(0.0F); });
+  fmt::print("{} points, {} of them with a normal, written to {}; {} keyframes to {}\n", run.points.size(),
+             known, map.string(), run.keyframes.size(), keyframes.string());
+  if (normals.empty())
+    fmt::print("no normals: {}\n", opened.no_images.empty() ? "the sequence has no depth" : opened.no_images);
+}
+
+}  // namespace stillpoint
