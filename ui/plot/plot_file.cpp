@@ -13,6 +13,7 @@
 #include <regex>
 
 #include "core/error.hpp"
+#include "core/evaluation/tables.hpp"
 #include "core/out_folder.hpp"
 #include "ui/theme/fonts.hpp"
 
@@ -285,13 +286,6 @@ std::string drawn(const PlotFigure& figure, const std::string& ending) {
                           : bytes;
 }
 
-std::string quoted(const std::string& words) {
-  if (words.find_first_of(",\"\n") == std::string::npos) return words;
-  std::string text = "\"";
-  for (const char c : words) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
 }  // namespace
 
 PlotFigure::PlotFigure(const Plot& plot, const PlotView& view) : plot_(plot), axes_(axes_of(plot, view)) {
@@ -306,13 +300,12 @@ PlotFigure::PlotFigure(const Plot& plot, const PlotView& view) : plot_(plot), ax
 
 std::string plot_values(const PlotFigure& figure) {
   const Plot& plot = figure.plot();
-  std::string text = fmt::format("series,{},{}\n", quoted(named(plot.x_label, plot.x_unit)),
-                                 quoted(named(plot.y_label, plot.y_unit)));
+  Table table{{"series", named(plot.x_label, plot.x_unit), named(plot.y_label, plot.y_unit)}, {}};
   for (const PlotSeries& series : plot.series)
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      text += fmt::format("{},{},{}\n", quoted(series.name), series.x[i],
-                          std::isfinite(series.y[i]) ? fmt::format("{}", series.y[i]) : std::string());
-  return text;
+      table.rows.push_back({series.name, fmt::format("{}", series.x[i]),
+                            std::isfinite(series.y[i]) ? fmt::format("{}", series.y[i]) : std::string()});
+  return to_csv(table);
 }
 
 void write_plot(const PlotFigure& figure, const std::string& path) {
