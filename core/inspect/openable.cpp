@@ -93,7 +93,7 @@ std::vector<OpenPlace> places_in(const fs::path& folder) {
   for (auto it = fs::directory_iterator(folder, problem); !problem && it != fs::directory_iterator();
        it.increment(problem)) {
     const std::string name = it->path().filename().string();
-    if (name.starts_with('.')) continue;
+    if (name.starts_with('.') || is_image_name(name)) continue;  // of frames there may be very many
     if (const auto kind = kind_of_place(it->path())) places.push_back({name, *kind});
   }
   if (problem) throw InputError(fmt::format("{}: cannot be read ({})", folder.string(), problem.message()));

@@ -56,14 +56,11 @@ void find_background(const std::vector<int>& label, const SceneFlowNoise& noise,
     if (own.empty()) continue;
     const RigidFit fit = fit_rigid(own, noise, config.merge_sigmas, config.ransac_samples,
                                    static_cast<std::uint32_t>(segments.k));
-    if (!fit.found) continue;
-    // A label's own points go with it however badly one rigid motion fits them.
-    const std::vector<std::uint8_t> explained =
-        explained_by(fit.motion, segments.pairs, noise, config.merge_sigmas);
-    int votes_of = 0;
-    for (std::size_t i = 0; i < explained.size(); ++i)
-      votes_of += explained[i] != 0 || label[i] == c ? 1 : 0;
-    const std::pair<int, int> votes{votes_of, areas[static_cast<std::size_t>(c)]};
+    int explained = 0;
+    if (fit.found)
+      for (const std::uint8_t one : explained_by(fit.motion, segments.pairs, noise, config.merge_sigmas))
+        explained += one != 0 ? 1 : 0;
+    const std::pair<int, int> votes{explained, areas[static_cast<std::size_t>(c)]};
     if (votes <= most) continue;
     most = votes;
     segments.background = c;
