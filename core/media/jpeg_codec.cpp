@@ -53,7 +53,13 @@ void count_scans(j_common_ptr any) {
   any->err->error_exit(any);
 }
 
-// What lies between setjmp and longjmp has nothing to clean up: images and buffers are the callers'.
+// What lies between setjmp and longjmp has nothing to clean up: images and buffers are the callers', and
+// strings stay in functions of their own.
+
+[[gnu::noinline]] bool is_refused(const jpeg_decompress_struct& info, std::size_t bytes, std::string& why) {
+  why = refusal_of(info, bytes);
+  return !why.empty();
+}
 
 bool decode_into(jpeg_decompress_struct& info, JpegErrors& errors, jpeg_progress_mgr& progress,
                  const std::vector<unsigned char>& bytes, cv::Mat& image) {
@@ -65,8 +71,7 @@ bool decode_into(jpeg_decompress_struct& info, JpegErrors& errors, jpeg_progress
   info.progress = &progress;
   jpeg_mem_src(&info, bytes.data(), bytes.size());
   jpeg_read_header(&info, TRUE);
-  errors.refusal = refusal_of(info, bytes.size());
-  if (!errors.refusal.empty()) return false;
+  if (is_refused(info, bytes.size(), errors.refusal)) return false;
   const bool grey = info.jpeg_color_space == JCS_GRAYSCALE;
   errors.is_other = !grey && info.jpeg_color_space != JCS_YCbCr && info.jpeg_color_space != JCS_RGB;
   if (errors.is_other) return false;
