@@ -28,12 +28,6 @@ Parameter numeric_parameter(Config& config, const std::string& name) {
   throw InputError(fmt::format("there is no parameter {}; `stillpoint config` lists all", name));
 }
 
-double value_of(const Parameter& parameter) {
-  if (const auto* flag = std::get_if<bool*>(&parameter.value)) return **flag ? 1.0 : 0.0;
-  if (const auto* whole = std::get_if<int*>(&parameter.value)) return **whole;
-  return **std::get_if<double*>(&parameter.value);
-}
-
 std::optional<double> number_in(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -46,6 +40,13 @@ std::string metres(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+std::optional<double> number_of(const Parameter& parameter) {
+  if (const auto* flag = std::get_if<bool*>(&parameter.value)) return **flag ? 1.0 : 0.0;
+  if (const auto* whole = std::get_if<int*>(&parameter.value)) return **whole;
+  if (const auto* real = std::get_if<double*>(&parameter.value)) return **real;
+  return std::nullopt;
+}
 
 SweepRange sweep_range(const std::string& text) {
   const auto wrong = [&text] {
@@ -77,7 +78,7 @@ SweepRange usual_sweep(const Config& config, const std::string& parameter) {
   Config copy = config;
   const Parameter found = numeric_parameter(copy, parameter);
   SweepRange range{.parameter = found.key, .low = found.min, .high = found.max};
-  const double value = value_of(found);
+  const double value = number_of(found).value_or(0.0);
   if (value > 0 && found.max > kWide * std::max(found.min, 1e-9)) {
     range.low = std::max(found.min, 0.25 * value);
     range.high = std::min(found.max, 4.0 * value);

@@ -22,6 +22,9 @@ struct SweepRange {
   bool operator==(const SweepRange&) const = default;
 };
 
+/// The number a parameter stands at, 0 or 1 where it is off or on; nothing for one of words.
+[[nodiscard]] std::optional<double> number_of(const Parameter& parameter);
+
 /// "section.name=LOW:HIGH:STEPS", or without STEPS.
 /// @throws InputError for a text that is none
 [[nodiscard]] SweepRange sweep_range(const std::string& text);

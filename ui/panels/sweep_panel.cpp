@@ -162,7 +162,7 @@ class SweepPanel final : public NamedPanel {
     Config base = sweep.base;
     for (const Parameter& parameter : parameters(base))
       if (parameter.key == sweep.range.parameter)
-        if (const auto own = own_value(parameter))
+        if (const auto own = number_of(parameter))
           plot.marks.push_back({*own, "the run's", frame.theme.text_dim});
     PlotView& view = views_[id == std::string_view("iou") ? 1 : 0];
     view.x = x_;
@@ -170,13 +170,6 @@ class SweepPanel final : public NamedPanel {
     x_ = view.x;
     if (response.clicked_x)
       if (const auto nearest = nearest_index(values_, *response.clicked_x)) chosen_ = *nearest;
-  }
-
-  static std::optional<double> own_value(const Parameter& parameter) {
-    if (const auto* flag = std::get_if<bool*>(&parameter.value)) return **flag ? 1.0 : 0.0;
-    if (const auto* integer = std::get_if<int*>(&parameter.value)) return **integer;
-    if (const auto* real = std::get_if<double*>(&parameter.value)) return **real;
-    return std::nullopt;
   }
 
   [[nodiscard]] Footer footer_of(const SweepView& sweep) const {

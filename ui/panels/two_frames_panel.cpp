@@ -55,7 +55,8 @@ class TwoFramesPanel final : public NamedPanel {
  private:
   void choose_frame(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     Controls controls(frame);
-    int which = static_cast<int>(session.debug.other_is);
+    if (!session.debug.other_is) actions.requests.emplace_back(request::StandBeside{});
+    int which = static_cast<int>(session.debug.other_is.value_or(OtherFrame::before));
     if (controls.choice("beside", {"Frame before", "Keyframe", "Kept frame"}, which,
                         "The frame on the left: the one before, the keyframe this one shares most points "
                         "with, or one that is kept"))
@@ -68,7 +69,7 @@ class TwoFramesPanel final : public NamedPanel {
   [[nodiscard]] static std::string why_none(const SessionView& session) {
     const int index = session.current->index;
     if (session.current->record == nullptr) return fmt::format("Frame {} has not been processed yet.", index);
-    switch (session.debug.other_is) {
+    switch (session.debug.other_is.value_or(OtherFrame::before)) {
       case OtherFrame::before:
         return index == 0 ? "There is no frame before the first."
                           : fmt::format("Frame {} has not been processed.", index - 1);

@@ -77,9 +77,9 @@ struct DebugView {
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
   std::optional<Config> previewed;           ///< the config `preview` was made with
-  bool preview_whole = false;  ///< false: its features' matches and its pose are the run's still
-  double preview_ms = 0.0;     ///< what computing it took
-  OtherFrame other_is = OtherFrame::before;
+  bool preview_whole = false;              ///< false: its features' matches and its pose are the run's still
+  double preview_ms = 0.0;                 ///< what computing it took
+  std::optional<OtherFrame> other_is;      ///< nothing until it is asked for (request::StandBeside)
   std::optional<int> kept_frame;           ///< the frame that was kept to stand beside others
   std::shared_ptr<const FrameView> other;  ///< its images and record alone; null where there is none
   CheckView check;

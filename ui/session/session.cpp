@@ -89,11 +89,14 @@ void Session::show(int frame) {
 }
 
 void Session::choose_other() {
+  // In a window a second frame is read once somebody looks at two; pictures made without one have it always.
+  if (!debug_.other_is && worker_.joinable()) return;
+  const OtherFrame which = debug_.other_is.value_or(OtherFrame::before);
   const FrameRecord* record = current_->record;
   std::optional<int> other;
-  if (debug_.other_is == OtherFrame::before) other = current_->index - 1;
-  if (debug_.other_is == OtherFrame::kept) other = debug_.kept_frame;
-  if (debug_.other_is == OtherFrame::keyframe && record != nullptr)
+  if (which == OtherFrame::before) other = current_->index - 1;
+  if (which == OtherFrame::kept) other = debug_.kept_frame;
+  if (which == OtherFrame::keyframe && record != nullptr)
     for (const SavedKeyframe& keyframe : run_->track().keyframes())
       if (keyframe.id == record->reference_keyframe) other = keyframe.frame_index;
   const bool there = other && *other >= 0 && *other < run_->track().processed() && *other != current_->index;

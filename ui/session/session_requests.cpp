@@ -19,10 +19,7 @@ constexpr const char* kNoOthers = "No other parameters can be tried";
 /// @throws InputError for a number that its parameter does not allow
 void refuse_out_of_range(Config config) {
   for (const Parameter& parameter : parameters(config)) {
-    double value = parameter.min;
-    if (const auto* flag = std::get_if<bool*>(&parameter.value)) value = **flag ? 1.0 : 0.0;
-    if (const auto* whole = std::get_if<int*>(&parameter.value)) value = **whole;
-    if (const auto* real = std::get_if<double*>(&parameter.value)) value = **real;
+    const double value = number_of(parameter).value_or(parameter.min);
     if (!(value >= parameter.min && value <= parameter.max))
       throw InputError(fmt::format("{} is {}, expected {} to {}{}{}", parameter.key, value, parameter.min,
                                    parameter.max, parameter.unit.empty() ? "" : " ", parameter.unit));

@@ -124,6 +124,7 @@ void OpenDialog::take_look(const UiFrame& frame) {
   }
   // Of places chosen while one is looked at, the last is next.
   OpenAs now = wanted();
+  now.method.clear();  // what is in a place is the same for every method
   if (!look_at_ || looking_.valid() || now == asked_) return;
   seen_.reset();
   asked_ = now;

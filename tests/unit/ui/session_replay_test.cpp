@@ -156,6 +156,20 @@ TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   EXPECT_EQ(debug(*s).other->index, 2);
 }
 
+TEST_F(SessionDebug, AWindowReadsASecondFrameOnceSomebodyLooksAtTwo) {
+  StartedSession s(session());
+  s->request(request::GoTo{5});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return view.current->index == 5 && !view.busy; }));
+  EXPECT_EQ(s->view()->debug.other, nullptr);
+  s->request(request::StandBeside{});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return view.debug.other != nullptr; }));
+  EXPECT_EQ(s->view()->debug.other->index, 4);
+  s->request(request::GoTo{7});
+  EXPECT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.current->index == 7 && view.debug.other != nullptr && view.debug.other->index == 6;
+  }));
+}
+
 TEST_F(SessionDebug, WhatLeftTooLittleIsRepeatedAsTheRunHadIt) {
   config_.run.method = "stillpoint";
   config_.of<StillpointConfig>().moving_log_odds = -3.9;  // all moves: what is left is too little
