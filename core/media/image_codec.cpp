@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/media/jpeg_codec.hpp"
 #include "core/media/media_module.hpp"
+#include "core/media/png_decoder.hpp"
 #include "core/out_folder.hpp"
 #include "core/text_file.hpp"
 
@@ -22,31 +23,6 @@ using Context = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 void swap_colours(cv::Mat& image) {
   if (image.channels() == 3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
   if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_RGBA2BGRA);
-}
-
-/// A PNG of 8 or 16 bits without palette or transparent colour; empty for all else.
-cv::Mat decode_plain_png(const std::vector<unsigned char>& bytes) {
-  const Context context(spng_ctx_new(0), spng_ctx_free);
-  spng_ihdr header{};
-  spng_trns transparent{};
-  if (!context || spng_set_png_buffer(context.get(), bytes.data(), bytes.size()) != 0 ||
-      spng_get_ihdr(context.get(), &header) != 0 || header.bit_depth < 8 ||
-      header.interlace_method != SPNG_INTERLACE_NONE || spng_get_trns(context.get(), &transparent) == 0)
-    return {};
-  int channels = 0;
-  if (header.color_type == SPNG_COLOR_TYPE_GRAYSCALE) channels = 1;
-  if (header.color_type == SPNG_COLOR_TYPE_TRUECOLOR) channels = 3;
-  if (header.color_type == SPNG_COLOR_TYPE_TRUECOLOR_ALPHA) channels = 4;
-  std::size_t size = 0;
-  // SPNG_FMT_PNG: as it is stored, 16 bits in the processor's order.
-  if (channels == 0 || spng_decoded_image_size(context.get(), SPNG_FMT_PNG, &size) != 0) return {};
-  cv::Mat image(static_cast<int>(header.height), static_cast<int>(header.width),
-                CV_MAKETYPE(header.bit_depth == 16 ? CV_16U : CV_8U, channels));
-  if (size != image.total() * image.elemSize() ||
-      spng_decode_image(context.get(), image.data, size, SPNG_FMT_PNG, 0) != 0)
-    return {};
-  swap_colours(image);
-  return image;
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace stillpoint {
 
-// Images as bytes. PNGs of the usual kinds go through libspng, JPEGs through libjpeg; all else through
-// OpenCV's codecs (media_module.hpp), which give the same pixels.
+// Images as bytes. PNGs of the usual kinds are read by libdeflate (png_decoder.hpp) and written by libspng,
+// JPEGs go through libjpeg; all else through OpenCV's codecs (media_module.hpp), which give the same pixels.
 
 /// The pixels of an encoded image as they are stored: CV_8U or CV_16U with 1, 3 (BGR) or 4 (BGRA) channels,
 /// or what the format holds. The tag of orientation is ignored. Empty where the bytes are no image that can

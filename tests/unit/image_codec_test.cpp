@@ -5,11 +5,14 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/media/jpeg_codec.hpp"
+#include "core/media/png_decoder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -50,6 +53,80 @@ TEST_P(ImageCodec, ReadsWhatOpenCvWrites) {
 
 INSTANTIATE_TEST_SUITE_P(Types, ImageCodec,
                          testing::Values(CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4));
+
+/// A PNG whose rows are filtered as `filters` says, in turn, by the standard's own words.
+std::vector<unsigned char> filtered_png(const cv::Mat& image, const std::vector<unsigned char>& filters) {
+  cv::Mat stored = image.clone();
+  if (image.channels() == 3) cv::cvtColor(image, stored, cv::COLOR_BGR2RGB);
+  if (image.channels() == 4) cv::cvtColor(image, stored, cv::COLOR_BGRA2RGBA);
+  const std::size_t pixel = image.elemSize(), bytes = pixel * static_cast<std::size_t>(image.cols);
+  std::vector<unsigned char> rows, above(bytes, 0), row(bytes);
+  for (int y = 0; y < image.rows; ++y) {
+    std::copy_n(stored.ptr(y), bytes, row.begin());
+    if (image.depth() == CV_16U)
+      for (std::size_t i = 0; i < bytes; i += 2) std::swap(row[i], row[i + 1]);
+    const unsigned char filter = filters[static_cast<std::size_t>(y) % filters.size()];
+    rows.push_back(filter);
+    for (std::size_t i = 0; i < bytes; ++i) {
+      const int a = i < pixel ? 0 : row[i - pixel], b = above[i], c = i < pixel ? 0 : above[i - pixel];
+      const int p = a + b - c, pa = std::abs(p - a), pb = std::abs(p - b), pc = std::abs(p - c);
+      const int nearest = pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
+      const std::array<int, 5> predicted{0, a, b, (a + b) / 2, nearest};
+      rows.push_back(static_cast<unsigned char>(row[i] - predicted[std::min<std::size_t>(filter, 4)]));
+    }
+    above = row;
+  }
+  uLongf packed_size = compressBound(rows.size());
+  std::vector<unsigned char> packed(packed_size);
+  EXPECT_EQ(compress(packed.data(), &packed_size, rows.data(), rows.size()), Z_OK);
+  packed.resize(packed_size);
+  std::vector<unsigned char> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  const auto number = [](std::uint32_t n) {
+    return std::vector<unsigned char>{static_cast<unsigned char>(n >> 24),
+                                      static_cast<unsigned char>(n >> 16), static_cast<unsigned char>(n >> 8),
+                                      static_cast<unsigned char>(n)};
+  };
+  const auto append = [&](const std::string& name, const std::vector<unsigned char>& data) {
+    const auto length = number(static_cast<std::uint32_t>(data.size()));
+    std::vector<unsigned char> named(name.begin(), name.end());
+    named.insert(named.end(), data.begin(), data.end());
+    const auto sum =
+        number(static_cast<std::uint32_t>(crc32(0, named.data(), static_cast<uInt>(named.size()))));
+    for (const auto& part : {length, named, sum}) png.insert(png.end(), part.begin(), part.end());
+  };
+  std::vector<unsigned char> header = number(static_cast<std::uint32_t>(image.cols));
+  const auto height = number(static_cast<std::uint32_t>(image.rows));
+  header.insert(header.end(), height.begin(), height.end());
+  const int colour = image.channels() == 1 ? 0 : image.channels() == 3 ? 2 : 6;
+  header.insert(header.end(), {static_cast<unsigned char>(image.depth() == CV_16U ? 16 : 8),
+                               static_cast<unsigned char>(colour), 0, 0, 0});
+  append("IHDR", header);
+  append("IDAT", packed);
+  append("IEND", {});
+  return png;
+}
+
+TEST_P(ImageCodec, UndoesEveryFilterAndAnyOrderOfThem) {
+  const std::vector<std::vector<unsigned char>> orders{
+      {0}, {1}, {2}, {3}, {4}, {4, 1, 2, 0}, {3, 4, 4, 4, 4, 4, 4, 4, 4, 4}, {2, 4, 0, 4, 1, 4, 3}};
+  for (const auto& [width, height] : {std::pair{53, 37}, {1, 1}, {2, 9}, {3, 64}, {640, 5}})
+    for (const auto& order : orders) {
+      cv::Mat image = noise(GetParam());
+      cv::resize(image, image, {width, height}, 0, 0, cv::INTER_NEAREST);
+      const auto bytes = filtered_png(image, order);
+      EXPECT_TRUE(same_pixels(decode_plain_png(bytes), image))
+          << width << "x" << height << " filter " << int{order.front()} << " of " << order.size();
+      EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image));
+    }
+}
+
+TEST_P(ImageCodec, OfADamagedPngThereIsNothing) {
+  const cv::Mat image = noise(GetParam());
+  EXPECT_TRUE(decode_plain_png(filtered_png(image, {5})).empty());  // there are five filters, 0 to 4
+  const auto whole = filtered_png(image, {4});
+  for (std::size_t size = 0; size < whole.size() - 16; size += 7)
+    EXPECT_TRUE(decode_plain_png({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}).empty());
+}
 
 TEST(ImageCodecs, AViewIntoALargerImageIsWrittenAlone) {
   const cv::Mat whole = noise(CV_8UC1), part = whole(cv::Rect(5, 6, 20, 10));
