@@ -6,90 +6,61 @@
 #include <cstddef>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "core/odometry/fast_scores.hpp"
+
 namespace stillpoint {
 namespace {
 
-constexpr int kRadius = 3;  // px
-constexpr std::size_t kCircle = 16, kArc = 9;
-constexpr int kLanes = cv::v_uint8x16::nlanes;
+/// Sixteen bytes side by side.
+struct Bytes16 {
+  static constexpr int kLanes = cv::v_uint8x16::nlanes;
+  cv::v_uint8x16 bytes;
 
-/// Where the circle's pixels lie from its centre, in bytes.
-using Circle = std::array<std::ptrdiff_t, kCircle>;
+  static Bytes16 all(uchar value) { return {cv::v_setall_u8(value)}; }
+  static Bytes16 load(const uchar* from) { return {cv::v_load(from)}; }
+  void store(uchar* to) const { cv::v_store(to, bytes); }
+  [[nodiscard]] bool any() const { return cv::v_check_any(bytes > cv::v_setzero_u8()); }
+  [[nodiscard]] Bytes16 where_at_least(const Bytes16& least) const {
+    return {bytes & (bytes >= least.bytes)};
+  }
+  friend Bytes16 min(const Bytes16& a, const Bytes16& b) { return {cv::v_min(a.bytes, b.bytes)}; }
+  friend Bytes16 max(const Bytes16& a, const Bytes16& b) { return {cv::v_max(a.bytes, b.bytes)}; }
+  friend Bytes16 operator+(const Bytes16& a, const Bytes16& b) { return {a.bytes + b.bytes}; }
+  friend Bytes16 operator-(const Bytes16& a, const Bytes16& b) { return {a.bytes - b.bytes}; }
+};
 
-Circle circle_of(const cv::Mat& image) {
-  constexpr std::array<std::array<int, 2>, kCircle> kAbout{{{0, 3},
-                                                            {1, 3},
-                                                            {2, 2},
-                                                            {3, 1},
-                                                            {3, 0},
-                                                            {3, -1},
-                                                            {2, -2},
-                                                            {1, -3},
-                                                            {0, -3},
-                                                            {-1, -3},
-                                                            {-2, -2},
-                                                            {-3, -1},
-                                                            {-3, 0},
-                                                            {-3, 1},
-                                                            {-2, 2},
-                                                            {-1, 3}}};
-  Circle circle{};
-  for (std::size_t k = 0; k < kCircle; ++k)
+constexpr int kLanes = Bytes16::kLanes, kMostLanes = 32;
+
+FastCircle circle_of(const cv::Mat& image) {
+  constexpr std::array<std::array<int, 2>, kFastCircle> kAbout{{{0, 3},
+                                                                {1, 3},
+                                                                {2, 2},
+                                                                {3, 1},
+                                                                {3, 0},
+                                                                {3, -1},
+                                                                {2, -2},
+                                                                {1, -3},
+                                                                {0, -3},
+                                                                {-1, -3},
+                                                                {-2, -2},
+                                                                {-3, -1},
+                                                                {-3, 0},
+                                                                {-3, 1},
+                                                                {-2, 2},
+                                                                {-1, 3}}};
+  FastCircle circle{};
+  for (std::size_t k = 0; k < kFastCircle; ++k)
     circle[k] = kAbout[k][0] + kAbout[k][1] * static_cast<std::ptrdiff_t>(image.step);
   return circle;
 }
 
-/// By how much nine neighbours on the circle differ at least, of those nine that differ most; `off` is how
-/// far each pixel lies on one side of the centre, 0 on the other.
-cv::v_uint8x16 best_arc(const std::array<cv::v_uint8x16, kCircle>& off) {
-  // Two arcs that begin beside each other share eight pixels.
-  std::array<cv::v_uint8x16, kCircle / 2> two, four;
-  for (std::size_t k = 0; k < two.size(); ++k) two[k] = cv::v_min(off[2 * k + 1], off[(2 * k + 2) % kCircle]);
-  for (std::size_t k = 0; k < four.size(); ++k) four[k] = cv::v_min(two[k], two[(k + 1) % two.size()]);
-  cv::v_uint8x16 best = cv::v_setzero_u8();
-  for (std::size_t k = 0; k < four.size(); ++k) {
-    const cv::v_uint8x16 eight = cv::v_min(four[k], four[(k + 2) % four.size()]);
-    best = cv::v_max(best, cv::v_min(eight, cv::v_max(off[2 * k], off[(2 * k + kArc) % kCircle])));
-  }
-  return best;
-}
-
-bool any(const cv::v_uint8x16& values) { return cv::v_check_any(values > cv::v_setzero_u8()); }
-
-/// The highest threshold at which each of sixteen pixels is a corner; 0 below `threshold`.
-cv::v_uint8x16 scores_of(const uchar* centre, const Circle& circle, const cv::v_uint8x16& threshold) {
-  const cv::v_uint8x16 v = cv::v_load(centre), above = v + threshold, below = v - threshold;
-  const auto at = [&](std::size_t k) { return cv::v_load(centre + circle[k]); };
-  // Of two pixels opposite each other nine in a row hold one at least. Sums and differences stop at 255 and
-  // 0.
-  cv::v_uint8x16 brightest = cv::v_setall_u8(255), darkest = cv::v_setzero_u8();
-  for (std::size_t k = 0; k < kCircle / 2; k += 2) {
-    const cv::v_uint8x16 a = at(k), b = at(k + kCircle / 2);
-    brightest = cv::v_min(brightest, cv::v_max(a, b));
-    darkest = cv::v_max(darkest, cv::v_min(a, b));
-  }
-  const bool bright = any(brightest - above), dark = any(below - darkest);
-  cv::v_uint8x16 best = cv::v_setzero_u8();
-  std::array<cv::v_uint8x16, kCircle> off;
-  if (bright) {
-    for (std::size_t k = 0; k < kCircle; ++k) off[k] = at(k) - v;
-    best = best_arc(off);
-  }
-  if (dark) {
-    for (std::size_t k = 0; k < kCircle; ++k) off[k] = v - at(k);
-    best = cv::v_max(best, best_arc(off));
-  }
-  const cv::v_uint8x16 score = best - cv::v_setall_u8(1);
-  return score & (score >= threshold);
-}
-
-/// The same of one pixel.
-uchar score_of(const uchar* centre, const Circle& circle, int threshold) {
+/// The highest threshold at which a pixel is a corner; 0 below `threshold`.
+uchar score_of(const uchar* centre, const FastCircle& circle, int threshold) {
   int best = 0;
-  for (std::size_t first = 0; first < kCircle; ++first) {
+  for (std::size_t first = 0; first < kFastCircle; ++first) {
     int brighter = 255, darker = 255;
-    for (std::size_t k = first; k < first + kArc; ++k) {
-      const int off = centre[circle[k % kCircle]] - *centre;
+    for (std::size_t k = first; k < first + kFastArc; ++k) {
+      const int off = centre[circle[k % kFastCircle]] - *centre;
       brighter = std::min(brighter, off), darker = std::min(darker, -off);
     }
     best = std::max({best, brighter, darker});
@@ -98,14 +69,12 @@ uchar score_of(const uchar* centre, const Circle& circle, int threshold) {
 }
 
 /// A row's scores, with a zero before its first and zeros behind its last, as far as lanes reach.
-void score_row(const uchar* row, int width, int readable, const Circle& circle, int threshold,
+void score_row(const uchar* row, int width, int readable, const FastCircle& circle, int threshold, bool wide,
                uchar* scores) {
-  const cv::v_uint8x16 thresholds = cv::v_setall_u8(static_cast<uchar>(threshold));
-  int x = 0;
-  for (; x < width && x + kLanes + kRadius <= readable; x += kLanes)
-    cv::v_store(scores + 1 + x, scores_of(row + x, circle, thresholds));
+  int x = wide ? fast_scores_by_avx2(circle, threshold, row, width, readable, scores + 1) : 0;
+  x += FastScores<Bytes16>(circle, threshold).of_row(row + x, width - x, readable - x, scores + 1 + x);
   for (; x < width; ++x) scores[1 + x] = score_of(row + x, circle, threshold);
-  std::fill_n(scores + 1 + width, kLanes + 1, uchar{0});
+  std::fill_n(scores + 1 + width, kMostLanes + 1, uchar{0});
 }
 
 /// Corners of the middle one of three rows of scores: those above all eight neighbours.
@@ -113,7 +82,7 @@ void append_peaks(const std::array<uchar*, 3>& rows, int width, const cv::Point&
                   std::vector<cv::KeyPoint>& corners) {
   for (int x = 0; x < width; x += kLanes) {
     const cv::v_uint8x16 score = cv::v_load(rows[1] + 1 + x);
-    if (!any(score)) continue;
+    if (!Bytes16{score}.any()) continue;
     cv::v_uint8x16 about = cv::v_max(cv::v_load(rows[1] + x), cv::v_load(rows[1] + x + 2));
     for (const uchar* beside : {rows[0], rows[2]})
       for (int shift = 0; shift <= 2; ++shift) about = cv::v_max(about, cv::v_load(beside + x + shift));
@@ -127,14 +96,19 @@ void append_peaks(const std::array<uchar*, 3>& rows, int width, const cv::Point&
 
 }  // namespace
 
+bool has_wide_lanes() {
+  static const bool has = cv::checkHardwareSupport(CV_CPU_AVX2);
+  return has;
+}
+
 void append_fast_corners(const cv::Mat& image, const cv::Rect& where, int threshold,
-                         std::vector<cv::KeyPoint>& corners) {
+                         std::vector<cv::KeyPoint>& corners, bool wide) {
   if (where.empty()) return;
-  CV_Assert(image.type() == CV_8UC1 && where.x >= kRadius && where.y >= kRadius &&
-            where.br().x + kRadius <= image.cols && where.br().y + kRadius <= image.rows);
-  const Circle circle = circle_of(image);
+  CV_Assert(image.type() == CV_8UC1 && where.x >= kFastRadius && where.y >= kFastRadius &&
+            where.br().x + kFastRadius <= image.cols && where.br().y + kFastRadius <= image.rows);
+  const FastCircle circle = circle_of(image);
   const int level = std::clamp(threshold, 1, 255);
-  const auto stride = static_cast<std::size_t>(where.width + 2 * kLanes + 2);
+  const auto stride = static_cast<std::size_t>(where.width + 2 * kMostLanes + 2);
   cv::AutoBuffer<uchar, 4096> memory(3 * stride);
   std::fill_n(memory.data(), memory.size(), uchar{0});
   std::array<uchar*, 3> rows{memory.data(), memory.data() + stride, memory.data() + 2 * stride};
@@ -143,7 +117,7 @@ void append_fast_corners(const cv::Mat& image, const cv::Rect& where, int thresh
                 rows.end());  // the last is that of y, the middle one of y - 1
     if (y < where.height)
       score_row(image.ptr<uchar>(where.y + y) + where.x, where.width, image.cols - where.x, circle, level,
-                rows[2]);
+                wide, rows[2]);
     else
       std::fill_n(rows[2], stride, uchar{0});
     if (y > 0) append_peaks(rows, where.width, {where.x, where.y + y - 1}, corners);

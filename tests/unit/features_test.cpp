@@ -48,12 +48,21 @@ TEST(FastCorners, AreThoseOfOpenCv) {
       const cv::Mat image = rich(size.width, size.height, static_cast<unsigned>(size.width + threshold));
       std::vector<cv::KeyPoint> expected, found;
       cv::FAST(image, expected, threshold, true);
-      append_fast_corners(image, {kMargin, kMargin, size.width - 2 * kMargin, size.height - 2 * kMargin},
-                          threshold, found);
+      const cv::Rect inside(kMargin, kMargin, size.width - 2 * kMargin, size.height - 2 * kMargin);
+      append_fast_corners(image, inside, threshold, found, false);
       ASSERT_EQ(found.size(), expected.size()) << size << " at " << threshold;
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_EQ(found[i].pt, expected[i].pt);
         EXPECT_EQ(found[i].response, expected[i].response);
+      }
+      if (has_wide_lanes()) {
+        std::vector<cv::KeyPoint> by_wide;
+        append_fast_corners(image, inside, threshold, by_wide, true);
+        ASSERT_EQ(by_wide.size(), found.size());
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          EXPECT_EQ(by_wide[i].pt, found[i].pt);
+          EXPECT_EQ(by_wide[i].response, found[i].response);
+        }
       }
       if (size.width == 640 && threshold <= 20) {
         EXPECT_GT(found.size(), 1000u);
