@@ -12,7 +12,6 @@
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
-#include "core/image_memory.hpp"
 
 namespace {
 
@@ -28,9 +27,7 @@ bool output_arrived() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Images come and go by the frame, and so do tables: kept, their pages need not be had from the kernel anew
-  // each time.
-  stillpoint::keep_image_memory();
+  // Images come and go by the frame, and so do tables: pages need not be had from the kernel anew each time.
   constexpr int kKeptBytes = 256 << 20;
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);

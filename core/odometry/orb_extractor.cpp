@@ -221,9 +221,8 @@ int OrbExtractor::fill_pyramid(const cv::Size& full, std::vector<Level>& levels)
   return level;
 }
 
-OrbFeatures OrbExtractor::extract(const cv::Mat& gray, int threads) {
-  std::vector<Level>& levels = *levels_;
-  levels.resize(static_cast<std::size_t>(config_.levels));
+OrbFeatures OrbExtractor::extract(const cv::Mat& gray, int threads) const {
+  std::vector<Level> levels(static_cast<std::size_t>(config_.levels));
   levels[0].image = gray;
   std::atomic<int> next = 1;
   int count = 0;
@@ -249,8 +248,6 @@ OrbFeatures OrbExtractor::extract(const cv::Mat& gray, int threads) {
     next = 0;
     take_levels();
   }
-  levels[0].image.release();  // the caller's, to be let go of
-
   std::size_t total = 0;
   for (int level = 0; level < count; ++level)
     total += levels[static_cast<std::size_t>(level)].found.keypoints.size();

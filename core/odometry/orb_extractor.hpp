@@ -5,7 +5,6 @@
 
 #include "core/config.hpp"
 #include "core/odometry/feature_set.hpp"
-#include "core/scratch.hpp"
 
 namespace stillpoint {
 
@@ -24,10 +23,10 @@ class OrbExtractor {
 
   /// Features of a grey image, CV_8UC1. Images too small for a level simply have none there.
   /// @param threads above 1, the levels are shared between two; the result is the same
-  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray, int threads = 1);
+  [[nodiscard]] OrbFeatures extract(const cv::Mat& gray, int threads = 1) const;
 
  private:
-  /// One level of the pyramid, with the memory it is worked on in.
+  /// One level of the pyramid.
   struct Level {
     cv::Mat image;                         // CV_8UC1
     std::vector<cv::KeyPoint> candidates;  // all its corners
@@ -43,7 +42,6 @@ class OrbExtractor {
   FeatureConfig config_;
   std::vector<int> wanted_;      // corners a level
   cv::Ptr<cv::ORB> descriptor_;  // computes descriptors of one level at a time
-  Scratch<std::vector<Level>> levels_;
 };
 
 /// Picks `wanted` of the candidates so that they spread over a `width` x `height` image: round by round, the

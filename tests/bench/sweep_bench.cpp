@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/image_memory.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "tests/support/allocations.hpp"
@@ -87,7 +86,6 @@ void add(const char* sweep, const char* method, int features, const cv::Size& si
 }
 
 const bool kRegistered = [] {
-  keep_image_memory();  // as the program does
   constexpr int kUsual = 1000;
   const cv::Size usual(640, 480);
   const auto methods = {"none", "paper", "stillpoint"};

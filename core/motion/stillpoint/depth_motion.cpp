@@ -7,7 +7,6 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "core/image_memory.hpp"
 #include "core/motion/stillpoint/depth_evidence.hpp"
 #include "core/motion/stillpoint/label_propagation.hpp"
 #include "core/motion/stillpoint/superpixel_motion.hpp"
@@ -190,7 +189,7 @@ cv::Mat fit_to_depth(const cv::Mat& small_mask, const RgbdView& view, const cv::
   const cv::Mat edge = low != high;
   mask = enlarged(small_mask, view.factor, full_depth.size());
   const int f = view.factor;
-  std::vector<cv::Point, KeptMemory<cv::Point>> unmeasured, inside;
+  std::vector<cv::Point> unmeasured, inside;
   for (int sy = 0; sy < edge.rows; ++sy)
     for (int sx = 0; sx < edge.cols; ++sx) {
       if (edge.ptr<uchar>(sy)[sx] == 0) continue;

@@ -6,7 +6,6 @@
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "core/geometry/normal_equations.hpp"
-#include "core/image_memory.hpp"
 #include "core/median.hpp"
 #include "core/motion/stillpoint/axial_motion.hpp"
 #include "core/motion/stillpoint/depth_warp.hpp"
@@ -173,7 +172,7 @@ struct TwistTerm {
   Matrix6d h;
   Vector6d g;
 };
-using TwistTerms = std::vector<TwistTerm, KeptMemory<TwistTerm>>;
+using TwistTerms = std::vector<TwistTerm>;
 
 TwistTerms twist_terms(const Camera& camera, const std::vector<Measured>& measured,
                        const std::vector<double>& votes) {
