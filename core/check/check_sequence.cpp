@@ -24,6 +24,10 @@ SequenceCheck check_sequence(const FrameSource& source, const std::stop_token& s
   };
   add(check_frames(source));
   add(check_registration(source));
+  const std::size_t before = check.findings.size();
+  if (!stop.stop_requested()) add(check_parallax(source));
+  // Poses that rest on what is no depth would be blamed on scale, camera or truth.
+  if (check.findings.size() > before) return check;
   if (!stop.stop_requested()) add(check_odometry(source, kFramesTracked));
   if (!stop.stop_requested()) add(check_camera(source, kFramesByCamera));
   if (stop.stop_requested()) return check;

@@ -43,6 +43,12 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// the mean distance.
 [[nodiscard]] std::vector<Finding> check_registration(const FrameSource& source);
 
+/// Whether measured depth goes with parallax: points that stand still are triangulated between two frames
+/// (essential matrix, no depth used), which tells their depth but for one factor a pair. Told where another
+/// reading of the depth images fits much better (the distance from the camera's centre, disparity or inverse
+/// depth), or where the two have nothing to do with each other. A wrong scale shows in neither: it cancels.
+[[nodiscard]] std::vector<Finding> check_parallax(const FrameSource& source);
+
 /// The known camera under which the odometry's reprojections miss least, when they miss by 1.5 % more under
 /// the one that is used, and surely so (4 standard errors over the frames). Cameras that are alike
 /// (freiburg1's and freiburg2's) cannot be told apart in so few frames, nor any where people walk about.

@@ -1,10 +1,14 @@
 #pragma once
 
-#include <opencv2/features2d.hpp>
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "core/config.hpp"
 #include "core/odometry/feature_set.hpp"
+
+namespace cv {
+class ORB;
+}
 
 namespace stillpoint {
 

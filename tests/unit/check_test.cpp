@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <opencv2/core.hpp>
 
 #include "core/check/check_sequence.hpp"
 #include "core/sequence/source.hpp"
@@ -84,22 +86,20 @@ TEST(Check, FindsGapsRepeatsAndWhatWasMended) {
   EXPECT_THAT(findings, Contains(says("camera", "ros_default is assumed")));
 }
 
-/// A sequence whose depth images lie beside its colour images.
-class ShiftedDepth : public FrameSource {
+/// A sequence whose depth images are others.
+class ChangedDepth : public FrameSource {
  public:
-  ShiftedDepth(std::shared_ptr<const FrameSource> source, cv::Point shift)
-      : source_(std::move(source)), shift_(shift) {}
+  using Change = std::function<cv::Mat(const cv::Mat& depth, const Camera& camera)>;
+
+  ChangedDepth(std::shared_ptr<const FrameSource> source, Change change)
+      : source_(std::move(source)), change_(std::move(change)) {}
   [[nodiscard]] const std::string& name() const override { return source_->name(); }
   [[nodiscard]] const Camera& camera() const override { return source_->camera(); }
   [[nodiscard]] int size() const override { return source_->size(); }
   [[nodiscard]] double timestamp(int index) const override { return source_->timestamp(index); }
   [[nodiscard]] Frame read(int index) const override {
     Frame frame = source_->read(index);
-    cv::Mat moved = cv::Mat::zeros(frame.depth.size(), CV_32FC1);
-    const cv::Rect image({}, frame.depth.size());
-    const cv::Rect to = (image + shift_) & image;
-    frame.depth(to - shift_).copyTo(moved(to));
-    frame.depth = moved;
+    frame.depth = change_(frame.depth, camera());
     return frame;
   }
   [[nodiscard]] FrameTruth truth(int index) const override { return source_->truth(index); }
@@ -110,17 +110,65 @@ class ShiftedDepth : public FrameSource {
 
  private:
   std::shared_ptr<const FrameSource> source_;
-  cv::Point shift_;
+  Change change_;
 };
+
+ChangedDepth::Change shifted(const cv::Point& shift) {
+  return [shift](const cv::Mat& depth, const Camera&) {
+    cv::Mat moved = cv::Mat::zeros(depth.size(), CV_32FC1);
+    const cv::Rect image({}, depth.size());
+    const cv::Rect to = (image + shift) & image;
+    depth(to - shift).copyTo(moved(to));
+    return moved;
+  };
+}
 
 TEST(Registration, DepthThatLiesBesideColourIsToldByHowFar) {
   const auto source = rendered("walking_xyz", 12);
   EXPECT_THAT(check_registration(*source), IsEmpty());
-  EXPECT_THAT(check_registration(ShiftedDepth(source, {2, -2})), IsEmpty());  // a sensor's own
-  const auto findings = check_registration(ShiftedDepth(source, {14, -8}));
+  EXPECT_THAT(check_registration(ChangedDepth(source, shifted({2, -2}))), IsEmpty());  // a sensor's own
+  const auto findings = check_registration(ChangedDepth(source, shifted({14, -8})));
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_THAT(findings[0], says("depth", "best 14 px to the left and 8 px down"));
   EXPECT_FALSE(remedy_of(findings[0]));
+}
+
+TEST(Parallax, TellsWhatDepthImagesHoldInsteadOfDepth) {
+  const auto source = rendered("sitting_xyz", 60);
+  EXPECT_THAT(check_parallax(*source), IsEmpty());
+  const auto scaled = [](const cv::Mat& depth, const Camera&) { return cv::Mat(depth * 1.7); };
+  EXPECT_THAT(check_parallax(ChangedDepth(source, scaled)), IsEmpty());  // a scale cancels
+
+  const auto by_ray = [](const cv::Mat& depth, const Camera& camera) {
+    cv::Mat range = depth.clone();
+    range.forEach<float>([&](float& z, const int* at) {
+      z *= static_cast<float>(
+          std::hypot(1.0, (at[1] - camera.cx) / camera.fx, (at[0] - camera.cy) / camera.fy));
+    });
+    return range;
+  };
+  auto findings = check_parallax(ChangedDepth(source, by_ray));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0],
+              says("depth", "the distance from the camera's centre, not the depth along its axis"));
+
+  const auto inverted = [](const cv::Mat& depth, const Camera&) {
+    cv::Mat inverse = depth.clone();
+    inverse.forEach<float>([](float& z, const int*) { z = z > 0 ? 2.0F / z : 0.0F; });
+    return inverse;
+  };
+  findings = check_parallax(ChangedDepth(source, inverted));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0], says("depth", "disparity or the inverse of depth"));
+
+  const auto upside_down = [](const cv::Mat& depth, const Camera&) {
+    cv::Mat other;
+    cv::flip(depth, other, 0);
+    return other;
+  };
+  findings = check_parallax(ChangedDepth(source, upside_down));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0], says("depth", "depth does not go with the images"));
 }
 
 TEST(Remedies, AreTheSwitchesThatMendForCertain) {
