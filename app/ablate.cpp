@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "app/commands.hpp"
 #include "app/jobs.hpp"
 #include "app/progress.hpp"
+#include "app/version.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/ablation.hpp"
@@ -100,11 +102,11 @@ std::vector<AblationRow> rows_of(const std::vector<std::optional<Ingredient>>& v
 }
 
 void write_results(const fs::path& folder, const std::string& method, const std::vector<AblationRow>& rows,
-                   const std::vector<std::string>& names, const std::vector<MissingRun>& missing = {},
-                   std::size_t asked = 0) {
+                   const std::vector<std::string>& names, const Provenance& made,
+                   const std::vector<MissingRun>& missing = {}, std::size_t asked = 0) {
   std::string text =
       to_markdown(ablation_summary(method, rows, names)) + "\n" + to_markdown(ablation_errors(rows, names));
-  nlohmann::ordered_json json = ablation_json(method, rows, names);
+  nlohmann::ordered_json json = ablation_json(method, rows, names, made);
   if (!missing.empty()) text += "\n" + missing_text(missing, asked);
   for (const MissingRun& run : missing) json["missing"].push_back(to_json(run));
   write_text_file(folder / "ablation.md", text);
@@ -160,8 +162,11 @@ std::string ablation_cell_tables(const CellPlan& plan, const MergedCells& merged
     for (AblationRow& row : rows) row.cells.push_back(reached.at({sequence.name, row.without}));
   }
   const std::string& method = plan.methods.front();
+  Provenance made = made_here();
+  if (!merged.machines.empty()) made.machine = fmt::format("{}", fmt::join(merged.machines, "; "));
+  made.command = plan.command;
   if (merged.whole || !plan.replaces)
-    write_results(folder, method, rows, names, merged.missing, plan.cells.size());
+    write_results(folder, method, rows, names, made, merged.missing, plan.cells.size());
   const std::string missing = missing_text(merged.missing, plan.cells.size());
   return ablation_text(method, rows, names) + (missing.empty() ? missing : "\n" + missing);
 }
@@ -217,7 +222,7 @@ void ablate(const AblateArguments& arguments) {
     if (cells.size() < variants.size()) break;
     names.push_back(sequence.name);
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].cells.push_back(cells[i]);
-    if (!arguments.out.empty()) write_results(arguments.out, method, rows, names);
+    if (!arguments.out.empty()) write_results(arguments.out, method, rows, names, made_here());
   }
   fmt::print("{}", ablation_text(method, rows, names));
   if (stop_requested()) fmt::print("\nstopped early; the tables hold the sequences that were finished\n");

@@ -8,6 +8,7 @@
 #include "core/evaluation/page_tables.hpp"
 #include "core/motion/methods.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/ablation.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {
@@ -23,9 +24,14 @@ void make_tables(const TablesArguments& arguments) {
   for (const std::string& path : arguments.pages) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     const std::string page = read_text(path);
-    const std::string made =
-        with_tables(page, path, baseline_method().name,
-                    [&folder](const std::string& file) { return read_results((folder / file).string()); });
+    const TableSources sources{
+        [&folder](const std::string& file) { return read_results((folder / file).string()); },
+        [&folder](const std::string& file) { return read_ablation((folder / file).string()).summary(); },
+        [&folder](const std::string& file) {
+          const std::string results = (folder / file).string();
+          return provenance_from_json(read_text(results), results);
+        }};
+    const std::string made = with_tables(page, path, baseline_method().name, sources);
     if (made == page) {
       fmt::print("{}: its tables are those of its results\n", path);
     } else if (arguments.check) {
@@ -44,7 +50,8 @@ void make_tables(const TablesArguments& arguments) {
 void add_tables_command(CLI::App& app) {
   const auto arguments = std::make_shared<TablesArguments>();
   CLI::App* command = app.add_subcommand(
-      "tables", "Make the marked tables of Markdown pages anew, from the results.json of benchmarks");
+      "tables",
+      "Make the marked tables of Markdown pages anew, from the results of benchmarks and ablations");
   command
       ->add_option("PAGES", arguments->pages,
                    "Pages with tables between '<!-- table: FILE WHAT … -->' and '<!-- end of table -->'")

@@ -67,6 +67,18 @@ std::string figure(const std::optional<double>& value, int digits) {
 
 std::string whole(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "-"; }
 
+Provenance provenance_from(const nlohmann::json& json) {
+  Provenance made;
+  constexpr std::string_view kProgram = "stillpoint ";
+  const auto program = json.at("program").get<std::string>();
+  made.version = program.starts_with(kProgram) ? program.substr(kProgram.size()) : program;
+  json.at("commit").get_to(made.commit);
+  json.at("machine").get_to(made.machine);
+  json.at("date").get_to(made.date);
+  json.at("command").get_to(made.command);
+  return made;
+}
+
 }  // namespace
 
 const BenchmarkResult* BenchmarkResults::find(const std::string& sequence, const std::string& odometry,
@@ -124,13 +136,27 @@ nlohmann::ordered_json to_json(const MissingRun& run) {
   return json;
 }
 
-nlohmann::ordered_json to_json(const BenchmarkResults& results) {
+nlohmann::ordered_json to_json(const Provenance& made) {
   nlohmann::ordered_json json;
-  json["program"] = "stillpoint " + results.version;
-  json["commit"] = results.commit;
-  json["machine"] = results.machine;
-  json["date"] = results.date;
-  json["command"] = results.command;
+  json["program"] = "stillpoint " + made.version;
+  json["commit"] = made.commit;
+  json["machine"] = made.machine;
+  json["date"] = made.date;
+  json["command"] = made.command;
+  return json;
+}
+
+Provenance provenance_from_json(const std::string& text, const std::string& where) {
+  try {
+    return provenance_from(parse_json(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(
+        fmt::format("{}: does not say what it was made by ({})", where, printable(error.what())));
+  }
+}
+
+nlohmann::ordered_json to_json(const BenchmarkResults& results) {
+  nlohmann::ordered_json json = to_json(static_cast<const Provenance&>(results));
   json["config"] = results.config;
   json["runs"] = nlohmann::ordered_json::array();
   for (const BenchmarkResult& r : results.runs) json["runs"].push_back(to_json(r));
@@ -142,13 +168,7 @@ BenchmarkResults results_from_json(const std::string& text, const std::string& w
   try {
     const nlohmann::json json = parse_json(text);
     BenchmarkResults results;
-    constexpr std::string_view kProgram = "stillpoint ";
-    const auto program = json.at("program").get<std::string>();
-    results.version = program.starts_with(kProgram) ? program.substr(kProgram.size()) : program;
-    json.at("commit").get_to(results.commit);
-    json.at("machine").get_to(results.machine);
-    json.at("date").get_to(results.date);
-    json.at("command").get_to(results.command);
+    static_cast<Provenance&>(results) = provenance_from(json);
     json.at("config").get_to(results.config);
     for (const nlohmann::json& run : json.at("runs")) results.runs.push_back(run_from(run));
     if (const auto missing = json.find("missing"); missing != json.end())

@@ -48,13 +48,17 @@ struct MissingRun {
 /// In place of an engine's name, for another program's run: it stands beside the runs behind any engine.
 inline constexpr const char* kItsOwnOdometry = "its own";
 
+/// What results were made by.
+struct Provenance {
+  std::string version{}, commit{};  ///< of the program
+  std::string machine{};            ///< processor and number of cores
+  std::string date{};               ///< of its end, YYYY-MM-DD
+  std::string command{};            ///< what was typed
+};
+
 /// A benchmark's results.
-struct BenchmarkResults {
-  std::string version, commit;  ///< of the program
-  std::string machine;          ///< processor and number of cores
-  std::string date;             ///< of its end, YYYY-MM-DD
-  std::string command;          ///< what was typed
-  std::string config;           ///< TOML, but for method and odometry
+struct BenchmarkResults : Provenance {
+  std::string config;  ///< TOML, but for method and odometry
   std::vector<BenchmarkResult> runs;
   std::vector<MissingRun> missing{};  ///< where runs were made as jobs: those that failed or have not ended
 
@@ -64,6 +68,11 @@ struct BenchmarkResults {
   /// In the order in which they first appear.
   [[nodiscard]] std::vector<std::string> sequences() const;
 };
+
+/// How every file of results begins.
+[[nodiscard]] nlohmann::ordered_json to_json(const Provenance& made);
+/// @throws InputError where the text does not begin so
+[[nodiscard]] Provenance provenance_from_json(const std::string& text, const std::string& where);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const BenchmarkResults& results);
 

@@ -148,7 +148,7 @@ BenchmarkResults only(const BenchmarkResults& results, const Names& patterns) {
   return kept;
 }
 
-std::string made_text(const BenchmarkResults& r) {
+std::string made_text(const Provenance& r) {
   return fmt::format("*Made by stillpoint {} at commit {}, on {}, {}, by `{}`.*\n", r.version, r.commit,
                      r.date, r.machine, r.command);
 }
@@ -159,8 +159,8 @@ Table figure_table(const BenchmarkResults& results, const Request& request, cons
   if (found == figures().end()) {
     Names names;
     for (const auto& [name, figure] : figures()) names.push_back(name);
-    throw InputError(fmt::format("{}: a table asks for '{}'; there are {}, spread, published, made", where,
-                                 request.what, fmt::join(names, ", ")));
+    throw InputError(fmt::format("{}: a table asks for '{}'; there are {}, spread, published, ablation, made",
+                                 where, request.what, fmt::join(names, ", ")));
   }
   const Names there_engines = all_of(results, &BenchmarkResult::odometry),
               there_methods = all_of(results, &BenchmarkResult::method);
@@ -185,10 +185,11 @@ Table figure_table(const BenchmarkResults& results, const Request& request, cons
   return table;
 }
 
-std::string table_text(const Request& request, const BenchmarkResults& all, const std::string& baseline,
+std::string table_text(const Request& request, const TableSources& sources, const std::string& baseline,
                        const std::string& where) {
-  if (request.what == "made") return made_text(all);
-  const BenchmarkResults results = only(all, request.sequences);
+  if (request.what == "made") return made_text(sources.provenance(request.file));
+  if (request.what == "ablation") return to_markdown(sources.ablation(request.file));
+  const BenchmarkResults results = only(sources.results(request.file), request.sequences);
   if (results.runs.empty())
     throw InputError(
         fmt::format("{}: a table of {} asks for sequences that it has none of", where, request.file));
@@ -212,7 +213,7 @@ std::string table_text(const Request& request, const BenchmarkResults& all, cons
 }  // namespace
 
 std::string with_tables(const std::string& page, const std::string& where, const std::string& baseline,
-                        const std::function<BenchmarkResults(const std::string& file)>& read) {
+                        const TableSources& sources) {
   std::string text;
   std::size_t at = 0;
   for (std::size_t begin = page.find(kBegin); begin != std::string::npos; begin = page.find(kBegin, at)) {
@@ -223,7 +224,7 @@ std::string with_tables(const std::string& page, const std::string& where, const
     const Request request =
         request_from(page.substr(begin + kBegin.size(), close - begin - kBegin.size()), where);
     text += page.substr(at, line_end + 1 - at);
-    text += "\n" + table_text(request, read(request.file), baseline, where) + "\n";
+    text += "\n" + table_text(request, sources, baseline, where) + "\n";
     at = end;
   }
   return text + page.substr(at);

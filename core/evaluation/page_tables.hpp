@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/evaluation/benchmark_results.hpp"
+#include "core/evaluation/tables.hpp"
 
 namespace stillpoint {
 
@@ -24,17 +25,23 @@ namespace stillpoint {
 //   lost                        frames without a pose
 //   spread                      median RPE and half the distance of its quartiles, of a benchmark's --repeat
 //   published                   Table 1 of the paper with our columns beside it
+//   ablation                    of an ablation's results, a row an ingredient: what leaving it out changed
 //   made                        no table: what the results were made by, in a sentence
 // Choices: methods=A,B and odometry=A,B (both in the order of the columns; otherwise all there are);
 // sequences=A,B (a name, or its beginning followed by *); names=long keeps `generated:` before names.
 
+/// Where a page's figures come from, by the name of the file that a table names.
+struct TableSources {
+  std::function<BenchmarkResults(const std::string& file)> results;
+  std::function<Table(const std::string& file)> ablation;
+  std::function<Provenance(const std::string& file)> provenance;
+};
+
 /// The page with every marked table made anew; all else as it was.
 /// @param where names the page in messages
 /// @param baseline the method that gains are over
-/// @param read gives the results that a table names
 /// @throws InputError in one sentence for a table that names what there is not, or has no end
 [[nodiscard]] std::string with_tables(const std::string& page, const std::string& where,
-                                      const std::string& baseline,
-                                      const std::function<BenchmarkResults(const std::string& file)>& read);
+                                      const std::string& baseline, const TableSources& sources);
 
 }  // namespace stillpoint

@@ -43,6 +43,16 @@ std::optional<double> mean_iou(const AblationRow& row) {
   return sum / count;
 }
 
+AblationCell ablated_cell_from(const nlohmann::json& json) {
+  AblationCell cell;
+  if (!json.at("rpe_1s_m").is_null()) cell.rpe_m = json.at("rpe_1s_m").get<double>();
+  if (!json.at("mask_iou").is_null()) cell.mask_iou = json.at("mask_iou").get<double>();
+  json.at("coverage").get_to(cell.coverage);
+  json.at("median_ms").get_to(cell.median_ms);
+  json.at("run_hash").get_to(cell.hash);
+  return cell;
+}
+
 }  // namespace
 
 std::vector<Ingredient> ingredients(const MethodInfo& method) {
@@ -110,14 +120,7 @@ nlohmann::ordered_json to_json(const AblationCell& cell) {
 
 AblationCell ablation_cell_from_json(const std::string& text, const std::string& where) {
   try {
-    const nlohmann::json json = parse_json(text);
-    AblationCell cell;
-    if (!json.at("rpe_1s_m").is_null()) cell.rpe_m = json.at("rpe_1s_m").get<double>();
-    if (!json.at("mask_iou").is_null()) cell.mask_iou = json.at("mask_iou").get<double>();
-    json.at("coverage").get_to(cell.coverage);
-    json.at("median_ms").get_to(cell.median_ms);
-    json.at("run_hash").get_to(cell.hash);
-    return cell;
+    return ablated_cell_from(parse_json(text));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: is no result of an ablation ({})", where, printable(error.what())));
   }
@@ -193,7 +196,7 @@ Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std:
 }
 
 nlohmann::ordered_json ablation_json(const std::string& method, const std::vector<AblationRow>& rows,
-                                     const std::vector<std::string>& sequences) {
+                                     const std::vector<std::string>& sequences, const Provenance& made) {
   nlohmann::ordered_json variants = nlohmann::ordered_json::array();
   for (const AblationRow& row : rows) {
     nlohmann::ordered_json runs = nlohmann::ordered_json::array();
@@ -214,7 +217,33 @@ nlohmann::ordered_json ablation_json(const std::string& method, const std::vecto
     variant["runs"] = runs;
     variants.push_back(variant);
   }
-  return {{"method", method}, {"variants", variants}};
+  nlohmann::ordered_json json = to_json(made);
+  json["method"] = method;
+  json["variants"] = variants;
+  return json;
+}
+
+Ablation read_ablation(const std::string& path) {
+  try {
+    const nlohmann::json json = parse_json(read_text(path));
+    Ablation ablation{json.at("method").get<std::string>(), {}, {}};
+    for (const nlohmann::json& variant : json.at("variants")) {
+      AblationRow row{
+          variant.at("without").is_null() ? "" : variant.at("without").get<std::string>(), {}, {}};
+      for (const nlohmann::json& run : variant.at("runs")) {
+        row.cells.push_back(ablated_cell_from(run));
+        if (ablation.rows.empty()) ablation.sequences.push_back(run.at("sequence").get<std::string>());
+      }
+      if (row.cells.size() != ablation.sequences.size()) throw InputError("its variants differ in runs");
+      ablation.rows.push_back(std::move(row));
+    }
+    if (ablation.rows.empty()) throw InputError("it has no variants");
+    return ablation;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: holds no ablation ({})", path, printable(error.what())));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: holds no ablation ({})", path, error.what()));
+  }
 }
 
 }  // namespace stillpoint

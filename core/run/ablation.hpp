@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config.hpp"
+#include "core/evaluation/benchmark_results.hpp"
 #include "core/evaluation/tables.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_report.hpp"
@@ -75,6 +76,19 @@ struct AblationChange {
                                   const std::vector<std::string>& sequences);
 [[nodiscard]] nlohmann::ordered_json ablation_json(const std::string& method,
                                                    const std::vector<AblationRow>& rows,
-                                                   const std::vector<std::string>& sequences);
+                                                   const std::vector<std::string>& sequences,
+                                                   const Provenance& made);
+
+/// An ablation read back.
+struct Ablation {
+  std::string method;
+  std::vector<std::string> sequences;
+  std::vector<AblationRow> rows;  ///< the whole method first
+
+  [[nodiscard]] Table summary() const { return ablation_summary(method, rows, sequences); }
+};
+
+/// @throws InputError where the file holds none
+[[nodiscard]] Ablation read_ablation(const std::string& path);
 
 }  // namespace stillpoint

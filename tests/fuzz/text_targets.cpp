@@ -161,7 +161,9 @@ void read_any_page(std::string_view text) {
   results.runs.resize(2);
   for (BenchmarkResult& run : results.runs) run.sequence = "street", run.odometry = "features";
   results.runs[0].method = "none", results.runs[1].method = "paper";
-  (void)with_tables(std::string(text), "README.md", "none", [&](const std::string&) { return results; });
+  (void)with_tables(std::string(text), "README.md", "none",
+                    {[&](const std::string&) { return results; }, [](const std::string&) { return Table(); },
+                     [&](const std::string&) { return results; }});
 }
 Seeds page_seeds() {
   return {"# A page\n\n<!-- table: results/table1.json rpe methods=none,paper -->\n<!-- end of table -->\n",

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
 namespace {
@@ -74,12 +75,30 @@ TEST(Ablation, TablesHoldEveryRun) {
   for (const auto& row : list.rows) EXPECT_EQ(row.size(), list.header.size());
   EXPECT_THAT(list.rows.at(2),
               ::testing::ElementsAre("one", "prior", "0.030000", "0.6000", "1.0000", "8.00", "x"));
-  const auto json = ablation_json("stillpoint", rows, sequences);
+  const Provenance made{"1.2", "abc", "two cores", "2026-01-02", "stillpoint ablate one two"};
+  const auto json = ablation_json("stillpoint", rows, sequences, made);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
   EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_1s_m"], 0.04);
   EXPECT_TRUE(json["variants"][1]["runs"][1]["mask_iou"].is_null());
   // (3 * 2)^(1/2) - 1
   EXPECT_NEAR(json["variants"][1]["rpe_mean_change"].get<double>(), std::sqrt(6.0) - 1.0, 1e-12);
+}
+
+TEST(Ablation, IsReadBackAndSaysWhatItWasMadeBy) {
+  const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
+                                         {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+  const std::vector<std::string> sequences = {"one", "two"};
+  const Provenance made{"1.2", "abc", "two cores", "2026-01-02", "stillpoint ablate one two"};
+  const TemporaryFolder folder;
+  folder.write("ablation.json", ablation_json("stillpoint", rows, sequences, made).dump());
+  const Ablation read = read_ablation(folder.path("ablation.json"));
+  EXPECT_EQ(read.sequences, sequences);
+  EXPECT_EQ(to_csv(read.summary()), to_csv(ablation_summary("stillpoint", rows, sequences)));
+  EXPECT_EQ(provenance_from_json(folder.read("ablation.json"), "it").command, made.command);
+
+  folder.write("none.json", R"({"method": "stillpoint", "variants": []})");
+  EXPECT_THROW((void)read_ablation(folder.path("none.json")), InputError);
+  EXPECT_THROW((void)provenance_from_json(folder.read("none.json"), "it"), InputError);
 }
 
 }  // namespace

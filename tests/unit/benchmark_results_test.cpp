@@ -48,11 +48,17 @@ std::string page_with(const std::string& request) {
   return "before\n<!-- table: a.json " + request + " -->\nold\n<!-- end of table -->\nafter\n";
 }
 
+TableSources sources(const BenchmarkResults& results) {
+  const auto named = [](const std::string& file) { EXPECT_EQ(file, "a.json"); };
+  return {[=](const std::string& file) { return named(file), results; },
+          [=](const std::string& file) {
+            return named(file), Table{{"stillpoint", "IoU"}, {{"whole", "0.7"}}};
+          },
+          [=](const std::string& file) { return named(file), results; }};
+}
+
 std::string made(const std::string& request) {
-  return with_tables(page_with(request), "page.md", "none", [](const std::string& file) {
-    EXPECT_EQ(file, "a.json");
-    return some_results();
-  });
+  return with_tables(page_with(request), "page.md", "none", sources(some_results()));
 }
 
 TEST(BenchmarkResults, AnotherProgramsRunStandsBehindEveryEngineUnderItsOwnName) {
@@ -67,15 +73,13 @@ TEST(BenchmarkResults, AnotherProgramsRunStandsBehindEveryEngineUnderItsOwnName)
 }
 
 TEST(BenchmarkResults, RepeatsAreTablesOfTheirSpread) {
+  BenchmarkResults results = some_results();
+  for (int k = 1; k < 3; ++k) {
+    results.runs.push_back(result("clip", "features", "none", 0.01));
+    results.runs.back().repeat = k;
+  }
   const std::string page =
-      with_tables(page_with("spread sequences=clip methods=none"), "page.md", "none", [](const std::string&) {
-        BenchmarkResults results = some_results();
-        for (int k = 1; k < 3; ++k) {
-          results.runs.push_back(result("clip", "features", "none", 0.01));
-          results.runs.back().repeat = k;
-        }
-        return results;
-      });
+      with_tables(page_with("spread sequences=clip methods=none"), "page.md", "none", sources(results));
   EXPECT_THAT(page, HasSubstr("| clip       | 0.0100 ± 0.0006 |"));
 }
 
@@ -129,6 +133,7 @@ TEST(PageTables, TellGainsMasksAndWhatTheyWereMadeBy) {
   EXPECT_THAT(made("right methods=paper odometry=features"), HasSubstr("| walking_xyz     |  75 % |"));
   EXPECT_THAT(made("lost methods=paper odometry=features"), HasSubstr("| clip        | 96 of 120 |"));
   EXPECT_THAT(made("published odometry=features"), HasSubstr("ORB-SLAM2 VO"));
+  EXPECT_THAT(made("ablation"), HasSubstr("| whole      | 0.7 |"));
   EXPECT_THAT(made("made"),
               HasSubstr("\n*Made by stillpoint 0.1.0 at commit abc, on 2026-01-02, a machine, 2 cores, by "
                         "`stillpoint benchmark x`.*\n"));
@@ -137,9 +142,8 @@ TEST(PageTables, TellGainsMasksAndWhatTheyWereMadeBy) {
 TEST(PageTables, MadeAgainTheyAreTheSame) {
   const std::string once = made("rpe");
   EXPECT_NE(once, page_with("rpe"));
-  EXPECT_EQ(with_tables(once, "page.md", "none", [](const std::string&) { return some_results(); }), once);
-  EXPECT_EQ(with_tables("no table\n", "page.md", "none", [](const std::string&) { return some_results(); }),
-            "no table\n");
+  EXPECT_EQ(with_tables(once, "page.md", "none", sources(some_results())), once);
+  EXPECT_EQ(with_tables("no table\n", "page.md", "none", sources(some_results())), "no table\n");
 }
 
 TEST(PageTables, WhatIsNotThereIsNamed) {
@@ -153,10 +157,7 @@ TEST(PageTables, WhatIsNotThereIsNamed) {
   fails("rpe sequences=cup", "asks for sequences that it has none of");
   fails("rpe colour=red", "asks for 'colour=red'; it may choose methods=");
   EXPECT_THAT(
-      [] {
-        (void)with_tables("<!-- table: a.json rpe -->\n", "page.md", "none",
-                          [](const std::string&) { return some_results(); });
-      },
+      [] { (void)with_tables("<!-- table: a.json rpe -->\n", "page.md", "none", sources(some_results())); },
       ThrowsMessage<InputError>(HasSubstr("a table begins and has no '<!-- end of table -->'")));
 }
 
