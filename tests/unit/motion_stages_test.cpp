@@ -253,6 +253,32 @@ TEST(Cleanup, NothingGrowsWhereTheWarpHasNoData) {
   EXPECT_EQ(cv::countNonZero(mask & ~valid), 0);
 }
 
+TEST(Cleanup, IsOpenCvsErosionAndDilation) {
+  struct Kernels {
+    cv::Size size;
+    int erode_px, erosions, dilate_px, dilations;
+  };
+  for (const Kernels& k : {Kernels{{640, 480}, 4, 2, 16, 1},
+                           {{131, 70}, 3, 1, 99, 2},
+                           {{64, 40}, 1, 0, 7, 3},
+                           {{203, 9}, 5, 3, 40, 1},
+                           {{3, 80}, 2, 1, 2, 0}}) {
+    const cv::Mat raw = textured_image(k.size, 12) > 96, valid = textured_image(k.size, 13) > 60;
+    PaperConfig config;
+    config.erode_kernel_px = k.erode_px;
+    config.erode_iterations = k.erosions;
+    config.dilate_kernel_px = k.dilate_px;
+    config.dilate_iterations = k.dilations;
+    const auto square = [](int side) { return cv::Mat::ones(side, side, CV_8UC1); };
+    cv::Mat expected;
+    cv::erode(raw, expected, square(k.erode_px), {k.erode_px / 2, k.erode_px / 2}, k.erosions);
+    const int anchor = (k.dilate_px - 1) / 2;
+    cv::dilate(expected, expected, square(k.dilate_px), {anchor, anchor}, k.dilations);
+    expected &= valid;
+    EXPECT_EQ(cv::countNonZero(clean_mask(raw, valid, config) != expected), 0) << k.size << k.dilate_px;
+  }
+}
+
 TEST(Regions, TellBoxCentroidAndArea) {
   cv::Mat mask = cv::Mat::zeros(40, 50, CV_8UC1);
   mask(cv::Rect(30, 2, 4, 3)).setTo(255);
