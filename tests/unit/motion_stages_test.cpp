@@ -153,6 +153,21 @@ TEST(Difference, AnotherExposureIsTheMedianRatioOfMidTones) {
   EXPECT_EQ(exposure_ratio(brighter, compensated, valid), 1.0);  // nothing tells
 }
 
+TEST(Difference, AnotherExposureIsToldFromTwoPercentOn) {
+  // 37 columns: two groups of sixteen and some left over.
+  const cv::Mat valid(8, 37, CV_8UC1, cv::Scalar(255)), hundred(8, 37, CV_8UC1, cv::Scalar(100));
+  const auto of = [&](int gray) {
+    return exposure_ratio(cv::Mat(8, 37, CV_8UC1, cv::Scalar(gray)), hundred, valid);
+  };
+  EXPECT_EQ(of(98), 1.0);
+  EXPECT_EQ(of(101), 1.0);
+  EXPECT_NEAR(of(97), 0.97, 0.0005);
+  EXPECT_NEAR(of(102), 1.02, 0.0005);
+  EXPECT_NEAR(of(199), 1.99, 0.0005);
+  EXPECT_EQ(of(200), 1.0);  // twice as bright is not the camera's doing
+  EXPECT_EQ(of(49), 1.0);
+}
+
 TEST(Difference, HistogramCountsValidPixelsOnly) {
   const cv::Mat image = (cv::Mat_<unsigned char>(2, 5) << 0, 0, 3, 255, 3, 3, 9, 255, 0, 9);
   const cv::Mat valid = (cv::Mat_<unsigned char>(2, 5) << 255, 0, 255, 255, 255, 0, 0, 255, 255, 255);

@@ -1,16 +1,55 @@
 #include "core/motion/paper/difference.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <numeric>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 namespace stillpoint {
 namespace {
 
-constexpr double kToldRatio = 0.02;
+constexpr int kDark = 48, kBright = 215;  // grey levels: coarse steps below, cut off above
+constexpr double kLeastRatio = 0.5, kMostRatio = 2.0;
+
+/// Pixels that tell a ratio, and those of them whose ratio is too far from 1 to be left untold.
+struct RatioCounts {
+  int all = 0, darker = 0, brighter = 0;
+};
+
+/// Every other pixel of a row, eight at once.
+void count_ratios(const uchar* to, const uchar* from, const uchar* usable, int width, RatioCounts& counts) {
+  const auto even_pixels = [](const uchar* pixels) {
+    return cv::v_reinterpret_as_s16(cv::v_load(pixels)) & cv::v_setall_s16(0xFF);
+  };
+  const auto is_mid = [](const cv::v_int16x8& gray) {
+    return (gray >= cv::v_setall_s16(kDark)) & (gray <= cv::v_setall_s16(kBright));
+  };
+  const auto times = [](const cv::v_int16x8& gray, short factor) {
+    return cv::v_mul_wrap(gray, cv::v_setall_s16(factor));
+  };
+  cv::v_int16x8 all = cv::v_setzero_s16(), darker = all, brighter = all;
+  for (int x = 0; x + 16 <= width; x += 16) {
+    const cv::v_int16x8 a = even_pixels(to + x), b = even_pixels(from + x);
+    const cv::v_int16x8 tells = (even_pixels(usable + x) != cv::v_setzero_s16()) & is_mid(a) & is_mid(b) &
+                                (times(a, 2) >= b) & (a < times(b, 2));  // kLeastRatio, kMostRatio
+    all -= tells;                                                        // a mask is -1
+    darker -= tells & (times(a, 50) < times(b, 49));                     // less than 0.98
+    brighter -= tells & (times(a, 50) >= times(b, 51));                  // 1.02 or more
+  }
+  counts.all += cv::v_reduce_sum(all);
+  counts.darker += cv::v_reduce_sum(darker);
+  counts.brighter += cv::v_reduce_sum(brighter);
+  for (int x = width / 16 * 16; x < width; x += 2) {
+    const int a = to[x], b = from[x];
+    if (usable[x] == 0 || std::min(a, b) < kDark || std::max(a, b) > kBright || 2 * a < b || a >= 2 * b)
+      continue;
+    ++counts.all;
+    if (50 * a < 49 * b) ++counts.darker;
+    if (50 * a >= 51 * b) ++counts.brighter;
+  }
+}
 
 /// The ratios of two grey levels, in bins: dividing every pixel by another one takes longer than looking up.
 class RatioBins {
@@ -18,25 +57,23 @@ class RatioBins {
   static constexpr std::uint16_t kCount = 3000;  ///< of 0.0005; also the bin of what tells nothing
 
   RatioBins() {
-    constexpr int kDark = 48, kBright = 215;  // grey levels: coarse steps below, cut off above
     bins_.fill(kCount);
     for (int from = kDark; from <= kBright; ++from)
       for (int to = kDark; to <= kBright; ++to) {
         const double ratio = static_cast<double>(to) / from;
-        if (ratio >= kLeast && ratio < kMost)
+        if (ratio >= kLeastRatio && ratio < kMostRatio)
           bins_[static_cast<std::size_t>(from << 8 | to)] =
-              static_cast<std::uint16_t>((ratio - kLeast) / (kMost - kLeast) * kCount);
+              static_cast<std::uint16_t>((ratio - kLeastRatio) / (kMostRatio - kLeastRatio) * kCount);
       }
   }
   [[nodiscard]] std::size_t of(unsigned char to, unsigned char from) const {
     return bins_[static_cast<std::size_t>(from << 8 | to)];
   }
   static double middle(std::size_t bin) {
-    return kLeast + (static_cast<double>(bin) + 0.5) * (kMost - kLeast) / kCount;
+    return kLeastRatio + (static_cast<double>(bin) + 0.5) * (kMostRatio - kLeastRatio) / kCount;
   }
 
  private:
-  static constexpr double kLeast = 0.5, kMost = 2.0;
   std::array<std::uint16_t, 1 << 16> bins_;
 };
 
@@ -50,6 +87,12 @@ cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated,
 }
 
 double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid) {
+  RatioCounts counts;
+  for (int y = 0; y < destination.rows; y += 2)
+    count_ratios(destination.ptr(y), compensated.ptr(y), valid.ptr(y), destination.cols, counts);
+  if (counts.all * 40 < static_cast<int>(destination.total())) return 1.0;  // of every fourth pixel
+  if (2 * counts.darker < counts.all && 2 * counts.brighter <= counts.all) return 1.0;
+
   static const RatioBins bins;
   std::vector<int> ratios(RatioBins::kCount + 1, 0);
   for (int y = 0; y < destination.rows; y += 2) {
@@ -57,13 +100,10 @@ double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, co
     for (int x = 0; x < destination.cols; x += 2)
       ++ratios[usable[x] != 0 ? bins.of(to[x], from[x]) : RatioBins::kCount];
   }
-  const int count = std::accumulate(ratios.begin(), ratios.end() - 1, 0);
-  if (count * 40 < static_cast<int>(destination.total())) return 1.0;  // every fourth pixel was looked at
   int below = 0;
   std::size_t bin = 0;
-  while (bin + 1 < RatioBins::kCount && 2 * (below += ratios[bin]) < count) ++bin;
-  const double median = RatioBins::middle(bin);
-  return std::abs(median - 1.0) > kToldRatio ? median : 1.0;
+  while (bin + 1 < RatioBins::kCount && 2 * (below += ratios[bin]) < counts.all) ++bin;
+  return RatioBins::middle(bin);
 }
 
 Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {
