@@ -38,8 +38,9 @@ FollowedPoints ask_opencv(const std::vector<cv::Mat>& source, const std::vector<
 // one after the other. Which sum a number enters, and when, decides the last bit, and is kept here.
 constexpr int kWindow = 21, kLaned = 16;  // px: side of the window, pixels of a row summed in lanes
 constexpr std::size_t kRest = kWindow - kLaned;
-constexpr int kWeightBits = 14;              // the weights of four pixels add up to 1 << 14
-constexpr int kGrayShift = kWeightBits - 5;  // interpolated grey levels have five bits behind the point
+constexpr int kWeightBits = 14;  // the weights of four pixels add up to 1 << 14
+constexpr int kGrayBits = 5;     // interpolated grey levels have five bits behind the point
+constexpr int kGrayShift = kWeightBits - kGrayBits;
 constexpr float kSumScale = 1.0F / (1 << 20);
 constexpr int kExact = 1 << 24;  // whole numbers below it are floats, and so are their sums
 constexpr std::size_t kGrayBytes = 32, kGradientBytes = 100;  // read from the first pixel of a row on
@@ -73,6 +74,7 @@ struct WindowPlace {
   [[nodiscard]] bool touches(const cv::Mat& image) const {
     return corner.x >= -kWindow && corner.x < image.cols && corner.y >= -kWindow && corner.y < image.rows;
   }
+  [[nodiscard]] bool is_on_pixels() const { return upper_weights == 1 << kWeightBits && lower_weights == 0; }
   cv::Point corner;
   int upper_weights, lower_weights;  ///< two of 16 bits: the left pixel's, and above it the right one's
 };
@@ -239,15 +241,14 @@ STILLPOINT_AVX2 inline void take_rest(const Gradients& eight, WindowRow& row, Su
   }
 }
 
-STILLPOINT_AVX2 void fill_window(const cv::Mat& image, const cv::Mat& gradients, const WindowPlace& place,
-                                 Window& window) {
-  const WindowBytes gray(image, place.corner, kGrayBytes);
-  const WindowBytes change(gradients, place.corner, kGradientBytes);
-  for (int y = 0; y <= kWindow; ++y) {  // all rows at once, ahead of the grey levels' work
-    __builtin_prefetch(change.row(y));
-    __builtin_prefetch(change.row(y) + 64);
-  }
-  const Weights weights = weights_of(place);
+/// Sums of a window's gradients, on the way to Window::a11 and so on.
+struct WindowSums {
+  LanedSums laned;
+  SumsInOrder in_order;
+};
+
+STILLPOINT_AVX2 void interpolate_window(const WindowBytes& gray, const WindowBytes& change,
+                                        const Weights& weights, Window& window, WindowSums& sums) {
   Line upper = line_at(gray.row(0));
   for (int y = 0; y < kWindow; ++y) {
     WindowRow& row = window.rows[static_cast<std::size_t>(y)];
@@ -257,28 +258,63 @@ STILLPOINT_AVX2 void fill_window(const cv::Mat& image, const cv::Mat& gradients,
     store(row.gray, levels.rest);
     upper = lower;
   }
-  LanedSums laned;
   GradientLine first = gradient_line_at(change.row(0)), second = gradient_line_at(change.row(0) + 32);
   for (int y = 0; y < kWindow; ++y) {
     WindowRow& row = window.rows[static_cast<std::size_t>(y)];
     const GradientLine first_below = gradient_line_at(change.row(y + 1));
-    take_laned(gradients_between(first, first_below, weights), row.laned_gradient[0], laned);
+    take_laned(gradients_between(first, first_below, weights), row.laned_gradient[0], sums.laned);
     first = first_below;
     const GradientLine second_below = gradient_line_at(change.row(y + 1) + 32);
-    take_laned(gradients_between(second, second_below, weights), row.laned_gradient[1], laned);
+    take_laned(gradients_between(second, second_below, weights), row.laned_gradient[1], sums.laned);
     second = second_below;
   }
-  SumsInOrder in_order;
   GradientLine rest = gradient_line_at(change.row(0) + 64);
   for (int y = 0; y < kWindow; ++y) {
     const GradientLine rest_below = gradient_line_at(change.row(y + 1) + 64);
     take_rest(gradients_between(rest, rest_below, weights), window.rows[static_cast<std::size_t>(y)],
-              in_order);
+              sums.in_order);
     rest = rest_below;
   }
-  window.a11 = (in_order.xx + sum_of_lanes(laned.xx)) * kSumScale;
-  window.a12 = (in_order.xy + sum_of_lanes(laned.xy)) * kSumScale;
-  window.a22 = (in_order.yy + sum_of_lanes(laned.yy)) * kSumScale;
+}
+
+/// Gradients of eight pixels as they are.
+STILLPOINT_AVX2 inline Gradients gradients_at(const unsigned char* from) {
+  const __m256i both = load_bytes(from);
+  return {_mm256_srai_epi32(_mm256_slli_epi32(both, 16), 16), _mm256_srai_epi32(both, 16)};
+}
+
+/// The same for a window that lies on whole pixels, as a corner's does in the full image.
+STILLPOINT_AVX2 void copy_window(const WindowBytes& gray, const WindowBytes& change, Window& window,
+                                 WindowSums& sums) {
+  const __m256i low_half = _mm256_set1_epi32(0xFFFF);
+  for (int y = 0; y < kWindow; ++y) {
+    WindowRow& row = window.rows[static_cast<std::size_t>(y)];
+    const Line line = line_at(gray.row(y));
+    const __m256i laned = _mm256_blend_epi16(line.first, _mm256_slli_epi32(line.second, 16), 0xAA);
+    store(row.laned_gray, _mm256_slli_epi16(laned, kGrayBits));
+    store(row.gray, _mm256_slli_epi32(_mm256_and_si256(line.rest, low_half), kGrayBits));
+    take_laned(gradients_at(change.row(y)), row.laned_gradient[0], sums.laned);
+    take_laned(gradients_at(change.row(y) + 32), row.laned_gradient[1], sums.laned);
+    take_rest(gradients_at(change.row(y) + 64), row, sums.in_order);
+  }
+}
+
+STILLPOINT_AVX2 void fill_window(const cv::Mat& image, const cv::Mat& gradients, const WindowPlace& place,
+                                 Window& window) {
+  const WindowBytes gray(image, place.corner, kGrayBytes);
+  const WindowBytes change(gradients, place.corner, kGradientBytes);
+  for (int y = 0; y <= kWindow; ++y) {  // all rows at once, ahead of the grey levels' work
+    __builtin_prefetch(change.row(y));
+    __builtin_prefetch(change.row(y) + 64);
+  }
+  WindowSums sums;
+  if (place.is_on_pixels())
+    copy_window(gray, change, window, sums);
+  else
+    interpolate_window(gray, change, weights_of(place), window, sums);
+  window.a11 = (sums.in_order.xx + sum_of_lanes(sums.laned.xx)) * kSumScale;
+  window.a12 = (sums.in_order.xy + sum_of_lanes(sums.laned.xy)) * kSumScale;
+  window.a22 = (sums.in_order.yy + sum_of_lanes(sums.laned.yy)) * kSumScale;
 }
 
 /// Products of differences and gradients, of the pixels that are summed one after the other.
