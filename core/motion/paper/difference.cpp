@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
@@ -80,9 +81,16 @@ class RatioBins {
 }  // namespace
 
 cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid) {
-  cv::Mat difference;
-  cv::absdiff(destination, compensated, difference);
-  cv::bitwise_and(difference, valid, difference);  // valid is 0 or 255: a byte-wise selection
+  cv::Mat difference(destination.size(), CV_8UC1);
+  for (int y = 0; y < difference.rows; ++y) {
+    const uchar *there = destination.ptr(y), *carried = compensated.ptr(y), *usable = valid.ptr(y);
+    uchar* to = difference.ptr(y);
+    int x = 0;
+    for (; x + cv::v_uint8x16::nlanes <= difference.cols; x += cv::v_uint8x16::nlanes)
+      cv::v_store(to + x,
+                  cv::v_absdiff(cv::v_load(there + x), cv::v_load(carried + x)) & cv::v_load(usable + x));
+    for (; x < difference.cols; ++x) to[x] = static_cast<uchar>(std::abs(there[x] - carried[x]) & usable[x]);
+  }
   return difference;
 }
 
