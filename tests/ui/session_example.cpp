@@ -272,10 +272,6 @@ SessionView handmade_example() {
   cv::circle(round.mask, {190, 110}, 40, 255, cv::FILLED);
   cv::rectangle(round.mask, {30, 180, 50, 24}, 255, cv::FILLED);
   round.backward_mask_in_target = round.mask;
-  round.labels = cv::Mat::zeros(240, 320, CV_32SC1);
-  round.labels.setTo(1, round.mask);
-  round.labels(cv::Rect(30, 180, 50, 24)) = 2;
-  round.regions = {{{150, 70, 81, 81}, {190, 110}, 5025}, {{30, 180, 50, 24}, {55, 192}, 1200}};
   round.mask_share = 6225.0 / (320.0 * 240.0);
   PaperMotionTrace paper;
   paper.reference = 23;

@@ -77,8 +77,6 @@ void expect_equal_traces(const PaperTrace& a, const PaperTrace& b) {
     expect_equal_images(a.rounds[i].backward_mask_in_target, b.rounds[i].backward_mask_in_target,
                         "carried mask");
     expect_equal_images(a.rounds[i].mask, b.rounds[i].mask, "union");
-    expect_equal_images(a.rounds[i].labels, b.rounds[i].labels, "labels");
-    EXPECT_EQ(a.rounds[i].regions.size(), b.rounds[i].regions.size());
   }
 }
 
@@ -108,7 +106,6 @@ TEST(DetectMotion, UnionHoldsBothDirectionsAndForwardAloneIsLess) {
     expect_equal_images(round.mask, round.forward.mask | round.backward_mask_in_target, "union");
     EXPECT_GT(cv::countNonZero(round.mask), cv::countNonZero(round.forward.mask));
     EXPECT_DOUBLE_EQ(round.mask_share, cv::countNonZero(round.mask) / (640.0 * 480.0));
-    expect_equal_images(round.labels != 0, round.mask, "labels");
   }
 }
 
@@ -196,7 +193,6 @@ TEST(DetectMotion, EqualFramesShowNoMotion) {
   EXPECT_EQ(cv::countNonZero(trace.rounds[0].forward.difference), 0);
   EXPECT_EQ(trace.rounds[0].forward.threshold, 0.0);
   EXPECT_EQ(cv::countNonZero(trace.mask()), 0);
-  EXPECT_TRUE(trace.rounds[0].regions.empty());
 }
 
 TEST(DetectMotion, PairsWithoutTextureGiveANoteAndNoMask) {

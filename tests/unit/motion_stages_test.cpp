@@ -153,6 +153,21 @@ TEST(Difference, AnotherExposureIsTheMedianRatioOfMidTones) {
   EXPECT_EQ(exposure_ratio(brighter, compensated, valid), 1.0);  // nothing tells
 }
 
+TEST(Difference, AnotherExposureIsToldFromTwoPercentOn) {
+  // 37 columns: two groups of sixteen and some left over.
+  const cv::Mat valid(8, 37, CV_8UC1, cv::Scalar(255)), hundred(8, 37, CV_8UC1, cv::Scalar(100));
+  const auto of = [&](int gray) {
+    return exposure_ratio(cv::Mat(8, 37, CV_8UC1, cv::Scalar(gray)), hundred, valid);
+  };
+  EXPECT_EQ(of(98), 1.0);
+  EXPECT_EQ(of(101), 1.0);
+  EXPECT_NEAR(of(97), 0.97, 0.0005);
+  EXPECT_NEAR(of(102), 1.02, 0.0005);
+  EXPECT_NEAR(of(199), 1.99, 0.0005);
+  EXPECT_EQ(of(200), 1.0);  // twice as bright is not the camera's doing
+  EXPECT_EQ(of(49), 1.0);
+}
+
 TEST(Difference, HistogramCountsValidPixelsOnly) {
   const cv::Mat image = (cv::Mat_<unsigned char>(2, 5) << 0, 0, 3, 255, 3, 3, 9, 255, 0, 9);
   const cv::Mat valid = (cv::Mat_<unsigned char>(2, 5) << 255, 0, 255, 255, 255, 0, 0, 255, 255, 255);
@@ -251,6 +266,32 @@ TEST(Cleanup, NothingGrowsWhereTheWarpHasNoData) {
   const cv::Mat mask = clean_mask(raw, valid, PaperConfig{});
   EXPECT_GT(cv::countNonZero(mask), 0);
   EXPECT_EQ(cv::countNonZero(mask & ~valid), 0);
+}
+
+TEST(Cleanup, IsOpenCvsErosionAndDilation) {
+  struct Kernels {
+    cv::Size size;
+    int erode_px, erosions, dilate_px, dilations;
+  };
+  for (const Kernels& k : {Kernels{{640, 480}, 4, 2, 16, 1},
+                           {{131, 70}, 3, 1, 99, 2},
+                           {{64, 40}, 1, 0, 7, 3},
+                           {{203, 9}, 5, 3, 40, 1},
+                           {{3, 80}, 2, 1, 2, 0}}) {
+    const cv::Mat raw = textured_image(k.size, 12) > 96, valid = textured_image(k.size, 13) > 60;
+    PaperConfig config;
+    config.erode_kernel_px = k.erode_px;
+    config.erode_iterations = k.erosions;
+    config.dilate_kernel_px = k.dilate_px;
+    config.dilate_iterations = k.dilations;
+    const auto square = [](int side) { return cv::Mat::ones(side, side, CV_8UC1); };
+    cv::Mat expected;
+    cv::erode(raw, expected, square(k.erode_px), {k.erode_px / 2, k.erode_px / 2}, k.erosions);
+    const int anchor = (k.dilate_px - 1) / 2;
+    cv::dilate(expected, expected, square(k.dilate_px), {anchor, anchor}, k.dilations);
+    expected &= valid;
+    EXPECT_EQ(cv::countNonZero(clean_mask(raw, valid, config) != expected), 0) << k.size << k.dilate_px;
+  }
 }
 
 TEST(Regions, TellBoxCentroidAndArea) {

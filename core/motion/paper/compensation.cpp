@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/motion/paper/gray_warp.hpp"
 #include "core/motion/paper/homography.hpp"
 
 namespace stillpoint {
@@ -58,7 +59,7 @@ cv::Mat valid_area(const cv::Size& size, const cv::Matx33d& homography, int bord
 
 CompensatedFrame compensate(const cv::Mat& source, const cv::Matx33d& homography, int border_px) {
   CompensatedFrame frame;
-  cv::warpPerspective(source, frame.image, homography, source.size(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  frame.image = warp_gray(source, homography);
   frame.valid = valid_area(source.size(), homography, border_px);
   return frame;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 #include <tuple>
 
 namespace stillpoint {
@@ -66,19 +68,33 @@ struct Candidate {
   int x, y;
 };
 
+/// Which of four pixels of a row from x on are at least `least`, and no less than their neighbours in the
+/// row: a bit each.
+unsigned maxima_in_row(const float* row, int x, float least) {
+  const cv::v_float32x4 here = cv::v_load(row + x);
+  return static_cast<unsigned>(cv::v_signmask((here >= cv::v_setall_f32(least)) &
+                                              (here >= cv::v_load(row + x - 1)) &
+                                              (here >= cv::v_load(row + x + 1))));
+}
+
 /// Local maxima of at least `least`, strongest first, then in reading order.
 std::vector<Candidate> local_maxima(const cv::Mat& response, float least) {
+  constexpr int kLanes = cv::v_float32x4::nlanes;
   std::vector<Candidate> found;
   for (int y = 1; y < response.rows - 1; ++y) {
     const float *above = response.ptr<float>(y - 1), *here = response.ptr<float>(y);
     const float* below = response.ptr<float>(y + 1);
-    for (int x = 1; x < response.cols - 1; ++x) {
-      const float value = here[x];
-      if (value < least || value < here[x - 1] || value < here[x + 1]) continue;
+    const auto take_if_highest = [&](int x) {
       const float beside =
           std::max({above[x - 1], above[x], above[x + 1], below[x - 1], below[x], below[x + 1]});
-      if (value >= beside) found.push_back({value, x, y});
-    }
+      if (here[x] >= beside) found.push_back({here[x], x, y});
+    };
+    int x = 1;
+    for (; x + kLanes < response.cols; x += kLanes)
+      for (unsigned maxima = maxima_in_row(here, x, least); maxima != 0; maxima &= maxima - 1)
+        take_if_highest(x + std::countr_zero(maxima));
+    for (; x < response.cols - 1; ++x)
+      if (here[x] >= least && here[x] >= here[x - 1] && here[x] >= here[x + 1]) take_if_highest(x);
   }
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(b.response, a.y, a.x) < std::tie(a.response, b.y, b.x);

@@ -11,7 +11,6 @@
 #include "core/motion/paper/compensation.hpp"
 #include "core/motion/paper/difference.hpp"
 #include "core/motion/paper/homography.hpp"
-#include "core/motion/regions.hpp"
 #include "core/stopwatch.hpp"
 
 namespace stillpoint {
@@ -77,9 +76,10 @@ DirectionTrace look_one_way(std::vector<Track> tracks, const cv::Mat& source, co
   return seen;
 }
 
-/// Steps 5 and 6. The backward mask lies in the reference's camera; the forward homography brings it into the
+/// Step 5. The backward mask lies in the reference's camera; the forward homography brings it into the
 /// target's (the inverse of the backward one, where there is no forward one), and what the forward warp has
-/// no data for stays out of the union.
+/// no data for stays out of the union. Step 6's regions are found when somebody looks (describe_paper): what
+/// they hold is what the mask holds.
 void unite_directions(MotionRound& round) {
   const DirectionTrace& forward = round.forward;
   const DirectionTrace& backward = round.backward;
@@ -98,10 +98,8 @@ void unite_directions(MotionRound& round) {
     cv::bitwise_or(forward.mask, round.backward_mask_in_target, round.mask);
   }
   if (round.mask.empty()) return;
-  LabelledRegions found = find_regions(round.mask);
-  round.labels = found.labels;
-  round.regions = std::move(found.regions);
-  round.mask_share = static_cast<double>(found.area) / static_cast<double>(round.mask.total());
+  round.mask_share =
+      static_cast<double>(cv::countNonZero(round.mask)) / static_cast<double>(round.mask.total());
 }
 
 std::optional<cv::Matx33d> last_homography(const std::vector<MotionRound>& rounds,

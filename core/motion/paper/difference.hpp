@@ -18,7 +18,7 @@ using Histogram = std::array<int, 256>;
 [[nodiscard]] double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated,
                                     const cv::Mat& valid);
 
-/// The grey levels of `image` at the non-zero pixels of `valid`. Both CV_8UC1 of one size.
+/// The grey levels of `image` where `valid` is 255, and not 0. Both CV_8UC1 of one size.
 [[nodiscard]] Histogram histogram(const cv::Mat& image, const cv::Mat& valid);
 
 /// Otsu's threshold: the level th for which the pixels up to th and those above it lie furthest apart

@@ -1,11 +1,10 @@
 #include "core/motion/paper/homography.hpp"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+
+#include "core/geometry/normal_equations.hpp"
 
 namespace stillpoint {
 namespace {
@@ -29,37 +28,117 @@ Normalisation normalisation(const std::vector<Track>& tracks, cv::Point2f Track:
   return {{scale, 0, -scale * centre.x, 0, scale, -scale * centre.y, 0, 0, 1}, scale};
 }
 
-/// One inlier's residual of eq. (4), px: where H carries `from`, less `to`; both Hartley-normalised on the
-/// way.
-struct ReprojectionResidual final : ceres::SizedCostFunction<2, 8> {
-  ReprojectionResidual(const cv::Point2d& from, const cv::Point2d& to, double px_per_unit)
-      : from_(from), to_(to), px_per_unit_(px_per_unit) {}
+using Parameters = Eigen::Matrix<double, 8, 1>;  ///< row by row; the ninth is 1
 
-  static ceres::CostFunction* create(const cv::Point2d& from, const cv::Point2d& to, double px_per_unit) {
-    return new ReprojectionResidual(from, to, px_per_unit);
+/// Eq. (4) in Hartley-normalised coordinates, and its residuals in px.
+class ReprojectionProblem {
+ public:
+  ReprojectionProblem(const std::vector<Track>& inliers, const Normalisation& source,
+                      const Normalisation& destination)
+      : px_per_unit_(1.0 / destination.scale) {
+    pairs_.reserve(inliers.size());
+    for (const Track& track : inliers)
+      pairs_.push_back({carry(source.matrix, track.from), carry(destination.matrix, track.to)});
   }
 
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const double* h = parameters[0];
-    const double x = from_.x, y = from_.y;
-    const double scale = 1.0 / (h[6] * x + h[7] * y + 1.0);
-    const double u = (h[0] * x + h[1] * y + h[2]) * scale;
-    const double v = (h[3] * x + h[4] * y + h[5]) * scale;
-    residuals[0] = px_per_unit_ * (u - to_.x);
-    residuals[1] = px_per_unit_ * (v - to_.y);
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      const double g = px_per_unit_ * scale;
-      const std::array<double, 16> rows = {g * x, g * y, g, 0,     0,     0, -g * x * u, -g * y * u,
-                                           0,     0,     0, g * x, g * y, g, -g * x * v, -g * y * v};
-      std::copy(rows.begin(), rows.end(), jacobians[0]);
+  /// Half the sum of squared residuals, px²; not finite where a point lies on the horizon.
+  [[nodiscard]] double cost(const Parameters& h) const {
+    double sum = 0.0;
+    for (const Pair& pair : pairs_) {
+      const cv::Point2d off = carried(h, pair.from).at - pair.to;
+      sum += off.dot(off);
     }
-    return std::isfinite(residuals[0]) && std::isfinite(residuals[1]);
+    return 0.5 * px_per_unit_ * px_per_unit_ * sum;
+  }
+
+  struct Normal {
+    Eigen::Matrix<double, 8, 8> h = Eigen::Matrix<double, 8, 8>::Zero();  ///< JᵀJ
+    Parameters g = Parameters::Zero();                                    ///< -Jᵀr
+  };
+
+  [[nodiscard]] Normal normal_equations(const Parameters& h) const {
+    // A residual along u changes with the first three parameters by (x, y, 1), one along v with the next
+    // three by the same, and both with the last two: all that is summed are products of these.
+    Eigen::Matrix3d points = Eigen::Matrix3d::Zero();
+    Eigen::Matrix<double, 3, 2> across_u = Eigen::Matrix<double, 3, 2>::Zero(), across_v = across_u;
+    Eigen::Matrix2d depths = Eigen::Matrix2d::Zero();
+    Normal normal;
+    for (const Pair& pair : pairs_) {
+      const Carried carried = this->carried(h, pair.from);
+      const double weight = px_per_unit_ * carried.scale;
+      const Eigen::Vector3d point = weight * Eigen::Vector3d(pair.from.x, pair.from.y, 1.0);
+      const Eigen::Vector2d depth = -point.head<2>();
+      const double u = carried.at.x, v = carried.at.y;
+      points.noalias() += point * point.transpose();
+      across_u.noalias() += (u * point) * depth.transpose();
+      across_v.noalias() += (v * point) * depth.transpose();
+      depths.noalias() += ((u * u + v * v) * depth) * depth.transpose();
+      const cv::Point2d off = px_per_unit_ * (carried.at - pair.to);
+      normal.g.head<3>() -= off.x * point;
+      normal.g.segment<3>(3) -= off.y * point;
+      normal.g.tail<2>() -= (off.x * u + off.y * v) * depth;
+    }
+    normal.h.topLeftCorner<3, 3>() = points;
+    normal.h.block<3, 3>(3, 3) = points;
+    normal.h.block<3, 2>(0, 6) = across_u;
+    normal.h.block<3, 2>(3, 6) = across_v;
+    normal.h.block<2, 3>(6, 0) = across_u.transpose();
+    normal.h.block<2, 3>(6, 3) = across_v.transpose();
+    normal.h.bottomRightCorner<2, 2>() = depths;
+    return normal;
   }
 
  private:
-  cv::Point2d from_, to_;  // normalised
-  double px_per_unit_;     // of the destination
+  struct Pair {
+    cv::Point2d from, to;
+  };
+  struct Carried {
+    cv::Point2d at;
+    double scale;  ///< 1 / depth
+  };
+
+  static Carried carried(const Parameters& h, const cv::Point2d& p) {
+    const double scale = 1.0 / (h[6] * p.x + h[7] * p.y + 1.0);
+    return {{(h[0] * p.x + h[1] * p.y + h[2]) * scale, (h[3] * p.x + h[4] * p.y + h[5]) * scale}, scale};
+  }
+
+  std::vector<Pair> pairs_;
+  double px_per_unit_;  ///< of the destination
 };
+
+struct Minimum {
+  Parameters at;
+  int steps = 0;  ///< tried, those that were not taken included
+};
+
+/// Levenberg-Marquardt, damped and ended as Ceres does by default: by a trust region that begins at 1e4, when
+/// a step changes the cost by less than 1e-6 of it or the parameters by less than 1e-8.
+Minimum minimise(const ReprojectionProblem& problem, const Parameters& start, int max_steps) {
+  Minimum best{start};
+  double cost = problem.cost(start), radius = 1e4, shrink = 2.0;
+  ReprojectionProblem::Normal normal = problem.normal_equations(start);
+  while (best.steps < max_steps && radius > 1e-32) {
+    ++best.steps;
+    Eigen::Matrix<double, 8, 8> damped = normal.h;
+    damped.diagonal() *= 1.0 + 1.0 / radius;
+    const Parameters step = solve_ldlt<8>(damped, normal.g);
+    const double expected = step.dot(normal.g - 0.5 * (normal.h * step));
+    const Parameters next = best.at + step;
+    const double next_cost = problem.cost(next), gain = cost - next_cost;
+    if (step.norm() <= 1e-8 * (best.at.norm() + 1e-8) || std::abs(gain) <= 1e-6 * cost) break;
+    if (!std::isfinite(next_cost) || !(gain > 1e-3 * expected)) {
+      radius /= shrink;
+      shrink *= 2.0;
+      continue;
+    }
+    radius = std::min(1e16, radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain / expected - 1.0, 3)));
+    shrink = 2.0;
+    best.at = next;
+    cost = next_cost;
+    normal = problem.normal_equations(next);
+  }
+  return best;
+}
 
 std::vector<Track> inliers_of(const std::vector<Track>& tracks) {
   std::vector<Track> inliers;
@@ -146,28 +225,13 @@ RefinedHomography refine_homography(const cv::Matx33d& start, const std::vector<
   if (std::abs(normalised(2, 2)) < 1e-12) return {start, 0};
   normalised *= 1.0 / normalised(2, 2);
 
-  std::array<double, 8> h{};
-  std::copy_n(normalised.val, 8, h.begin());
-  ceres::Problem problem;
-  for (const Track& track : inliers)
-    problem.AddResidualBlock(
-        ReprojectionResidual::create(carry(source.matrix, track.from), carry(destination.matrix, track.to),
-                                     1 / destination.scale),
-        nullptr, h.data());
-  ceres::Solver::Options options;
-  options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = max_iterations;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable()) return {start, 0};
-
-  std::copy(h.begin(), h.end(), normalised.val);
+  const Minimum best = minimise(ReprojectionProblem(inliers, source, destination),
+                                Eigen::Map<const Parameters>(normalised.val), max_iterations);
+  if (!best.at.allFinite()) return {start, 0};
+  std::copy_n(best.at.data(), 8, normalised.val);
   cv::Matx33d refined = destination.matrix.inv() * normalised * source.matrix;
   refined *= 1.0 / refined(2, 2);
-  return {refined, summary.num_successful_steps + summary.num_unsuccessful_steps};
+  return {refined, best.steps};
 }
 
 HomographyEstimate estimate_homography(std::vector<Track>& tracks, const cv::Size& image,

@@ -8,6 +8,7 @@
 #include "core/median.hpp"
 #include "core/motion/paper/compensation.hpp"
 #include "core/motion/paper/homography.hpp"
+#include "core/motion/regions.hpp"
 
 namespace stillpoint {
 namespace {
@@ -229,7 +230,8 @@ class PaperStages {
     united.ms = round.union_ms;
     united.overview = last_round;
     united.figure("Mask", 100.0 * round.mask_share, "%", 2);
-    united.figure("Regions", static_cast<double>(round.regions.size()));
+    const std::size_t regions = round.mask.empty() ? 0 : find_regions(round.mask).regions.size();
+    united.figure("Regions", static_cast<double>(regions));
     united.figure("Forward alone", percent_set(round.forward.mask), "%", 2);
     united.figure("Backward, warped", percent_set(round.backward_mask_in_target), "%", 2);
     const Layer warped =
@@ -275,15 +277,15 @@ std::vector<std::string> explain_pixel(const PaperTrace& trace, const cv::Point2
   while (since > 0 && is_set(trace.rounds[since - 1].mask, pixel)) --since;
   const bool forward = is_set(last.forward.mask, pixel),
              backward = is_set(last.backward_mask_in_target, pixel);
-  const int label = last.labels.at<int>(cvRound(pixel.y), cvRound(pixel.x));
+  const LabelledRegions found = find_regions(last.mask);
+  const int label = found.labels.at<int>(cvRound(pixel.y), cvRound(pixel.x));
   std::vector<std::string> sentences{
       fmt::format("The {} hold{} it: region {}, {} px, in the union since round {} of {}.",
                   forward && backward ? "forward and the backward mask"
                   : forward           ? "forward mask alone"
                                       : "backward mask alone",
                   forward && backward ? "" : "s", label,
-                  label > 0 ? last.regions[static_cast<std::size_t>(label - 1)].area : 0, since + 1,
-                  trace.rounds.size())};
+                  found.regions[static_cast<std::size_t>(label - 1)].area, since + 1, trace.rounds.size())};
   bool above = is_set(last.forward.raw_mask, pixel);
   if (!last.backward.raw_mask.empty()) {
     const cv::Point2d there = carry(last.backward.homography.matrix, pixel);

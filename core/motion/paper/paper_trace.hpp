@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/motion/regions.hpp"
 
 namespace stillpoint {
 
@@ -53,11 +52,9 @@ struct MotionRound {
   DirectionTrace backward;          ///< target carried into the reference
   cv::Mat backward_mask_in_target;  ///< CV_8UC1: backward.mask carried into the target's camera
   cv::Mat mask;                     ///< CV_8UC1, 255 = moving, target's camera: the union
-  cv::Mat labels;                   ///< CV_32SC1: 0 or 1 + index into `regions`
-  std::vector<MotionRegion> regions;
   double mask_share = 0.0;  ///< of the frame's pixels, 0 to 1
   int changed_tracks = 0;   ///< tracks of both directions that this mask removes or gives back
-  double union_ms = 0.0;    ///< wall time of carrying, uniting and finding regions
+  double union_ms = 0.0;    ///< wall time of carrying and uniting
   double removal_ms = 0.0;  ///< wall time of taking tracks out for the next round
 };
 

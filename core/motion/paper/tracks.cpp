@@ -4,12 +4,10 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "core/motion/paper/corners.hpp"
+#include "core/motion/paper/lucas_kanade.hpp"
 
 namespace stillpoint {
 namespace {
-
-/// A corner has arrived when a step is shorter than 0.03 px, a tenth of what tracks scatter by anyway.
-const cv::TermCriteria kFlowStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.03);
 
 bool inside(const cv::Point2f& point, const cv::Size& size) {
   return point.x >= 0.0F && point.y >= 0.0F && point.x <= static_cast<float>(size.width - 1) &&
@@ -36,16 +34,17 @@ std::vector<Track> follow_corners(const MotionFrame& source, const MotionFrame& 
                                   const PaperConfig& config) {
   std::vector<Track> tracks;
   if (source.corners.empty()) return tracks;
-  std::vector<cv::Point2f> moved;
-  std::vector<unsigned char> found;
-  std::vector<float> residuals;  // without OPTFLOW_LK_GET_MIN_EIGENVALS: mean absolute grey-level difference
-  cv::calcOpticalFlowPyrLK(source.pyramid, destination.pyramid, source.corners, moved, found, residuals,
-                           {config.flow_window_px, config.flow_window_px}, config.flow_levels, kFlowStop);
-  tracks.reserve(moved.size());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
+  // A corner has arrived when a step is shorter than 0.03 px, a tenth of what tracks scatter by anyway.
+  const auto [to, found, residuals] = follow_points(source.pyramid, destination.pyramid, source.corners,
+                                                    {.window_px = config.flow_window_px,
+                                                     .levels = config.flow_levels,
+                                                     .max_steps = 20,
+                                                     .least_step_px = 0.03});
+  tracks.reserve(to.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
     const bool good = found[i] != 0 && static_cast<double>(residuals[i]) <= config.flow_max_residual &&
-                      inside(moved[i], destination.gray.size());
-    if (good) tracks.push_back({.from = source.corners[i], .to = moved[i], .residual = residuals[i]});
+                      inside(to[i], destination.gray.size());
+    if (good) tracks.push_back({.from = source.corners[i], .to = to[i], .residual = residuals[i]});
   }
   return tracks;
 }

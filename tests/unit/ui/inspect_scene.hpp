@@ -125,10 +125,6 @@ struct InspectScene {
     if (index > 0) draw(round.forward, {110, 80, 10, 10}, 50);
     round.backward_mask_in_target = cv::Mat::zeros(kHeight, kWidth, CV_8UC1);
     round.mask = round.forward.mask.clone();
-    cv::Mat labels;
-    const int count = cv::connectedComponents(round.mask, labels, 8, CV_32S);
-    round.labels = labels;
-    for (int i = 1; i < count; ++i) round.regions.push_back({{}, {}, cv::countNonZero(labels == i)});
     round.mask_share = static_cast<double>(cv::countNonZero(round.mask)) / (kWidth * kHeight);
     return round;
   }
