@@ -39,6 +39,13 @@ TEST_P(ImageCodec, ReadsBackWhatItWroteAsOpenCvDoes) {
   }
 }
 
+TEST_P(ImageCodec, ReadsBackWhatACameraTook) {
+  const cv::Mat image = noise(GetParam());
+  const auto bytes = encode_camera_png(image);
+  EXPECT_TRUE(same_pixels(decode_pixels(bytes), image));
+  EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image));
+}
+
 TEST_P(ImageCodec, ReadsWhatOpenCvWrites) {
   const cv::Mat image = noise(GetParam());
   for (const char* ending : {".png", ".tiff"}) {
