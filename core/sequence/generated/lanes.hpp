@@ -29,6 +29,8 @@ template <int N>
 using Ints = typename Lanes<N>::Ints;
 template <int N>
 using Bits = typename Lanes<N>::Bits;
+template <int N>
+using Shorts = typename Lanes<N>::Shorts;
 /// Half as many lanes of two numbers each.
 template <int N>
 using Pairs = typename PairLanes<N>::Pairs;
@@ -67,13 +69,6 @@ STILLPOINT_PACKET Bits<N> counted_from(std::uint32_t first) {
   return lanes;
 }
 
-template <int N>
-STILLPOINT_PACKET Ints<N> loaded(const std::uint16_t* numbers) {
-  typename Lanes<N>::Shorts shorts;
-  std::memcpy(&shorts, numbers, sizeof shorts);
-  return __builtin_convertvector(shorts, Ints<N>);
-}
-
 /// Parts pairs into their first and second numbers.
 template <int N>
 STILLPOINT_PACKET void part(const Pairs<N>& a, const Pairs<N>& b, Ints<N>& first, Ints<N>& second) {
@@ -88,12 +83,23 @@ STILLPOINT_PACKET void part(const Pairs<N>& a, const Pairs<N>& b, Ints<N>& first
   }
 }
 
+/// Whether a mask of any width holds anything.
+template <typename Mask>
+STILLPOINT_PACKET bool any_bits(const Mask& mask) {
+  if constexpr (sizeof(Mask) > 16) {
+    Ints<4> halves[2];
+    std::memcpy(halves, &mask, sizeof halves);
+    return any_bits(halves[0] | halves[1]);
+  } else {
+    std::uint64_t words[sizeof(Mask) / 8], bits = 0;
+    std::memcpy(words, &mask, sizeof words);
+    for (const std::uint64_t word : words) bits |= word;
+    return bits != 0;
+  }
+}
 template <int N>
 STILLPOINT_PACKET bool any(const Ints<N>& mask) {
-  std::int64_t halves[N / 2], bits = 0;
-  std::memcpy(halves, &mask, sizeof halves);
-  for (const std::int64_t half : halves) bits |= half;
-  return bits != 0;
+  return any_bits(mask);
 }
 
 template <int N>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <opencv2/core.hpp>
 #include <span>
 
@@ -44,11 +45,14 @@ STILLPOINT_PACKET Hits<N> nearest(const View& view, std::span<const Candidate> c
 
 /// What was seen beside each of a packet's pixels; beyond the image's edges, at them.
 template <int N>
-STILLPOINT_PACKET Ints<N> ids_beside(const cv::Mat& id, const PacketPlace& place, int right, int down) {
+STILLPOINT_PACKET Shorts<N> ids_beside(const cv::Mat& id, const PacketPlace& place, int right, int down) {
   const auto* row = id.ptr<std::uint16_t>(std::clamp(place.y + down, 0, id.rows - 1));
   const int first = place.x + right;
-  Ints<N> found;
-  if (first >= 0 && first + N <= id.cols) return loaded<N>(row + first);
+  Shorts<N> found;
+  if (first >= 0 && first + N <= id.cols) {
+    std::memcpy(&found, row + first, sizeof found);
+    return found;
+  }
   for (int i = 0; i < N; ++i) found[i] = row[std::clamp(first + i, 0, id.cols - 1)];
   return found;
 }
@@ -66,22 +70,24 @@ struct Nearby {
 /// Candidates of each pixel of a packet, first come first.
 template <int N>
 struct PixelLists {
-  std::array<Ints<N>, Nearby<N>::kMost> ids;  ///< -1 past a pixel's last
-  Ints<N> counts{};
+  static constexpr std::uint16_t kNone = 0xFFFF;
+  std::array<Shorts<N>, Nearby<N>::kMost> ids;  ///< kNone past a pixel's last
+  Shorts<N> counts{};
   int longest = 0;
 };
 
 template <int N>
-STILLPOINT_PACKET void append(const Ints<N>& id, PixelLists<N>& lists) {
-  Ints<N> known = lists.counts == Nearby<N>::kMost;
+STILLPOINT_PACKET void append(const Shorts<N>& id, PixelLists<N>& lists) {
+  auto known = lists.counts == Nearby<N>::kMost;
   for (int j = 0; j < lists.longest; ++j) known |= lists.ids[static_cast<std::size_t>(j)] == id;
-  if (!any<N>(~known)) return;
+  if (!any_bits(~known)) return;
   for (int i = 0; i < N; ++i) {
     if (known[i] != 0) continue;
     const int j = lists.counts[i];
-    if (j == lists.longest) lists.ids[static_cast<std::size_t>(lists.longest++)] = broadcast<N>(-1);
+    if (j == lists.longest)
+      lists.ids[static_cast<std::size_t>(lists.longest++)] = Shorts<N>{} + PixelLists<N>::kNone;
     lists.ids[static_cast<std::size_t>(j)][i] = id[i];
-    lists.counts[i] = j + 1;
+    lists.counts[i] = static_cast<std::uint16_t>(j + 1);
   }
 }
 
@@ -91,7 +97,7 @@ STILLPOINT_PACKET void join(const PixelLists<N>& lists, Nearby<N>& nearby) {
   for (int j = 0; j < lists.longest; ++j)
     for (int i = 0; i < N; ++i) {
       const std::int32_t id = lists.ids[static_cast<std::size_t>(j)][i];
-      if (id < 0) continue;
+      if (id == PixelLists<N>::kNone) continue;
       std::size_t k = 0;
       while (k < static_cast<std::size_t>(nearby.count) && nearby.ids[k] != id) ++k;
       if (k == static_cast<std::size_t>(nearby.count)) {
@@ -110,7 +116,8 @@ STILLPOINT_PACKET void look_about(const cv::Mat& id, const PacketPlace& place, i
   append<N>(ids_beside<N>(id, place, 0, 0), lists);
   for (const int r : {1, (reach + 1) / 2, reach}) {
     for (const int down : {-r, 0, r})
-      for (const int right : {-r, 0, r}) append<N>(ids_beside<N>(id, place, right, down), lists);
+      for (const int right : {-r, 0, r})
+        if (right != 0 || down != 0) append<N>(ids_beside<N>(id, place, right, down), lists);
     if (r == reach) break;
   }
   join<N>(lists, nearby);

@@ -91,12 +91,13 @@ STILLPOINT_PACKET Vectors<N> normalized(const Vectors<N>& v) {
 template <int N>
 STILLPOINT_PACKET void look_up(const std::uint32_t* texels, const Ints<N>& index, Ints<N>& left,
                                Ints<N>& right) {
+  const Bits<N> at = reinterpret_cast<Bits<N>>(index);  // widens for nothing
   Pairs<N> first, last;
   for (int i = 0; i < N / 2; ++i) {
     std::uint64_t pair = 0;
-    std::memcpy(&pair, texels + index[i], sizeof pair);
+    std::memcpy(&pair, texels + at[i], sizeof pair);
     first[i] = pair;
-    std::memcpy(&pair, texels + index[i + N / 2], sizeof pair);
+    std::memcpy(&pair, texels + at[i + N / 2], sizeof pair);
     last[i] = pair;
   }
   part<N>(first, last, left, right);
@@ -196,8 +197,13 @@ struct MetFace {
   std::int32_t id;
   int face;
   Ints<N> who;
-  Vectors<N> local;      ///< the points met
-  Vectors<N> direction;  ///< of the rays, world
+  Vectors<N> local;  ///< the points met
+  Vectors<N> ray;    ///< in camera coordinates
+
+  /// Of the rays, world.
+  STILLPOINT_PACKET Vectors<N> direction(const View& view) const {
+    return transformed<N>(view.rotation, ray);
+  }
 };
 
 template <int N>
@@ -207,12 +213,13 @@ STILLPOINT_PACKET Floats<N> light(const Scene& scene, const View& view, const Pr
   Floats<N> sun = 0.42f * greater<N>(Floats<N>{}, dot<N>(normal, light_direction()));
   const Ints<N> level = met.who & (normal.z > 0.9f);
   if (any<N>(level))
-    cast_shadow<N>(scene, view, along<N>(view.position, depth, met.direction), level, sun, sky);
+    cast_shadow<N>(scene, view, along<N>(view.position, depth, met.direction(view)), level, sun, sky);
   if (p.shape == Shape::kRoom) {
     const Floats<N> local[3] = {met.local.x, met.local.y, met.local.z};
     for (int axis = 0; axis < 3; ++axis) {  // corners of a room are darker
       if (axis == met.face / 2) continue;
       const Floats<N> gap = (1 - absolute<N>(local[axis])) * p.half[axis];
+      if (!any<N>(gap < 0.8f)) continue;
       sky = gap < 0.8f ? sky * (1 - 0.3f * (1 - gap / 0.8f) * (1 - gap / 0.8f)) : sky;
     }
   }
@@ -223,8 +230,8 @@ STILLPOINT_PACKET Floats<N> light(const Scene& scene, const View& view, const Pr
 /// it; the normals of round faces anew for all.
 template <int N>
 STILLPOINT_PACKET void share(const View& view, const Primitive& p, const SeenFace& seen,
-                             const MetFace<N>& met, const Vectors<N>& ray, const Floats<N>& depth,
-                             const Vectors<N>& local_normal, Shared<N>& shared) {
+                             const MetFace<N>& met, const Floats<N>& depth, const Vectors<N>& local_normal,
+                             Shared<N>& shared) {
   const Ints<N> newly = met.who & ~((shared.id == met.id) & (shared.face == met.face));
   const bool any_newly = any<N>(newly);
   if (!p.is_flat())
@@ -234,7 +241,7 @@ STILLPOINT_PACKET void share(const View& view, const Primitive& p, const SeenFac
     assign<N>(newly, broadcast<N>(seen.normal), shared.normal);
   if (!any_newly) return;
   const Floats<N> cosine =
-      absolute<N>(dot<N>(shared.normal, met.direction)) / square_root<N>(dot<N>(ray, ray));
+      absolute<N>(dot<N>(shared.normal, met.direction(view))) / square_root<N>(dot<N>(met.ray, met.ray));
   const Floats<N> slant = greater<N>(broadcast<N>(0.08f), cosine);
   // Four samples share a pixel, so each covers about half its width; the root splits the slant between axes.
   const Floats<N> texels =
@@ -254,10 +261,9 @@ STILLPOINT_PACKET Vectors<N> face_colour(const Scene& scene, const View& view, S
   const SeenPrimitive& seen = view.seen[number];
   const SeenFace& look = faces.at(number, face);
   const Surface& surface = *look.surface;
-  const MetFace<N> met{id, face, who, along<N>(seen.origin, depth, seen.rotation, ray),
-                       transformed<N>(view.rotation, ray)};
+  const MetFace<N> met{id, face, who, along<N>(seen.origin, depth, seen.rotation, ray), ray};
   const FacePoints<N> points = describe<N>(p, met.local, face);
-  share<N>(view, p, look, met, ray, depth, points.normal, shared);
+  share<N>(view, p, look, met, depth, points.normal, shared);
   const Floats<N> u = 0.5f + look.fit.repeats * (points.u * look.fit.half.x()) + surface.offset.x();
   const Floats<N> v = 0.5f + look.fit.repeats * (points.v * look.fit.half.y()) + surface.offset.y();
   const Ints<N> level = truncated<N>(greater<N>(Floats<N>{}, shared.level + level_shift));
