@@ -19,6 +19,10 @@ namespace stillpoint {
 /// @returns nothing where it cannot be encoded
 [[nodiscard]] std::vector<unsigned char> encode_png(const cv::Mat& image, int level);
 
+/// A PNG of what a camera took or of its mask, quickly: noisy colours, depth in steps, areas of one value.
+/// @param image as above @returns nothing where it cannot be encoded
+[[nodiscard]] std::vector<unsigned char> encode_camera_png(const cv::Mat& image);
+
 /// A JPEG. @param image CV_8UC1 or CV_8UC3 @param quality 0 to 100
 /// @returns nothing where it cannot be encoded
 [[nodiscard]] std::vector<unsigned char> encode_jpeg(const cv::Mat& image, int quality);

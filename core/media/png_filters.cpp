@@ -27,6 +27,12 @@ Lanes paeth(const Lanes& left, const Lanes& above, const Lanes& above_left) {
   return cv::v_select(nearest == to_left, left, cv::v_select(not_left == to_above, above, above_left));
 }
 
+/// (left + above) / 2, rounded down.
+Lanes average(const Lanes& left, const Lanes& above) {
+  const Lanes half = cv::v_reinterpret_as_u8(cv::v_shr<1>(cv::v_reinterpret_as_u16(left ^ above)));
+  return cv::v_add_wrap(left & above, half & cv::v_setall_u8(0x7F));
+}
+
 int paeth(int left, int above, int above_left) {
   const int to_left = std::abs(above - above_left), to_above = std::abs(left - above_left),
             to_corner = std::abs(left + above - 2 * above_left);
@@ -122,18 +128,16 @@ std::array<Lanes, 3> neighbours_seen(const Rows& rows) {
   return masks;
 }
 
-/// Undoes Wave::kRows rows, none of them of Average.
-template <int pixel_bytes>
-void undo_wave(const Rows& rows) {
+/// Undoes Wave::kRows rows. @param predict a row's pixels from those left, above and above left
+template <int pixel_bytes, typename Predict>
+void undo_wave(const Rows& rows, const Predict& predict) {
   using Of = Wave<pixel_bytes>;
-  const auto [sees_left, sees_above, sees_corner] = neighbours_seen<pixel_bytes>(rows);
   // A row's pixel lies one behind that of the row above it.
   const std::ptrdiff_t in_step = rows.in_step - pixel_bytes, out_step = rows.out_step - pixel_bytes;
   Lanes left = cv::v_setzero_u8(), corner = left;
   const auto step = [&](std::size_t x) {
     const Lanes above = Of::shift_in(left, rows.above + x);
-    left = cv::v_add_wrap(Of::gather(rows.in + x, in_step),
-                          paeth(left & sees_left, above & sees_above, corner & sees_corner));
+    left = cv::v_add_wrap(Of::gather(rows.in + x, in_step), predict(left, above, corner));
     corner = above;
     alignas(16) std::array<typename Of::Lane, Of::kRows> pixels;
     cv::v_store_aligned(reinterpret_cast<unsigned char*>(pixels.data()), left);
@@ -154,31 +158,45 @@ void undo_wave(const Rows& rows) {
   for (const std::size_t end = rows.bytes + (Of::kRows - 1) * pixel_bytes; x < end; x += pixel_bytes) step(x);
 }
 
-/// Undoes all rows, as many together as there are lanes, where the filters allow it.
+/// Undoes as many rows together as there are lanes, where their filters allow it. @returns whether they did
+template <int pixel_bytes>
+bool undo_together(const Rows& rows) {
+  std::size_t averages = 0, paeths = 0;
+  for (std::size_t r = 0; r < Wave<pixel_bytes>::kRows; ++r) {
+    const auto filter = static_cast<Filter>(rows.in[static_cast<std::ptrdiff_t>(r) * rows.in_step - 1]);
+    averages += filter == Filter::Average;
+    paeths += filter == Filter::Paeth;
+  }
+  if (averages == Wave<pixel_bytes>::kRows)
+    undo_wave<pixel_bytes>(
+        rows, [](const Lanes& left, const Lanes& above, const Lanes&) { return average(left, above); });
+  else if (averages == 0 && paeths > 0)
+    undo_wave<pixel_bytes>(rows, [seen = neighbours_seen<pixel_bytes>(rows)](
+                                     const Lanes& left, const Lanes& above, const Lanes& corner) {
+      return paeth(left & seen[0], above & seen[1], corner & seen[2]);
+    });
+  else
+    return false;
+  return true;
+}
+
+/// Undoes all rows.
 template <int pixel_bytes>
 void undo_rows(const unsigned char* packed, cv::Mat& image) {
   using Of = Wave<pixel_bytes>;
   const std::size_t bytes = static_cast<std::size_t>(image.cols) * pixel_bytes,
                     stride = bytes + 2 * Of::kSlack;
   std::vector<unsigned char> above(stride, 0), memory(stride * Of::kRows, 0);
-  const auto filter_of = [&](int y) {
-    return static_cast<Filter>(packed[static_cast<std::size_t>(y) * (bytes + 1)]);
-  };
   for (int y = 0; y < image.rows;) {
-    const int together = std::min(static_cast<int>(Of::kRows), image.rows - y);
-    bool is_wave = together == static_cast<int>(Of::kRows), any_paeth = false;
-    for (int k = y; k < y + together; ++k) {
-      is_wave = is_wave && filter_of(k) != Filter::Average;
-      any_paeth = any_paeth || filter_of(k) == Filter::Paeth;
-    }
     const unsigned char* in = packed + static_cast<std::size_t>(y) * (bytes + 1) + 1;
     unsigned char* out = memory.data() + Of::kSlack;
-    const int count = is_wave && any_paeth ? together : 1;
-    if (count > 1)
-      undo_wave<pixel_bytes>({in, above.data() + Of::kSlack, out, static_cast<std::ptrdiff_t>(bytes) + 1,
-                              static_cast<std::ptrdiff_t>(stride), bytes});
-    else
-      undo_row(filter_of(y), in, above.data() + Of::kSlack, pixel_bytes, bytes, out);
+    int count = static_cast<int>(Of::kRows);
+    if (y + count > image.rows || !undo_together<pixel_bytes>({in, above.data() + Of::kSlack, out,
+                                                               static_cast<std::ptrdiff_t>(bytes) + 1,
+                                                               static_cast<std::ptrdiff_t>(stride), bytes})) {
+      undo_row(static_cast<Filter>(in[-1]), in, above.data() + Of::kSlack, pixel_bytes, bytes, out);
+      count = 1;
+    }
     for (int k = 0; k < count; ++k, ++y)
       std::memcpy(image.ptr(y), out + static_cast<std::size_t>(k) * stride, bytes);
     std::memcpy(above.data() + Of::kSlack, image.ptr(y - 1), bytes);

@@ -42,8 +42,7 @@ std::vector<std::string> text_files() {
 }
 
 void write_png(const fs::path& path, const cv::Mat& image) {
-  // Noise hardly packs better at higher levels, and packing must keep up with rendering.
-  const std::vector<std::uint8_t> bytes = encode_png(image, 1);
+  const std::vector<std::uint8_t> bytes = encode_camera_png(image);
   if (bytes.empty()) throw InputError(fmt::format("{} cannot be packed as PNG", path.string()));
   write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

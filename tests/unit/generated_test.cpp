@@ -10,8 +10,9 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "core/sequence/generated/act.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
-#include "core/sequence/generated/primitives.hpp"
+#include "core/sequence/generated/ray_caster.hpp"
 #include "core/sequence/write_sequence.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/unit/temporary_folder.hpp"
@@ -46,10 +47,16 @@ std::string sentence_of(const std::function<void()>& action) {
 
 float depth_ahead(const generated::Primitive& primitive, const Eigen::Vector3f& from,
                   const Eigen::Vector3f& ray) {
-  generated::Hit hit;
-  return generated::intersect(generated::see(primitive, Eigen::Matrix3f::Identity(), from), ray, hit)
-             ? hit.depth
-             : -1;
+  generated::Scene scene;
+  scene.fixed.push_back(primitive);
+  Camera camera;
+  camera.width = camera.height = 1;
+  camera.fx = camera.fy = 1;
+  camera.cx = -static_cast<double>(ray.x()), camera.cy = -static_cast<double>(ray.y());
+  generated::Instant instant;
+  instant.world_from_camera.translation() = from.cast<double>();
+  const float depth = generated::cast_depth(scene, camera, instant).depth.at<float>(0, 0);
+  return depth < 1e8f ? depth : -1;
 }
 
 TEST(GeneratedPrimitives, AreMetWhereGeometrySays) {
@@ -74,6 +81,26 @@ TEST(GeneratedPrimitives, ConeTouchesBothSpheres) {
   EXPECT_NEAR(depth_ahead(cone, {0, -0.2f, 0}, {0, 0, 1}), 2.0f - std::sqrt(0.09f - 0.04f), 1e-4);
   EXPECT_NEAR(depth_ahead(cone, {0, 1.06f, 0}, {0, 0, 1}), 2.0f - 0.08f, 1e-4);
   EXPECT_EQ(depth_ahead(cone, {0, 1.11f, 0}, {0, 0, 1}), -1);
+}
+
+TEST(GeneratedPrimitives, AreTheSameToTheBitHoweverManyRaysAreCastAtOnce) {
+  if (generated::most_lanes() == 4) GTEST_SKIP() << "this processor casts four";
+  const generated::Act act = generated::make_act("walking_xyz", 3, 2.0);
+  Camera camera = camera_by_name("generated").scaled_to(161, 119);  // the last rays of a row lie outside
+  std::array<generated::Instant, 4> exposure;
+  for (std::size_t k = 0; k < exposure.size(); ++k) {
+    const double seconds = 1.0 + 0.004 * static_cast<double>(k);
+    exposure[k].world_from_camera.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+    exposure[k].world_from_camera.translation() << 0.2 * seconds, -1.5, 1.4;
+    act.play(seconds, exposure[k]);
+  }
+  const auto cast = [&](int lanes) {
+    return generated::cast_frame(act.scene, camera, exposure[2], exposure, 5.0, lanes);
+  };
+  const generated::Rendering four = cast(4), eight = cast(8);
+  EXPECT_TRUE(same(four.colour, eight.colour));
+  EXPECT_TRUE(same(four.depth, eight.depth));
+  EXPECT_TRUE(same(four.id, eight.id));
 }
 
 // ---- the source

@@ -45,6 +45,9 @@ struct Primitive {
   Vector3f half{1, 1, 1};                              ///< metres a local unit; scales pictures
   float radius_start = 0, radius_end = 0, length = 0;  ///< cones: spheres at z = 0 and z = length, m
   std::array<std::uint16_t, 6> surface{};              ///< indices into Scene::surfaces
+
+  /// Whether each face has one normal.
+  [[nodiscard]] bool is_flat() const { return shape == Shape::kBox || shape == Shape::kRoom; }
 };
 
 /// Axes as columns from a rotation about z (radians).
@@ -73,25 +76,20 @@ struct SeenPrimitive {
   Shape shape = Shape::kBox;
 };
 
-struct Hit {
-  float depth = 1e9f;  ///< m
-  int face = 0;
-};
-
 [[nodiscard]] SeenPrimitive see(const Primitive& primitive, const Matrix3f& world_from_camera,
                                 const Vector3f& position);
 
-/// Where the ray through (x, y, 1) enters the primitive (leaves it, for rooms); true when nearer than `hit`,
-/// which it then replaces.
-[[nodiscard]] bool intersect(const SeenPrimitive& primitive, const Vector3f& ray, Hit& hit);
+/// Unit normal of a flat primitive's face, outward (inward, for rooms), world.
+[[nodiscard]] Vector3f flat_normal(const Primitive& primitive, int face);
 
-/// Outward normal in local coordinates (not normalised) and picture coordinates of a point on a primitive.
-struct SurfacePoint {
-  Vector3f normal;
-  Vector2f uv;  ///< repeats
+/// How a picture covers a face: at (u, v) from -1 to 1 over the face it shows 0.5 + repeats * (u, v) * half,
+/// in repeats of the picture.
+struct PictureFit {
+  Vector2f half;  ///< m from the middle of the face to its edges; 1 where the picture is stretched over it
+  float repeats;  ///< a metre; 0.5 where it is stretched
   float texels_per_metre;
 };
-[[nodiscard]] SurfacePoint describe(const Primitive& primitive, const Surface& surface,
-                                    const Texture& picture, const Vector3f& local, int face);
+[[nodiscard]] PictureFit fit_picture(const Primitive& primitive, const Surface& surface,
+                                     const Texture& picture, int face);
 
 }  // namespace stillpoint::generated

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/sequence/generated/lanes.hpp"
+
 namespace stillpoint::generated {
 
 // Randomness by counting: every value is a function of what it is for (pixel, frame, seed), so it never
@@ -21,6 +23,19 @@ namespace stillpoint::generated {
   return h ^ h >> 15;
 }
 
+/// The same, a lane each.
+template <int N>
+STILLPOINT_PACKET Bits<N> hash(const Bits<N>& a, const Bits<N>& b, const Bits<N>& c = Bits<N>{},
+                               const Bits<N>& d = Bits<N>{}) {
+  Bits<N> h = a * 0x9E3779B1u ^ (b + 0x7F4A7C15u) * 0x85EBCA77u ^ (c + 0x165667B1u) * 0xC2B2AE3Du ^
+              (d + 0x27D4EB2Fu) * 0x27D4EB2Fu;
+  h ^= h >> 15;
+  h *= 0x2C1B3C6Du;
+  h ^= h >> 12;
+  h *= 0x297A2D39u;
+  return h ^ h >> 15;
+}
+
 /// 0 to 1.
 [[nodiscard]] inline float uniform(std::uint32_t bits) {
   return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f);
@@ -30,6 +45,12 @@ namespace stillpoint::generated {
 [[nodiscard]] inline float gaussian(std::uint32_t bits) {
   const std::uint32_t sum = (bits & 255u) + (bits >> 8 & 255u) + (bits >> 16 & 255u) + (bits >> 24);
   return (static_cast<float>(sum) - 510.0f) * (1.0f / 147.8f);
+}
+
+template <int N>
+STILLPOINT_PACKET Floats<N> gaussian(const Bits<N>& bits) {
+  const Bits<N> sum = (bits & 255u) + (bits >> 8 & 255u) + (bits >> 16 & 255u) + (bits >> 24);
+  return (to_floats<N>(reinterpret_cast<Ints<N>>(sum)) - 510.0f) * (1.0f / 147.8f);
 }
 
 /// A stream of numbers for building scenes, where order is fixed.

@@ -10,20 +10,6 @@ std::uint16_t Scene::add(const Surface& surface) {
   return static_cast<std::uint16_t>(surfaces.size() - 1);
 }
 
-float ShadowPlane::at(const Vector3f& world) const {
-  if (std::abs(world.z() - height) > 0.004f) return 1;
-  const float x = (world.x() - corner.x()) * texels_per_metre - 0.5f;
-  const float y = (world.y() - corner.y()) * texels_per_metre - 0.5f;
-  if (!(x >= 0 && y >= 0)) return 1;
-  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-  if (x0 + 1 >= light.cols || y0 + 1 >= light.rows) return 1;
-  const float ax = x - static_cast<float>(x0), ay = y - static_cast<float>(y0);
-  const std::uint8_t *top = light.ptr(y0) + x0, *bottom = light.ptr(y0 + 1) + x0;
-  return ((static_cast<float>(top[0]) * (1 - ax) + static_cast<float>(top[1]) * ax) * (1 - ay) +
-          (static_cast<float>(bottom[0]) * (1 - ax) + static_cast<float>(bottom[1]) * ax) * ay) /
-         255.0f;
-}
-
 ShadowPlane cast_shadows(const std::vector<Primitive>& fixed, float height, const Vector2f& corner,
                          const Vector2f& size, float blur_m) {
   ShadowPlane plane;

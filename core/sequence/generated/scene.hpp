@@ -27,9 +27,6 @@ struct ShadowPlane {
   Vector2f corner{0, 0};  ///< smallest x and y, m
   float texels_per_metre = 100;
   cv::Mat light;  ///< CV_8UC1, 255 = lit
-
-  /// Share of the light that arrives, 0 to 1; 1 outside of the plane.
-  [[nodiscard]] float at(const Vector3f& world) const;
 };
 
 /// What is static.

@@ -7,10 +7,10 @@ namespace stillpoint::generated {
 Texture::Texture(const cv::Mat& bgr) {
   cv::Mat level = bgr;
   while (true) {
-    levels_.push_back({level.cols, level.rows, texels_.size()});
+    levels_.push_back({level.cols, level.rows, static_cast<std::int32_t>(texels_.size())});
     for (int y = 0; y < level.rows; ++y)
-      for (int x = 0; x < level.cols; ++x) {
-        const auto& p = level.at<cv::Vec3b>(y, x);
+      for (int x = 0; x <= level.cols; ++x) {
+        const auto& p = level.at<cv::Vec3b>(y, x % level.cols);
         texels_.push_back(static_cast<std::uint32_t>(p[0]) | static_cast<std::uint32_t>(p[1]) << 8 |
                           static_cast<std::uint32_t>(p[2]) << 16);
       }

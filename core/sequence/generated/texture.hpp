@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
@@ -16,36 +15,20 @@ class Texture {
   [[nodiscard]] int width() const { return levels_.front().width; }
   [[nodiscard]] int height() const { return levels_.front().height; }
 
-  /// Bilinear colour (BGR, 0 to 255) at (u, v) in repeats of the texture, v downwards, on a level (0 = full
-  /// size).
-  [[nodiscard]] Eigen::Vector3f sample(float u, float v, int level) const {
-    const Level& l = levels_[static_cast<std::size_t>(level < last_ ? (level > 0 ? level : 0) : last_)];
-    const float x = u * static_cast<float>(l.width) - 0.5f, y = v * static_cast<float>(l.height) - 0.5f;
-    const int x0 = floor_of(x), y0 = floor_of(y);
-    const float ax = x - static_cast<float>(x0), ay = y - static_cast<float>(y0);
-    const int xm = l.width - 1, ym = l.height - 1;
-    const std::uint32_t* top = texels_.data() + l.offset + static_cast<std::size_t>((y0 & ym) * l.width);
-    const std::uint32_t* bottom =
-        texels_.data() + l.offset + static_cast<std::size_t>(((y0 + 1) & ym) * l.width);
-    const int xa = x0 & xm, xb = (x0 + 1) & xm;
-    return (colour(top[xa]) * (1 - ax) + colour(top[xb]) * ax) * (1 - ay) +
-           (colour(bottom[xa]) * (1 - ax) + colour(bottom[xb]) * ax) * ay;
+  /// A reduced copy.
+  struct Level {
+    int width, height;    ///< powers of two
+    std::int32_t offset;  ///< of its first texel
+  };
+  /// @param index 0 = full size; beyond the last it is the last
+  [[nodiscard]] const Level& level(int index) const {
+    return levels_[static_cast<std::size_t>(index < last_ ? (index > 0 ? index : 0) : last_)];
   }
+  /// All levels' texels, row by row, each row followed by its first texel: blue, green and red from the
+  /// lowest byte on.
+  [[nodiscard]] const std::uint32_t* texels() const { return texels_.data(); }
 
  private:
-  struct Level {
-    int width, height;
-    std::size_t offset;  ///< of its first texel in texels_
-  };
-  static int floor_of(float x) {
-    const int i = static_cast<int>(x);
-    return i - (x < static_cast<float>(i) ? 1 : 0);
-  }
-  static Eigen::Vector3f colour(std::uint32_t texel) {
-    return {static_cast<float>(texel & 255u), static_cast<float>(texel >> 8 & 255u),
-            static_cast<float>(texel >> 16 & 255u)};
-  }
-
   std::vector<Level> levels_;
   std::vector<std::uint32_t> texels_;
   int last_ = 0;

@@ -7,17 +7,13 @@
 namespace stillpoint::generated {
 namespace {
 
-/// The image rectangle and least depth of a primitive's bounding box.
-struct Bounds {
-  float left = 1e9f, right = -1e9f, up = 1e9f, down = -1e9f, nearest = 1e9f;
-  void add(const Vector3f& p, const Camera& camera) {
-    const float x = static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx);
-    const float y = static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy);
-    left = std::min(left, x), right = std::max(right, x);
-    up = std::min(up, y), down = std::max(down, y);
-    nearest = std::min(nearest, p.z());
-  }
-};
+void add(const Vector3f& p, const Camera& camera, ImageBounds& bounds) {
+  const float x = static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx);
+  const float y = static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy);
+  bounds.left = std::min(bounds.left, x), bounds.right = std::max(bounds.right, x);
+  bounds.up = std::min(bounds.up, y), bounds.down = std::max(bounds.down, y);
+  bounds.nearest = std::min(bounds.nearest, p.z());
+}
 
 std::array<Vector3f, 8> corners_in_camera(const Primitive& p, const View& view) {
   const Matrix3f camera_from_local = view.rotation.transpose() * p.local_from_world.inverse();
@@ -34,17 +30,21 @@ std::array<Vector3f, 8> corners_in_camera(const Primitive& p, const View& view) 
   return corners;
 }
 
-Bounds bounds_of(const Primitive& p, const View& view, const Camera& camera) {
+/// Of a primitive's bounding box.
+ImageBounds bounds_of(const Primitive& p, const View& view, const Camera& camera) {
   const auto corners = corners_in_camera(p, view);
-  Bounds bounds;
+  ImageBounds bounds;
   for (std::size_t k = 0; k < 8; ++k) {
     const Vector3f& a = corners[k];
-    if (a.z() >= kNear) bounds.add(a, camera);
+    if (a.z() >= kNear)
+      add(a, camera, bounds);
+    else
+      bounds.is_clipped = true;
     // Where an edge passes the near plane, the part before it counts.
     for (const std::size_t bit : {1u, 2u, 4u}) {
       const Vector3f& b = corners[k ^ bit];
       if (a.z() < kNear && b.z() >= kNear)
-        bounds.add(a + (b - a) * ((kNear - a.z()) / (b.z() - a.z())), camera);
+        add(a + (b - a) * ((kNear - a.z()) / (b.z() - a.z())), camera, bounds);
     }
   }
   return bounds;
@@ -68,33 +68,38 @@ View::View(const Scene& scene, const Camera& camera, const Instant& instant)
   for (const Primitive& p : *actors) seen.push_back(see(p, rotation, position));
 }
 
+void SeenFaces::look(std::uint16_t id, int face, SeenFace& seen) const {
+  const Primitive& p = view_->primitive(id);
+  seen.surface = &scene_->surfaces[p.surface[static_cast<std::size_t>(face)]];
+  seen.picture = &scene_->pictures[static_cast<std::size_t>(seen.surface->picture)];
+  seen.fit = fit_picture(p, *seen.surface, *seen.picture, face);
+  if (p.is_flat()) seen.normal = flat_normal(p, face);
+}
+
 TileLists::TileLists(const View& view, const Camera& camera)
     : width(camera.width), height(camera.height), columns((camera.width + kSide - 1) / kSide) {
   const int rows = (height + kSide - 1) / kSide;
   lists.resize(static_cast<std::size_t>(columns * rows));
-  struct Entry {
-    Bounds bounds;
-    std::uint16_t id;
-  };
-  std::vector<Entry> entries;
+  std::vector<Candidate> entries;
   for (std::size_t i = 0; i < view.seen.size(); ++i) {
     const auto id = static_cast<std::uint16_t>(i);
-    Bounds b = bounds_of(view.primitive(id), view, camera);
+    ImageBounds b = bounds_of(view.primitive(id), view, camera);
     if (view.seen[i].shape == Shape::kRoom) b = {-1e6f, 1e6f, -1e6f, 1e6f, 1e8f};  // last, and everywhere
     if (b.right < -1 || b.left > static_cast<float>(width) || b.down < -1 ||
         b.up > static_cast<float>(height))
       continue;
     entries.push_back({b, id});
   }
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.bounds.nearest < b.bounds.nearest; });
+  std::stable_sort(entries.begin(), entries.end(), [](const Candidate& a, const Candidate& b) {
+    return a.bounds.nearest < b.bounds.nearest;
+  });
   const auto tile = [](float pixel, int count) {
     return std::clamp(static_cast<int>(std::clamp(pixel, -1e6f, 1e6f)) / kSide, 0, count - 1);
   };
-  for (const Entry& e : entries)
+  for (const Candidate& e : entries)
     for (int y = tile(e.bounds.up - 2, rows); y <= tile(e.bounds.down + 2, rows); ++y)
       for (int x = tile(e.bounds.left - 2, columns); x <= tile(e.bounds.right + 2, columns); ++x)
-        lists[static_cast<std::size_t>(y * columns + x)].push_back({e.bounds.nearest, e.id});
+        lists[static_cast<std::size_t>(y * columns + x)].push_back(e);
 }
 
 }  // namespace stillpoint::generated

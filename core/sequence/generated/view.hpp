@@ -30,8 +30,50 @@ struct View {
   float cx, cy, inverse_fx, inverse_fy, inverse_focal;
 };
 
+/// A face as it looks at one instant.
+struct SeenFace {
+  const Surface* surface = nullptr;
+  const Texture* picture = nullptr;
+  PictureFit fit;
+  Vector3f normal;  ///< of flat ones, world
+};
+
+/// The faces of a view, each looked at when it is asked for first. Refers to the scene and the view.
+class SeenFaces {
+ public:
+  SeenFaces(const Scene& scene, const View& view)
+      : scene_(&scene), view_(&view), faces_(kMost * view.seen.size()) {}
+
+  [[nodiscard]] const SeenFace& at(std::uint16_t id, int face) {
+    SeenFace& seen = faces_[kMost * id + static_cast<std::size_t>(face)];
+    if (seen.surface == nullptr) look(id, face, seen);
+    return seen;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 6;
+  void look(std::uint16_t id, int face, SeenFace& seen) const;
+  const Scene* scene_;
+  const View* view_;
+  std::vector<SeenFace> faces_;
+};
+
+/// The part of an image in which a primitive may show, px, and its least depth, m.
+struct ImageBounds {
+  float left = 1e9f, right = -1e9f, up = 1e9f, down = -1e9f, nearest = 1e9f;
+  bool is_clipped = false;  ///< it reaches behind the camera, and may show beyond these sides
+
+  /// Whether pixels `first` to `last` of a row may show it.
+  [[nodiscard]] bool reach(float first, float last, float y) const {
+    constexpr float kMargin = 2;  // px
+    return is_clipped ||
+           (first <= right + kMargin && last >= left - kMargin && y <= down + kMargin && y >= up - kMargin);
+  }
+};
+
+/// A primitive that may show in a tile.
 struct Candidate {
-  float nearest;  ///< no point of it is nearer than this, m
+  ImageBounds bounds;
   std::uint16_t id;
 };
 
@@ -47,21 +89,5 @@ struct TileLists {
   int width, height, columns;
   std::vector<std::vector<Candidate>> lists;
 };
-
-struct Found {
-  std::uint16_t id = 0;
-  Hit hit;
-};
-
-/// The first of the candidates that a ray meets.
-[[nodiscard]] inline Found nearest(const View& view, std::span<const Candidate> candidates,
-                                   const Vector3f& ray) {
-  Found found;
-  for (const Candidate& c : candidates) {
-    if (c.nearest > found.hit.depth) break;
-    if (intersect(view.seen[c.id], ray, found.hit)) found.id = c.id;
-  }
-  return found;
-}
 
 }  // namespace stillpoint::generated

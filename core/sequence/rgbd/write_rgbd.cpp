@@ -25,7 +25,7 @@ void write_image(const fs::path& path, const cv::Mat& image) {
   // What is packed again must be the same; JPEG is lossy whatever its quality.
   constexpr int kQuality = 95;
   const std::vector<unsigned char> bytes =
-      path.extension() == ".jpg" ? encode_jpeg(image, kQuality) : encode_png(image, 1);
+      path.extension() == ".jpg" ? encode_jpeg(image, kQuality) : encode_camera_png(image);
   if (bytes.empty()) throw InputError(fmt::format("{} cannot be packed", path.string()));
   write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
