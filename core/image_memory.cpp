@@ -9,7 +9,7 @@ namespace stillpoint {
 namespace {
 
 constexpr std::size_t kSmallest = 4 << 10;   // bytes: below, the system is as fast
-constexpr std::size_t kMostKept = 64 << 20;  // bytes: some hundred images of a VGA camera
+constexpr std::size_t kMostKept = 32 << 20;  // bytes: some fifty images of a VGA camera
 
 // A sanitizer tells who touches memory that was let go of; handed on at once, it could not.
 #ifdef __SANITIZE_ADDRESS__
