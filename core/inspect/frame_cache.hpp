@@ -13,7 +13,7 @@ namespace stillpoint {
 /// The frames read last: going a step back, or looking at a pair again, need not read anew.
 class FrameCache {
  public:
-  explicit FrameCache(const FrameSource& source, std::size_t capacity = 32)
+  explicit FrameCache(const FrameSource& source, std::size_t capacity = 16)
       : source_(&source), capacity_(capacity) {}
 
   /// A frame. Its images are shared with the cache: they are to be read only.

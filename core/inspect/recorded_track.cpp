@@ -10,14 +10,13 @@ ReplayableRun::ReplayableRun(const FrameSource& source, std::shared_ptr<const Re
     : source_(&source),
       options_(options),
       recorded_(std::move(recorded)),
-      odometry_(source.camera(), recorded_->run.config) {
+      odometry_(source.camera(), recorded_->run.config),
+      motion_state_every_(odometry_.motion().info().needs.checkpoint_every) {
   scores_ = recorded_->run.scores;
   scores_.resize(recorded_->run.records.size());
   for (const FrameRecord& record : recorded_->run.records) {
     hash_.add(record);
-    features_.push_back(options_.keep_features
-                            ? std::make_shared<const std::vector<FeatureRecord>>(record.features)
-                            : nullptr);
+    keep_features(record.features);
     records_.push_back(record);
     records_.back().features = {};
   }

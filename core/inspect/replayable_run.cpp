@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <future>
+#include <type_traits>
 #include <utility>
 
 #include "core/odometry/engines.hpp"
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
+namespace {
+
+constexpr std::size_t kMostMotionStates = 2500;
+
+}  // namespace
 
 int frames_compared_back(const Camera& camera, const Config& config) {
   const bool directly = method_of(config).extends_odometry && config.direct.below_inliers > 0;
@@ -16,7 +22,10 @@ int frames_compared_back(const Camera& camera, const Config& config) {
 
 ReplayableRun::ReplayableRun(const FrameSource& source, const Config& config,
                              const ReplayableRunOptions& options)
-    : source_(&source), options_(options), odometry_(source.camera(), config) {}
+    : source_(&source),
+      options_(options),
+      odometry_(source.camera(), config),
+      motion_state_every_(odometry_.motion().info().needs.checkpoint_every) {}
 
 bool ReplayableRun::needs_true_mask(const Config& config) const {
   return (method_of(config).needs.true_mask || config.run.check_removal) && source_->has_masks();
@@ -31,8 +40,13 @@ FrameResult ReplayableRun::process(Odometry& odometry, const Frame& frame, const
 void ReplayableRun::keep_motion_state() {
   const MotionNeeds& needs = odometry_.motion().info().needs;
   if (!needs.keeps_state || needs.matches) return;
-  if (seen_ != begins_at_ && seen_ % needs.checkpoint_every != 0) return;
+  if (seen_ != begins_at_ && seen_ % motion_state_every_ != 0) return;
   motion_states_.emplace(seen_, odometry_.motion()).first->second.drop_images();
+  if (motion_states_.size() <= kMostMotionStates) return;
+  motion_state_every_ *= 2;
+  std::erase_if(motion_states_, [this](const auto& kept) {
+    return kept.first != begins_at_ && kept.first % motion_state_every_ != 0;
+  });
 }
 
 bool ReplayableRun::can_repeat_motion(int index) const {
@@ -82,9 +96,7 @@ FrameResult ReplayableRun::process_next(const ReadFrame& read) {
   // What a batch run does after its last frame.
   if (index + 1 == source_->size()) odometry_.finish();
   hash_.add(result.record);
-  features_.push_back(options_.keep_features
-                          ? std::make_shared<const std::vector<FeatureRecord>>(result.record.features)
-                          : nullptr);
+  keep_features(result.record.features);
   std::vector<FeatureRecord> features = std::move(result.record.features);
   result.record.features = {};
   records_.push_back(result.record);
@@ -94,8 +106,17 @@ FrameResult ReplayableRun::process_next(const ReadFrame& read) {
 
 FrameRecord ReplayableRun::record(int index) const {
   FrameRecord record = records_[static_cast<std::size_t>(index)];
-  if (const Features& features = features_[static_cast<std::size_t>(index)]) record.features = *features;
+  const StoredBytes& features = features_[static_cast<std::size_t>(index)];
+  record.features.resize(features.size() / sizeof(FeatureRecord));
+  features.read(record.features.data());
   return record;
+}
+
+void ReplayableRun::keep_features(const std::vector<FeatureRecord>& features) {
+  static_assert(std::is_trivially_copyable_v<FeatureRecord>);
+  features_.push_back(options_.keep_features
+                          ? store_->put(features.data(), features.size() * sizeof(FeatureRecord))
+                          : StoredBytes());
 }
 
 void ReplayableRun::keep_checkpoint() {

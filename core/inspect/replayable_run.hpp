@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/byte_store.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/motion_replay.hpp"
 #include "core/odometry/odometry.hpp"
@@ -23,7 +24,7 @@ namespace stillpoint {
 /// How much a ReplayableRun keeps.
 struct ReplayableRunOptions {
   int checkpoint_every = 25;  ///< frames between copies of the odometry; doubled when there are too many
-  int max_checkpoints = 40;
+  int max_checkpoints = 20;
   bool keep_features = true;  ///< of the records: most of their size
   bool keep_times = true;     ///< of the records; without them two runs give the same bytes
   bool score_masks = true;    ///< masks are compared with the true ones, where the sequence has these
@@ -120,12 +121,11 @@ class ReplayableRun {
   [[nodiscard]] RunView view() const;
 
  private:
-  using Features = std::shared_ptr<const std::vector<FeatureRecord>>;  // shared with branches
-
   [[nodiscard]] bool needs_true_mask(const Config& config) const;
   [[nodiscard]] FrameResult process(Odometry& odometry, const Frame& frame, const cv::Mat& known_mask) const;
   void keep_checkpoint();
   void keep_motion_state();
+  void keep_features(const std::vector<FeatureRecord>& features);
   [[nodiscard]] bool is_as_recorded() const;
 
   const FrameSource* source_;
@@ -134,11 +134,13 @@ class ReplayableRun {
   Odometry odometry_;
   int seen_ = 0;  // frames odometry_ has processed
   int begins_at_ = 0;
-  std::vector<FrameRecord> records_;          // without features
-  std::vector<Features> features_;            // … which are here; null where they are not kept
+  std::vector<FrameRecord> records_;  // without features
+  std::shared_ptr<ByteStore> store_ = ByteStore::make();
+  std::vector<StoredBytes> features_;         // … which are here; empty where they are not kept
   std::vector<FrameScores> scores_;           // one a record
   std::map<int, Odometry> checkpoints_;       // by the frame they process next
   std::map<int, MotionStage> motion_states_;  // without images, by the frame they judge next
+  int motion_state_every_;                    // frames between them; doubled when there are too many
   RunHash hash_;
 };
 

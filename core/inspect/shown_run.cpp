@@ -11,7 +11,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kExtrasKept = 12;
+constexpr std::size_t kExtrasKept = 4;  // each some megabytes
 
 /// A record with other features taken out; what was matched, and the pose, stay as they were.
 FrameRecord with_mask(FrameRecord record, const cv::Mat& mask) {

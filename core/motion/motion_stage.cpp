@@ -179,7 +179,9 @@ std::unique_ptr<MotionMethod> MotionStage::kept_under(const Config& config) cons
 }
 
 int MotionStage::frames_wanted(const Config& config) const {
-  if (kept_under(config) && (!stand_in_ || config.methods == config_.methods)) return 0;
+  // A stand-in that has not been called on since the last frame with depth is as new.
+  const bool stand_in_serves = !stand_in_ || !stand_in_used_ || config.methods == config_.methods;
+  if (stand_in_serves && kept_under(config)) return 0;
   return MotionStage(camera_, config).frames_back();
 }
 

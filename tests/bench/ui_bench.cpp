@@ -76,6 +76,46 @@ void draw_workbench(benchmark::State& state) {
 }
 BENCHMARK(draw_workbench)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
+/// Frame after frame of a session, as while it plays: range(0) of default_layout()'s tiles alone at the size
+/// they have in a window of 1600x900, or, below 0, the whole workbench.
+void draw_playing(benchmark::State& state) {
+  OpenOptions short_one;
+  short_one.frames = 12;
+  Config config;
+  config.run.method = "stillpoint";
+  Session session(open_sequence("generated:walking_static", short_one), config);
+  std::vector<std::shared_ptr<const SessionView>> views;
+  for (int frame = 6; frame < 12; ++frame) {
+    session.go_to(frame);
+    views.push_back(session.view());
+  }
+  const std::vector<std::string> tiles = panels_of(default_layout(config.run.method));
+  const bool whole = state.range(0) < 0;
+  if (!whole && static_cast<std::size_t>(state.range(0)) >= tiles.size())
+    return state.SkipWithError("no such tile");
+  Offscreen offscreen({.width = whole ? 1600 : 400, .height = whole ? 900 : 350});
+  Workbench workbench(make_panels());
+  if (!whole) {
+    LayoutNode alone;
+    alone.panel = tiles[static_cast<std::size_t>(state.range(0))];
+    workbench.set_layout(alone);
+    state.SetLabel(alone.panel);
+  }
+  std::size_t at = 0;
+  const FrameFunction draw = [&](UiFrame& frame) { workbench.draw(frame, views[at % views.size()].get()); };
+  offscreen.render(draw);
+  for (auto _ : state) {
+    ++at;
+    offscreen.draw(draw);
+  }
+  offscreen.make_current();
+}
+BENCHMARK(draw_playing)
+    ->DenseRange(-1, 7)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
 /// From nothing to the first image: context, fonts, shaders, one frame.
 void open_offscreen(benchmark::State& state) {
   for (auto _ : state) {

@@ -12,6 +12,7 @@
 #include "tests/support/golden.hpp"
 #include "tests/support/resident_memory.hpp"
 #include "tests/ui/gallery.hpp"
+#include "ui/gl/imgui_renderer.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -192,10 +193,7 @@ TEST(OffscreenTest, ListsAreDrawnAtTheFramebuffersScale) {
   ImDrawData data = *ImGui::GetDrawData();
   data.FramebufferScale = {2.0F, 2.0F};
   const Framebuffer target(offscreen.gl(), 200, 160);
-  target.bind();
-  offscreen.gl().ClearColor(0.0F, 0.0F, 0.0F, 1.0F);
-  offscreen.gl().Clear(GL_COLOR_BUFFER_BIT);
-  ImGuiRenderer(offscreen.gl()).draw(data, target.height());
+  ImGuiRenderer(offscreen.gl()).draw(data, target, {0.0F, 0.0F, 0.0F, 1.0F});
   cv::Mat white;
   cv::inRange(target.read(), cv::Scalar::all(255), cv::Scalar::all(255), white);
   EXPECT_EQ(cv::boundingRect(white), cv::Rect(20, 40, 40, 60));

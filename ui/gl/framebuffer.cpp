@@ -47,6 +47,7 @@ Framebuffer::Framebuffer(const Gl& gl, int width, int height, int samples)
 }
 
 void Framebuffer::bind() const {
+  colour_.note_change();
   gl_->BindFramebuffer(GL_FRAMEBUFFER, samples_ > 0 ? multisampled_.id() : framebuffer_.id());
   gl_->Viewport(0, 0, width_, height_);
 }
@@ -57,6 +58,13 @@ void Framebuffer::resolve() const {
   gl_->Disable(GL_SCISSOR_TEST);
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, multisampled_.id());
   gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.id());
+  gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+void Framebuffer::copy_to_window() const {
+  gl_->Disable(GL_SCISSOR_TEST);
+  gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+  gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 

@@ -20,6 +20,9 @@ class Framebuffer {
   /// Brings the samples of a pixel together; to be called after drawing and before texture() or read().
   void resolve() const;
 
+  /// Copies the resolved image, pixel by pixel, to what the context's window shows next.
+  void copy_to_window() const;
+
   /// The resolved image; its first row is the lowest, as GL has it: draw it with v running from 1 to 0.
   [[nodiscard]] const Texture& texture() const { return colour_; }
 

@@ -1,11 +1,12 @@
 #include "ui/gl/imgui_renderer.hpp"
 
-#include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace stillpoint {
 namespace {
 
+constexpr int kLarge = 4096;  // px: what covers less is not worth a draw call of its own
 constexpr GLenum kIndexType = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
@@ -22,6 +23,8 @@ Eigen::Matrix4f projection(const ImDrawData& data) {
   clip_from_display(1, 3) = (top + bottom) / (bottom - top);
   return clip_from_display;
 }
+
+bool same_colour(const ImVec4& a, const ImVec4& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 }  // namespace
 
@@ -53,18 +56,15 @@ void ImGuiRenderer::upload_fonts() {
   atlas.SetTexID(fonts_.imgui_id());
 }
 
-void ImGuiRenderer::set_state(const ImDrawData& data, int framebuffer_width, int framebuffer_height) const {
+void ImGuiRenderer::set_state(const ImDrawData& data) const {
   gl_->Enable(GL_BLEND);
   gl_->BlendEquation(GL_FUNC_ADD);
   gl_->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl_->Disable(GL_CULL_FACE);
   gl_->Disable(GL_DEPTH_TEST);
   gl_->Disable(GL_STENCIL_TEST);
   gl_->Disable(GL_PRIMITIVE_RESTART);
-  gl_->Enable(GL_SCISSOR_TEST);
   gl_->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-  gl_->Viewport(0, 0, framebuffer_width, framebuffer_height);
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindSampler(0, 0);
   program_.use();
@@ -74,42 +74,81 @@ void ImGuiRenderer::set_state(const ImDrawData& data, int framebuffer_width, int
   gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
 }
 
-void ImGuiRenderer::draw(const ImDrawData& data, int framebuffer_height) {
-  const ImVec2 scale = data.FramebufferScale;
-  const int framebuffer_width = static_cast<int>(data.DisplaySize.x * scale.x);
-  if (framebuffer_width <= 0 || framebuffer_height <= 0) return;
-  set_state(data, framebuffer_width, framebuffer_height);
-  for (int n = 0; n < data.CmdListsCount; ++n) {
-    const ImDrawList& list = *data.CmdLists[n];
-    gl_->BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
-    gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
-                    GL_STREAM_DRAW);
-    for (const ImDrawCmd& command : list.CmdBuffer) {
-      if (command.UserCallback == ImDrawCallback_ResetRenderState) {
-        set_state(data, framebuffer_width, framebuffer_height);
-        continue;
-      }
-      if (command.UserCallback != nullptr) {
-        command.UserCallback(&list, &command);
-        continue;
-      }
-      const ImVec2 low{std::max((command.ClipRect.x - data.DisplayPos.x) * scale.x, 0.0F),
-                       std::max((command.ClipRect.y - data.DisplayPos.y) * scale.y, 0.0F)};
-      const ImVec2 high{(command.ClipRect.z - data.DisplayPos.x) * scale.x,
-                        (command.ClipRect.w - data.DisplayPos.y) * scale.y};
-      if (high.x <= low.x || high.y <= low.y) continue;
-      gl_->Scissor(static_cast<GLint>(low.x),
-                   static_cast<GLint>(static_cast<float>(framebuffer_height) - high.y),
-                   static_cast<GLsizei>(high.x - low.x), static_cast<GLsizei>(high.y - low.y));
-      gl_->BindTexture(GL_TEXTURE_2D, from_imgui_texture(command.GetTexID()));
-      gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), kIndexType,
-                                  offset(command.IdxOffset * sizeof(ImDrawIdx)),
-                                  static_cast<GLint>(command.VtxOffset));
+void ImGuiRenderer::draw_list(const ImDrawList& list, const std::vector<DrawnCommand>& commands,
+                              const std::vector<PixelRect>& regions, int height) {
+  parts_.clear();
+  chosen_.clear();
+  for (const DrawnCommand& command : commands)
+    for (const PixelRect& region : regions) add_parts(list, command, command.clip.cut_to(region));
+  if (parts_.empty()) return;
+  gl_->BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
+  gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(chosen_.size() * sizeof(ImDrawIdx)),
+                  chosen_.data(), GL_STREAM_DRAW);
+  bool blends = true;
+  for (const Part& part : parts_) {
+    const PixelRect& r = part.scissor;
+    gl_->Scissor(r.x0, height - r.y1, r.x1 - r.x0, r.y1 - r.y0);
+    if (part.drawing == Drawing::kFill) {
+      const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(part.colour);
+      gl_->ClearColor(colour.x, colour.y, colour.z, 1.0F);
+      gl_->Clear(GL_COLOR_BUFFER_BIT);
+      continue;
     }
+    if (const bool blended = part.drawing == Drawing::kBlended; blended != std::exchange(blends, blended))
+      blended ? gl_->Enable(GL_BLEND) : gl_->Disable(GL_BLEND);
+    gl_->BindTexture(GL_TEXTURE_2D, from_imgui_texture(part.of->command->GetTexID()));
+    gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(part.count), kIndexType,
+                                offset(part.first * sizeof(ImDrawIdx)),
+                                static_cast<GLint>(part.of->command->VtxOffset));
   }
+  gl_->Enable(GL_BLEND);
+}
+
+void ImGuiRenderer::add_parts(const ImDrawList& list, const DrawnCommand& command, const PixelRect& scissor) {
+  if (scissor.empty()) return;
+  bool open = false;  // the last part goes on
+  for (std::size_t i = command.first_shape; i < command.first_shape + command.shapes; ++i) {
+    const DrawnShape& shape = changes_.shapes()[i];
+    const PixelRect seen = shape.box.cut_to(scissor);
+    if (seen.empty()) continue;
+    const Drawing drawing = seen.area() < kLarge ? Drawing::kBlended : shape.drawing;
+    if (drawing == Drawing::kFill) {
+      parts_.push_back({drawing, &command, seen, 0, 0, shape.colour});
+      open = false;
+      continue;
+    }
+    if (!open || parts_.back().drawing != drawing)
+      parts_.push_back({drawing, &command, scissor, chosen_.size(), 0, 0});
+    open = true;
+    const ImDrawIdx* indices = list.IdxBuffer.Data + shape.first_index;
+    chosen_.insert(chosen_.end(), indices, indices + shape.indices);
+    parts_.back().count += shape.indices;
+  }
+}
+
+bool ImGuiRenderer::draw(const ImDrawData& data, const Framebuffer& target, const ImVec4& background) {
+  const int height = target.height();
+  if (std::exchange(drawn_into_, target.texture().id()) != target.texture().id() ||
+      !same_colour(background_, background))
+    changes_.forget();
+  background_ = background;
+  const std::vector<PixelRect>& regions = changes_.update(data, target.width(), height);
+  if (regions.empty()) return false;
+  target.bind();
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl_->ClearColor(background.x, background.y, background.z, 1.0F);
+  for (const PixelRect& r : regions) {
+    gl_->Scissor(r.x0, height - r.y1, r.x1 - r.x0, r.y1 - r.y0);
+    gl_->Clear(GL_COLOR_BUFFER_BIT);
+  }
+  set_state(data);
+  for (int n = 0; n < data.CmdListsCount; ++n)
+    draw_list(*data.CmdLists[n], changes_.commands(n), regions, height);
   gl_->Disable(GL_SCISSOR_TEST);
   gl_->Disable(GL_BLEND);
   gl_->BindVertexArray(0);
+  return true;
 }
 
 }  // namespace stillpoint

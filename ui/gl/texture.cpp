@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <stdexcept>
 
 namespace stillpoint {
 namespace {
+
+constexpr std::uint64_t kOpaque = std::uint64_t{1} << 63U;
 
 struct PixelFormat {
   GLint internal;
@@ -44,6 +47,7 @@ Texture::Texture(const Gl& gl, Sampling sampling)
 }
 
 void Texture::upload(const cv::Mat& image) {
+  note_change();
   if (image.empty()) {
     width_ = height_ = 0;
     return;
@@ -69,6 +73,7 @@ void Texture::upload(const cv::Mat& image) {
 }
 
 void Texture::allocate(int width, int height) {
+  note_change();
   gl_->BindTexture(GL_TEXTURE_2D, texture_.id());
   gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   width_ = width;
@@ -76,12 +81,22 @@ void Texture::allocate(int width, int height) {
   type_ = CV_8UC4;
 }
 
-ImTextureID Texture::imgui_id() const { return to_imgui_texture(texture_.id()); }
+void Texture::note_change() const {
+  static std::atomic<std::uint32_t> last{0};
+  content_ = ++last;
+}
 
-// ImTextureID is a pointer in older versions of ImGui and an integer in newer ones; a C-style cast serves
-// both.
-ImTextureID to_imgui_texture(GLuint id) { return (ImTextureID)(static_cast<std::intptr_t>(id)); }
+// ImTextureID is a pointer in older versions of ImGui and an integer in newer ones, 64 bits in both; a
+// C-style cast serves both. What is drawn with another content has another name, and so is drawn again.
+ImTextureID Texture::imgui_id() const {
+  static_assert(sizeof(ImTextureID) == sizeof(std::uint64_t));
+  const bool opaque = type_ >= 0 && CV_MAT_CN(type_) < 4;
+  return (ImTextureID)((opaque ? kOpaque : 0) | (std::uint64_t{content_ & 0x7FFFFFFFU} << 32U) |
+                       texture_.id());
+}
 
-GLuint from_imgui_texture(ImTextureID id) { return static_cast<GLuint>((std::intptr_t)id); }
+bool is_opaque(ImTextureID id) { return ((std::uint64_t)id & kOpaque) != 0; }
+
+GLuint from_imgui_texture(ImTextureID id) { return static_cast<GLuint>((std::uint64_t)id); }
 
 }  // namespace stillpoint

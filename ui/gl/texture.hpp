@@ -34,18 +34,24 @@ class Texture {
   [[nodiscard]] int height() const { return height_; }  ///< px
   [[nodiscard]] GLuint id() const { return texture_.id(); }
 
-  /// The name under which ImGui's draw lists know it.
+  /// The name under which ImGui's draw lists know it, another one after each change of what it holds.
   [[nodiscard]] ImTextureID imgui_id() const;
+
+  /// What it holds is about to change from outside, by drawing into it.
+  void note_change() const;
 
  private:
   const Gl* gl_;
   GlObject texture_;
   Sampling sampling_;
   int width_ = 0, height_ = 0, type_ = -1;
+  mutable std::uint32_t content_ = 0;  // no two contents of any texture have the same
 };
 
-/// A GL texture's name in ImGui's terms, whose type differs between ImGui's versions.
-[[nodiscard]] ImTextureID to_imgui_texture(GLuint id);
+/// Whether a texture known by this name has no alpha of its own.
+[[nodiscard]] bool is_opaque(ImTextureID id);
+
+/// The GL texture meant by Texture::imgui_id().
 [[nodiscard]] GLuint from_imgui_texture(ImTextureID id);
 
 }  // namespace stillpoint

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ui/gl/imgui_renderer.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -85,17 +87,10 @@ UiFrame Canvas::frame_unseen(int width, int height, double delta_s, const FrameF
   return build(width, height, delta_s, function, false);
 }
 
-UiFrame Canvas::frame(int width, int height, double delta_s, const FrameFunction& function,
-                      const std::function<void()>& bind_target, bool close_requested) {
-  UiFrame frame = build(width, height, delta_s, function, close_requested);
-  bind_target();
-  const ImVec4 background = to_vec4(frame.theme.background);
-  gl_->Disable(GL_SCISSOR_TEST);
-  gl_->Viewport(0, 0, width, height);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  gl_->ClearColor(background.x, background.y, background.z, 1.0F);
-  gl_->Clear(GL_COLOR_BUFFER_BIT);
-  renderer_->draw(*ImGui::GetDrawData(), height);
+UiFrame Canvas::frame(const Framebuffer& target, double delta_s, const FrameFunction& function,
+                      bool close_requested) {
+  UiFrame frame = build(target.width(), target.height(), delta_s, function, close_requested);
+  frame.changed = renderer_->draw(*ImGui::GetDrawData(), target, to_vec4(frame.theme.background));
   return frame;
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ui/gl/framebuffer.hpp"
-#include "ui/gl/imgui_renderer.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/shell/graphics_context.hpp"
 #include "ui/shell/input.hpp"
@@ -20,6 +19,7 @@
 
 namespace stillpoint {
 
+class ImGuiRenderer;
 class PanelChoices;
 
 /// ImGui lays new windows out over two frames, so what has changed is drawn this many times.
@@ -58,6 +58,7 @@ struct UiFrame {
   Look wanted_look{};                         ///< from the next frame on
   double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
   bool quit = false;                                                ///< leave the shell's loop
+  bool changed = true;  ///< the picture is another than that of the frame before; known once it is drawn
 };
 
 /// Draws one frame of the interface through ImGui, whose context is current.
@@ -73,11 +74,11 @@ class Canvas {
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// Builds a frame of width x height px and draws it into the framebuffer bound for drawing by
-  /// `bind_target`, which is called after `function`, since that may draw into framebuffers of its own.
-  /// @returns the frame with what `function` asked for.
-  UiFrame frame(int width, int height, double delta_s, const FrameFunction& function,
-                const std::function<void()>& bind_target, bool close_requested = false);
+  /// Builds a frame of the target's size and brings the target from the frame drawn into it last to this one.
+  /// Nothing else may draw into it between, or it is to be another.
+  /// @returns the frame with what `function` asked for
+  UiFrame frame(const Framebuffer& target, double delta_s, const FrameFunction& function,
+                bool close_requested = false);
 
   /// The same without drawing: what was sent is taken, and windows find their sizes.
   UiFrame frame_unseen(int width, int height, double delta_s, const FrameFunction& function);

@@ -44,8 +44,7 @@ void Offscreen::make_current() const {
 UiFrame Offscreen::draw(const FrameFunction& function) {
   make_current();
   const Stopwatch watch;
-  UiFrame frame = canvas_->frame(framebuffer_->width(), framebuffer_->height(), kFrameSeconds, function,
-                                 [this] { framebuffer_->bind(); });
+  UiFrame frame = canvas_->frame(*framebuffer_, kFrameSeconds, function);
   // Drawn, not only asked for: as in a window, where showing the frame waits for it.
   canvas_->gl().Finish();
   canvas_->note_pace(watch.milliseconds());

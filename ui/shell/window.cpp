@@ -14,6 +14,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kCaretBlinkSeconds = 0.25;
+constexpr double kLeastSleepSeconds = 0.005;
 constexpr double kLongestSleepSeconds = 60.0;
 
 std::string last_glfw_error() {
@@ -145,6 +146,7 @@ Window::Window(const WindowOptions& options) {
 
 Window::~Window() {
   context_->make_current();
+  picture_.reset();
   canvas_.reset();
   context_.reset();
   for (GLFWcursor* cursor : cursors_) {
@@ -178,6 +180,9 @@ void Window::connect_input() {
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int focused) {
     self(window).receive(FocusChanged{focused == GLFW_TRUE});
   });
+  // What lay over the window is gone, or it has another size: what it shows is lost.
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { self(window).stale_ = true; });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { self(window).stale_ = true; });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     self(window).receive(FilesDropped{{paths, paths + count}});
   });
@@ -211,25 +216,32 @@ void Window::tell_display_scale() {
 
 UiFrame Window::draw_unshown(const FrameFunction& function) {
   context_->make_current();
-  const auto [width, height] = framebuffer_size();
+  const auto [pixels_x, pixels_y] = framebuffer_size();
+  const int width = std::max(pixels_x, 1), height = std::max(pixels_y, 1);
+  if (!picture_ || picture_->width() != width || picture_->height() != height)
+    picture_ = std::make_unique<Framebuffer>(canvas_->gl(), width, height);
   tell_display_scale();
   const double now = glfwGetTime();
   const double delta_s = now - last_frame_s_;
   last_frame_s_ = now;
   const bool close = glfwWindowShouldClose(window_) == GLFW_TRUE;
   if (close) glfwSetWindowShouldClose(window_, GLFW_FALSE);
-  UiFrame frame = canvas_->frame(
-      std::max(width, 1), std::max(height, 1), delta_s, function,
-      [this] { canvas_->gl().BindFramebuffer(GL_FRAMEBUFFER, 0); }, close);
+  UiFrame frame = canvas_->frame(*picture_, delta_s, function, close);
   show_cursor();
   return frame;
+}
+
+void Window::show() {
+  picture_->copy_to_window();
+  glfwSwapBuffers(window_);
+  stale_ = false;
 }
 
 UiFrame Window::draw(const FrameFunction& function) {
   const double begin = glfwGetTime();
   glfwPollEvents();
   UiFrame frame = draw_unshown(function);
-  glfwSwapBuffers(window_);
+  if (frame.changed || stale_) show();
   canvas_->note_pace(1000.0 * (glfwGetTime() - begin));
   return frame;
 }
@@ -237,14 +249,8 @@ UiFrame Window::draw(const FrameFunction& function) {
 cv::Mat Window::capture(const FrameFunction& function) {
   glfwPollEvents();
   draw_unshown(function);
-  const auto [width, height] = framebuffer_size();
-  const Gl& gl = canvas_->gl();
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  // What lies in the back buffer now is what the swap shows; afterwards its content is undefined.
-  gl.ReadBuffer(GL_BACK);
-  cv::Mat image = read_pixels(gl, width, height);
-  glfwSwapBuffers(window_);
-  return image;
+  show();
+  return picture_->read();
 }
 
 void Window::wait(double seconds) const {
@@ -263,7 +269,9 @@ void Window::run(const FrameFunction& function) {
     if (canvas_->has_pending_input()) unsettled = kSettlingFrames;
     if (--unsettled > 0 || canvas_->has_pending_input()) continue;
     const double blink = ImGui::GetIO().WantTextInput ? kCaretBlinkSeconds : kLongestSleepSeconds;
-    wait(std::min(frame.redraw_after_s, blink));
+    // A frame that shows nothing new does not wait for the display, and so waits here.
+    const double least = frame.changed ? 0.0 : kLeastSleepSeconds;
+    wait(std::max(std::min(frame.redraw_after_s, blink), least));
     unsettled = canvas_->has_pending_input() ? kSettlingFrames : 1;
   }
 }

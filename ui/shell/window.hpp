@@ -59,6 +59,7 @@ class Window {
  private:
   void tell_display_scale();
   UiFrame draw_unshown(const FrameFunction& function);
+  void show();
   void wait(double seconds) const;
   void connect_input();
   void connect_clipboard();
@@ -68,6 +69,9 @@ class Window {
   std::unique_ptr<GraphicsContext> context_;
   std::unique_ptr<Canvas> canvas_;
   std::array<GLFWcursor*, 16> cursors_{};
+  std::unique_ptr<Framebuffer>
+      picture_;        // what is drawn, frame after frame: a window's own is lost once shown
+  bool stale_ = true;  // the window may not show what was drawn last
   double last_frame_s_ = 0.0;
   bool listens_ = true;
 };

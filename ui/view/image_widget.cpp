@@ -108,6 +108,29 @@ void draw_absent(const UiFrame& frame, const ImageResponse& response, const std:
                                       to_u32(frame.theme.text_dim), text.c_str(), nullptr, wrap);
 }
 
+void draw_ground(const UiFrame& frame, ImVec2 low, ImVec2 high) {
+  if (low.x < high.x && low.y < high.y)
+    ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(frame.theme.background));
+}
+
+/// The panel about the picture: under it nothing is seen.
+void draw_ground_beside(const UiFrame& frame, const ImageResponse& response,
+                        const Eigen::Vector2d& image_size) {
+  const ImVec2 low = response.panel_min, high = response.panel_max;
+  const auto inside = [&](ImVec2 at, float towards) {
+    // A pixel the picture covers in part is grounded as well.
+    at = {std::round(at.x) + towards, std::round(at.y) + towards};
+    return ImVec2{std::clamp(at.x, low.x, high.x), std::clamp(at.y, low.y, high.y)};
+  };
+  const ImVec2 from = inside(response.to_screen({0.0, 0.0}), 1.0F);
+  const ImVec2 to = inside(response.to_screen(image_size), -1.0F);
+  if (from.x >= to.x || from.y >= to.y) return draw_ground(frame, low, high);
+  draw_ground(frame, low, {high.x, from.y});
+  draw_ground(frame, {low.x, to.y}, high);
+  draw_ground(frame, {low.x, from.y}, {from.x, to.y});
+  draw_ground(frame, {to.x, from.y}, {high.x, to.y});
+}
+
 void draw_pictures(const ImageContent& content, const ImageResponse& response,
                    const Eigen::Vector2d& image_size) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -191,7 +214,10 @@ ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageConten
   response.hovered = ImGui::IsItemHovered();
 
   push_clip(response);
-  ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(frame.theme.background));
+  if (present && is_opaque(content.texture->imgui_id()))
+    draw_ground_beside(frame, response, image_size);
+  else
+    draw_ground(frame, low, high);
   if (present) {
     draw_pictures(content, response, image_size);
     if (content.values != nullptr && !content.values->empty() &&

@@ -289,13 +289,13 @@ void AppController::draw(UiFrame& frame) {
   // The masks that were drawn are the sequence's from now on.
   if (view && view->debug.masks_written && std::exchange(renewed_, session_.get()) != session_.get())
     reopen();
-  workbench_.draw(frame, view.get());
+  workbench_.draw_in_turn(frame, view);
   frame.busy = frame.busy || !idle();
   options_.settings.look = frame.wanted_look;
 }
 
 bool AppController::idle() const {
-  if (opening_.valid() || next_) return false;
+  if (opening_.valid() || next_ || !workbench_.is_level()) return false;
   return !session_ || session_->idle();
 }
 

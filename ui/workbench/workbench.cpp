@@ -157,10 +157,13 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   }
   const float top = ImGui::GetCursorScreenPos().y;
   tiles_area_ = {gap, top, frame.size.x - 2.0F * gap, frame.size.y - top - status - 1.0F};
-  if (session != nullptr)
+  if (session != nullptr) {
     draw_tiles(tiles_area_);
-  else
+  } else {
+    tile_views_.clear();
+    level_ = true;
     draw_start_page(tiles_area_);
+  }
   draw_status_bar(status);
   ImGui::End();
 
@@ -180,6 +183,61 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
   remember_layout();
+}
+
+void Workbench::draw_in_turn(UiFrame& frame, std::shared_ptr<const SessionView> session) {
+  const SessionView* view = session.get();
+  turning_to_ = std::move(session);
+  draw(frame, view);
+  turning_to_.reset();
+  if (level_) return;
+  frame.busy = true;
+  frame.redraw_after_s = 0.0;
+}
+
+void Workbench::take_turns(const std::vector<PlacedPanel>& placed) {
+  constexpr float kShareAtOnce = 0.34F;  // of the area of those that wait
+  ++drawn_;
+  level_ = true;
+  if (turning_to_ == nullptr) return tile_views_.clear();
+  std::erase_if(tile_views_, [&](const auto& tile) {
+    return std::none_of(placed.begin(), placed.end(),
+                        [&](const PlacedPanel& panel) { return panel.panel == tile.first; });
+  });
+  const auto area = [](const PlacedPanel* panel) { return panel->rect.width * panel->rect.height; };
+  std::vector<const PlacedPanel*> waiting;
+  float all = 0.0F, taken = 0.0F;
+  for (const PlacedPanel& panel : placed) {
+    TileView& tile = tile_views_[panel.panel];
+    // Only another frame of the same sequence is worth waiting for: all else is little work.
+    if (tile.view == nullptr || tile.view->title != turning_to_->title ||
+        tile.view->current->index == turning_to_->current->index)
+      tile.view = turning_to_;
+    all += area(&panel);
+    if (tile.view != turning_to_) waiting.push_back(&panel);
+  }
+  const auto taken_in = [this](const PlacedPanel* panel) { return tile_views_[panel->panel].taken; };
+  const auto is_picture = [this](const PlacedPanel* panel) {
+    const Panel* found = find_panel(panel->panel);
+    return found != nullptr && found->previews();
+  };
+  std::stable_sort(waiting.begin(), waiting.end(), [&](const PlacedPanel* a, const PlacedPanel* b) {
+    if (taken_in(a) != taken_in(b)) return taken_in(a) < taken_in(b);
+    return is_picture(a) && !is_picture(b);
+  });
+  for (const PlacedPanel* panel : waiting) {
+    if (taken > 0.0F && taken + area(panel) > kShareAtOnce * all) {
+      level_ = false;
+      break;
+    }
+    taken += area(panel);
+    tile_views_[panel->panel] = {turning_to_, drawn_};
+  }
+}
+
+const SessionView& Workbench::view_of(const std::string& tile) const {
+  const auto found = tile_views_.find(tile);
+  return found == tile_views_.end() ? *session_ : *found->second.view;
 }
 
 void Workbench::remember_layout() {
@@ -230,10 +288,12 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
 void Workbench::draw_tiles(const LayoutRect& area) {
   tiles_.clear();
   if (!maximised_.empty()) {
+    take_turns({{maximised_, area}});
     draw_tile(maximised_, area);
     return;
   }
   const PlacedLayout placed = arrange(layout_, area, std::round(kGap * frame_->scale));
+  take_turns(placed.panels);
   hovered_panel_.clear();
   for (const PlacedPanel& panel : placed.panels) draw_tile(panel.panel, panel.rect);
   draw_splitters(placed);
@@ -280,22 +340,25 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
   draw_tile_heading(*panel, rect, heading);
   PanelActions wanted;
   frame_->choices = &choices_[name];
-  const bool preview = panel->previews() && shows_preview(*session_);
-  draw_panel_body(*frame_, preview ? previewed() : *session_, *panel, below_heading(rect, heading), wanted);
+  const SessionView& session = view_of(name);
+  const bool preview = panel->previews() && shows_preview(session);
+  draw_panel_body(*frame_, preview ? previewed(session) : session, *panel, below_heading(rect, heading),
+                  wanted);
   frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
 }
 
-const SessionView& Workbench::previewed() {
-  if (!previewed_) previewed_ = std::make_unique<const SessionView>(with_preview(*session_));
+const SessionView& Workbench::previewed(const SessionView& session) {
+  if (!previewed_ || previewed_->current != session.debug.preview)
+    previewed_ = std::make_unique<const SessionView>(with_preview(session));
   return *previewed_;
 }
 
 void Workbench::draw_tile_heading(Panel& panel, const LayoutRect& rect, float height) {
   const float button = height - 4.0F * frame_->scale, margin = 9.0F * frame_->scale;
   const float buttons = 2.0F * button + 6.0F * frame_->scale;
-  if (panel.previews() && shows_preview(*session_))
+  if (panel.previews() && shows_preview(view_of(panel.name())))
     draw_preview_badge(*frame_,
                        {rect.x + rect.width - buttons - 4.0F * frame_->scale, rect.y + 4.0F * frame_->scale});
   ImGui::PushFont(frame_->fonts.strong);

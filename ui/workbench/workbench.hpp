@@ -40,6 +40,11 @@ class Workbench {
 
   /// Draws everything. Without a session it shows the start page.
   void draw(UiFrame& frame, const SessionView* session);
+  /// The same for a session that goes on: when it shows another frame, tiles take to it in turn, some with
+  /// each frame of the interface and pictures first, so that none takes long.
+  void draw_in_turn(UiFrame& frame, std::shared_ptr<const SessionView> session);
+  /// Whether every tile shows what was given last.
+  [[nodiscard]] bool is_level() const { return level_; }
 
   /// Draws one panel with a heading of its own over the whole frame.
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel);
@@ -118,8 +123,10 @@ class Workbench {
   void draw_status_bar(float height);
   void draw_tiles(const LayoutRect& area);
   void draw_splitters(const PlacedLayout& placed);
+  void take_turns(const std::vector<PlacedPanel>& placed);
+  [[nodiscard]] const SessionView& view_of(const std::string& tile) const;
   void draw_tile(const std::string& name, const LayoutRect& rect);
-  [[nodiscard]] const SessionView& previewed();
+  [[nodiscard]] const SessionView& previewed(const SessionView& session);
   void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
@@ -181,9 +188,19 @@ class Workbench {
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;
   const SessionView* session_ = nullptr;
-  std::unique_ptr<const SessionView> previewed_;      // as panels of the frame shown draw its preview
-  bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
+  std::shared_ptr<const SessionView> turning_to_;  // what tiles take to in turn; null: all have the session
+  std::unique_ptr<const SessionView> previewed_;   // as panels of the frame shown draw its preview
+  bool compare_frames_ = false;                    // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
+
+  /// What a tile shows while others have their turn.
+  struct TileView {
+    std::shared_ptr<const SessionView> view;
+    long taken = 0;  // the frame of the interface it was taken in
+  };
+  std::map<std::string, TileView> tile_views_;
+  long drawn_ = 0;  // frames of the interface
+  bool level_ = true;
 
   // How fast frames go by while playing.
   int last_shown_ = -1;

@@ -2,7 +2,9 @@
 // evidence is kept as log-odds, the next frame's prior.
 #include <algorithm>
 #include <deque>
+#include <mutex>
 
+#include "core/byte_store.hpp"
 #include "core/motion/methods.hpp"
 #include "core/motion/stillpoint/depth_evidence.hpp"
 #include "core/motion/stillpoint/depth_motion.hpp"
@@ -26,6 +28,16 @@ struct PastView {
 
 const Preparation& prepared(const MotionInput& input) {
   return static_cast<const Preparation&>(*input.prepared);
+}
+
+/// Where the log-odds of copies lie that dropped their images: there may be very many.
+std::shared_ptr<ByteStore> store_of_dropped() {
+  static std::mutex mutex;
+  static std::weak_ptr<ByteStore> store;
+  const std::lock_guard lock(mutex);
+  auto held = store.lock();
+  if (!held) store = held = ByteStore::make();
+  return held;
 }
 
 class StillpointMethod final : public MotionMethod {
@@ -89,6 +101,10 @@ class StillpointMethod final : public MotionMethod {
 
   void drop_images() override {
     for (PastView& past : past_) past.view.reset();
+    if (log_odds_.empty() || !log_odds_.isContinuous()) return;
+    dropped_size_ = log_odds_.size();
+    dropped_ = store_of_dropped()->put(log_odds_.data, log_odds_.total() * log_odds_.elemSize());
+    log_odds_.release();
   }
 
   [[nodiscard]] std::set<int> images_wanted(int first, int last) const override {
@@ -106,6 +122,11 @@ class StillpointMethod final : public MotionMethod {
   }
 
   void restore_images(int first, int last, const ReadFrame& read) override {
+    if (dropped_.size() > 0) {
+      log_odds_.create(dropped_size_, CV_32FC1);
+      dropped_.read(log_odds_.data);
+      dropped_ = {};
+    }
     const std::set<int> wanted = images_wanted(first, last);
     for (PastView& past : past_)
       if (wanted.contains(past.frame_index)) past.view = view_of(read(past.frame_index));
@@ -170,6 +191,8 @@ class StillpointMethod final : public MotionMethod {
   StillpointConfig config_;
   std::deque<PastView> past_;  // newest last
   cv::Mat log_odds_;           // CV_32FC1, in the newest past view's pixels
+  StoredBytes dropped_;        // … while they are dropped with the images
+  cv::Size dropped_size_;
 };
 
 }  // namespace
@@ -181,7 +204,7 @@ MethodInfo stillpoint_method() {
   info.summary =
       "Depth and brightness against two earlier frames, superpixel by superpixel, with a recursive prior.";
   info.needs.depth = info.needs.first_pose = info.needs.keeps_state = true;
-  info.needs.checkpoint_every = 4;
+  info.needs.checkpoint_every = 1;
   info.usual = info.extends_odometry = true;
   info.without_depth = "epipolar";
   info.parameters = AnySection(StillpointConfig());

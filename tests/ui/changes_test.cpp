@@ -1,0 +1,161 @@
+// What a frame of the interface draws where only some of it has changed since the one before.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ui/gl/changed_regions.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/session/session.hpp"
+#include "ui/shell/offscreen.hpp"
+#include "ui/workbench/workbench.hpp"
+
+namespace stillpoint::testing {
+namespace {
+
+using ::testing::IsEmpty;
+
+constexpr int kChangesWidth = 1100, kChangesHeight = 700;
+
+/// A short session's views, frame by frame.
+const std::vector<std::shared_ptr<const SessionView>>& views() {
+  static const auto all = [] {
+    OpenOptions short_one;
+    short_one.frames = 5;
+    Config config;
+    config.run.method = "stillpoint";
+    Session session(open_sequence("generated:walking_static", short_one), config, {.keep_times = false});
+    std::vector<std::shared_ptr<const SessionView>> made;
+    for (int frame = 0; frame < short_one.frames; ++frame) {
+      session.go_to(frame);
+      made.push_back(session.view());
+    }
+    return made;
+  }();
+  return all;
+}
+
+cv::Mat drawn_afresh(const SessionView& view) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  cv::Mat image = offscreen.render([&](UiFrame& frame) { workbench.draw(frame, &view); });
+  offscreen.make_current();
+  return image;
+}
+
+int differing_pixels(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  return cv::countNonZero(difference.reshape(1));
+}
+
+TEST(ChangesTest, APictureDrawnOnIsOneDrawnAfresh) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  const auto draw_until_still = [&](const SessionView& view) {
+    return offscreen.render([&](UiFrame& frame) { workbench.draw(frame, &view); });
+  };
+  for (const std::size_t frame : {std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{1}})
+    EXPECT_EQ(differing_pixels(draw_until_still(*views()[frame]), drawn_afresh(*views()[frame])), 0) << frame;
+  EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());
+}
+
+TEST(ChangesTest, NothingIsDrawnWhereNothingChanged) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  const auto draw = [&](const SessionView& view) {
+    return offscreen.draw([&](UiFrame& frame) { workbench.draw(frame, &view); }).changed;
+  };
+  for (int i = 0; i < kSettlingFrames; ++i) draw(*views()[3]);
+  EXPECT_FALSE(draw(*views()[3]));
+  EXPECT_TRUE(draw(*views()[4]));
+}
+
+TEST(ChangesTest, TilesTakeToAnotherFrameInTurnAndEndLevel) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  const auto draw = [&](const std::shared_ptr<const SessionView>& view) {
+    return offscreen.draw([&](UiFrame& frame) { workbench.draw_in_turn(frame, view); });
+  };
+  for (int i = 0; i < kSettlingFrames; ++i) draw(views()[3]);
+  EXPECT_TRUE(workbench.is_level());
+  const UiFrame first = draw(views()[4]);
+  EXPECT_FALSE(workbench.is_level());
+  EXPECT_TRUE(first.busy);
+  EXPECT_EQ(first.redraw_after_s, 0.0);
+  int frames = 1;
+  for (; !workbench.is_level() && frames < 20; ++frames) draw(views()[4]);
+  EXPECT_TRUE(workbench.is_level());
+  EXPECT_LE(frames, 6);
+  for (int i = 0; i < kSettlingFrames; ++i) draw(views()[4]);
+  EXPECT_EQ(differing_pixels(offscreen.image(), drawn_afresh(*views()[4])), 0);
+}
+
+/// Draw lists of rectangles, without a context that draws.
+class DrawnRectangles {
+ public:
+  DrawnRectangles() : context_(ImGui::CreateContext()), list_(ImGui::GetDrawListSharedData()) {
+    ImGui::GetIO().Fonts->AddFontDefault();
+    ImGui::GetIO().Fonts->Build();
+  }
+  ~DrawnRectangles() { ImGui::DestroyContext(context_); }
+  DrawnRectangles(const DrawnRectangles&) = delete;
+  DrawnRectangles& operator=(const DrawnRectangles&) = delete;
+
+  std::vector<PixelRect> changes(const std::vector<std::array<float, 4>>& rectangles) {
+    list_._ResetForNewFrame();
+    list_.PushClipRect({0, 0}, {320, 320});
+    for (const auto& r : rectangles) list_.AddRectFilled({r[0], r[1]}, {r[2], r[3]}, IM_COL32_WHITE);
+    ImDrawData data;
+    std::array<ImDrawList*, 1> lists{&list_};
+    data.CmdLists = lists.data();
+    data.CmdListsCount = 1;
+    data.DisplaySize = {320, 320};
+    data.FramebufferScale = {1, 1};
+    return regions_.update(data, 320, 320);
+  }
+
+ private:
+  ImGuiContext* context_;
+  ImDrawList list_;
+  ChangedRegions regions_;
+};
+
+bool covers(const std::vector<PixelRect>& regions, int x, int y) {
+  return std::any_of(regions.begin(), regions.end(),
+                     [&](const PixelRect& r) { return r.x0 <= x && x < r.x1 && r.y0 <= y && y < r.y1; });
+}
+
+TEST(ChangesTest, ChangesAreWhereSomethingCameOrWent) {
+  DrawnRectangles drawn;
+  EXPECT_TRUE(covers(drawn.changes({{0, 0, 20, 20}}), 300, 300));  // the first time everywhere
+  EXPECT_THAT(drawn.changes({{0, 0, 20, 20}}), IsEmpty());
+  const auto moved = drawn.changes({{200, 100, 220, 120}});
+  EXPECT_TRUE(covers(moved, 10, 10));
+  EXPECT_TRUE(covers(moved, 210, 110));
+  EXPECT_FALSE(covers(moved, 100, 300));
+  // What lies over what counts, too.
+  drawn.changes({{0, 0, 20, 20}, {10, 10, 30, 30}});
+  EXPECT_TRUE(covers(drawn.changes({{10, 10, 30, 30}, {0, 0, 20, 20}}), 15, 15));
+}
+
+TEST(ChangesTest, RegionsNeverOverlap) {
+  DrawnRectangles drawn;
+  std::vector<std::array<float, 4>> scattered;
+  for (int i = 0; i < 60; ++i) {
+    const auto x = static_cast<float>((i * 73) % 300), y = static_cast<float>((i * 131) % 300);
+    scattered.push_back({x, y, x + 4, y + 4});
+  }
+  drawn.changes({});
+  const std::vector<PixelRect> regions = drawn.changes(scattered);
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    for (std::size_t j = i + 1; j < regions.size(); ++j)
+      EXPECT_TRUE(regions[i].cut_to(regions[j]).empty()) << i << " and " << j;
+  for (const auto& r : scattered)
+    EXPECT_TRUE(covers(regions, static_cast<int>(r[0]) + 1, static_cast<int>(r[1]) + 1));
+}
+
+}  // namespace
+}  // namespace stillpoint::testing
