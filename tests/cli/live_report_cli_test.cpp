@@ -268,6 +268,8 @@ constexpr const char* kVisit = R"js(<script>
 (async () => {
   const page = window.stillpointReport, found = {}, $ = (s) => document.querySelector(s);
   const breath = () => new Promise((done) => setTimeout(done, 150));
+  // Pictures are decoded beside: on a busy machine that takes longer than a breath.
+  const until = async (holds) => { for (let k = 0; k < 40 && !holds(); ++k) await breath(); };
   const press = (key, more = {}) => document.body.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, ...more}));
   const click = (canvas, [x, y]) => {
     const box = canvas.getBoundingClientRect();
@@ -280,7 +282,7 @@ constexpr const char* kVisit = R"js(<script>
     for (let i = 3; i < data.length; i += 4) count += data[i] > 0;
     return count / (canvas.width * canvas.height);
   };
-  await breath();
+  await until(() => $("#picture").dataset.frame === "5");
   found.linked = page.frame;
   found.linkedRun = page.run;
   found.where = $("#where").textContent;
@@ -291,7 +293,7 @@ constexpr const char* kVisit = R"js(<script>
   press("ArrowLeft", {shiftKey: true}); found.tenBack = page.frame;
   press("ArrowRight", {shiftKey: true}); found.tenOn = page.frame;
   $("#slider").value = 6; $("#slider").dispatchEvent(new Event("input"));
-  await breath();
+  await until(() => $("#picture-note").textContent.includes("Frame 6"));
   found.lost = $("#where").textContent;
   found.lostMarked = $("#where").classList.contains("lost");
   found.note = $("#picture-note").textContent;
