@@ -114,6 +114,7 @@ int main(int argc, char** argv) {
   }
   cv::setNumThreads(1);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_ARENA_MAX, 2);
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   try {
     measure(argv[1], argc > 2 ? argv[2] : "stillpoint", argc > 3 ? std::stoi(argv[3]) : 0);

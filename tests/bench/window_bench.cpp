@@ -135,6 +135,7 @@ int main(int argc, char** argv) {
   }
   cv::setNumThreads(1);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_ARENA_MAX, 2);
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   try {
     Bench bench(argv[1], argc > 2 ? std::stoi(argv[2]) : 0);
