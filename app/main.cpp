@@ -1,4 +1,3 @@
-#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -11,6 +10,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "app/version.hpp"
+#include "core/allocator.hpp"
 #include "core/error.hpp"
 
 namespace {
@@ -27,12 +27,7 @@ bool output_arrived() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Images come and go by the frame, and so do tables: pages need not be had from the kernel anew each time.
-  constexpr int kKeptBytes = 256 << 20;
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  // What threads keep apart goes to pieces by itself: two heaps instead of eight a core save a session 50 MB.
-  mallopt(M_ARENA_MAX, 2);
-  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  stillpoint::tune_allocator();
 
   // Stages run beside each other here; threads inside OpenCV as well would only contend for the same cores.
   cv::setNumThreads(1);

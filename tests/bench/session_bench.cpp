@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/allocator.hpp"
 #include "core/motion/paper/paper_config.hpp"
 #include "core/motion/stillpoint/stillpoint_config.hpp"
 #include "core/run/run_report.hpp"
@@ -113,9 +114,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   cv::setNumThreads(1);
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_ARENA_MAX, 2);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  tune_allocator();  // as the program does
   try {
     measure(argv[1], argc > 2 ? argv[2] : "stillpoint", argc > 3 ? std::stoi(argv[3]) : 0);
   } catch (const std::exception& error) {

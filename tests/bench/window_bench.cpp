@@ -4,7 +4,6 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/allocator.hpp"
 #include "core/stopwatch.hpp"
 #include "ui/shell/window.hpp"
 #include "ui/workbench/app_controller.hpp"
@@ -134,9 +134,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   cv::setNumThreads(1);
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_ARENA_MAX, 2);
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  tune_allocator();  // as the program does
   try {
     Bench bench(argv[1], argc > 2 ? std::stoi(argv[2]) : 0);
     bench.step();
