@@ -123,6 +123,18 @@ TEST_F(WorkbenchTest, KeysDoWhatTheySay) {
   EXPECT_THAT(played, ElementsAre(true));
 }
 
+TEST_F(WorkbenchTest, EachPressIsAStepFromWhereTheLastOneLed) {
+  const auto session = session_at(folder_, 5);
+  std::vector<int> gone_to, steps;
+  Workbench workbench(make_panels(), {.go_to_frame = [&](int frame) { gone_to.push_back(frame); },
+                                      .step = [&](int by) { steps.push_back(by); }});
+  for (int press = 0; press < 3; ++press) strike(offscreen_, Key::kRight);
+  strike(offscreen_, Key::kLeft);
+  render(workbench, *session);
+  EXPECT_THAT(steps, ElementsAre(1, 1, 1, -1));  // the session knows where to
+  EXPECT_THAT(gone_to, ::testing::IsEmpty());
+}
+
 TEST_F(WorkbenchTest, ThePaletteFindsAndRuns) {
   const auto session = session_at(folder_, 5);
   std::vector<int> gone_to;

@@ -61,14 +61,16 @@ const Action* Actions::for_key(const KeyChord& chord) const {
   return nullptr;
 }
 
-void Actions::run_pressed_keys(bool typing) const {
+void Actions::run_pressed_keys(bool typing) {
   for (const Action& action : actions_) {
     for (const KeyChord& chord : action.keys) {
       const bool commands = chord.modifiers.ctrl || chord.modifiers.alt || is_function_key(chord.key);
       if ((typing && !commands) || !is_chord_pressed(chord, action.repeats) || !is_enabled(action)) continue;
       // A copy: what runs may change the actions there are.
       const auto run = action.run;
+      held_ = !is_chord_pressed(chord);
       run();
+      held_ = false;
       return;
     }
   }

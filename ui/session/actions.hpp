@@ -42,13 +42,16 @@ class Actions {
 
   /// Runs what the keys pressed in ImGui's current frame stand for.
   /// @param typing a text field has the keys: only those with Ctrl or Alt, and function keys, count
-  void run_pressed_keys(bool typing) const;
+  void run_pressed_keys(bool typing);
+  /// Whether what runs now does so for a key that was pressed before and is held.
+  [[nodiscard]] bool key_is_held() const { return held_; }
 
   /// Enabled actions whose title holds the letters of `query` in order, best match first.
   [[nodiscard]] std::vector<const Action*> matching(std::string_view query) const;
 
  private:
   std::vector<Action> actions_;
+  bool held_ = false;
 };
 
 [[nodiscard]] bool is_enabled(const Action& action);

@@ -97,6 +97,10 @@ namespace request {
 struct GoTo {
   int frame = 0;
 };
+/// From the frame that was asked for last, which may not be shown yet: none of several quick steps is lost.
+struct Step {
+  int by = 1;  ///< frames
+};
 struct Play {
   bool play = true;
 };
@@ -175,11 +179,11 @@ struct SavePreset {
 }  // namespace request
 
 using SessionRequest =
-    std::variant<request::GoTo, request::Play, request::Bookmarks, request::Pins, request::Drawn,
-                 request::WriteTruth, request::Breakpoints, request::Span, request::Preview, request::RunAll,
-                 request::AddGhost, request::RemoveGhost, request::ExportFrames, request::ExportSession,
-                 request::CheckSequence, request::Sweep, request::StopSweep, request::StopExport,
-                 request::StagesBeside, request::StandBeside, request::Undo, request::Redo,
-                 request::SavePreset>;
+    std::variant<request::GoTo, request::Step, request::Play, request::Bookmarks, request::Pins,
+                 request::Drawn, request::WriteTruth, request::Breakpoints, request::Span, request::Preview,
+                 request::RunAll, request::AddGhost, request::RemoveGhost, request::ExportFrames,
+                 request::ExportSession, request::CheckSequence, request::Sweep, request::StopSweep,
+                 request::StopExport, request::StagesBeside, request::StandBeside, request::Undo,
+                 request::Redo, request::SavePreset>;
 
 }  // namespace stillpoint

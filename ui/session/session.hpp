@@ -75,6 +75,7 @@ class Session {
   /// Starts it. `on_change` is called from it whenever view() has changed.
   void start(std::function<void()> on_change = {});
   void request_frame(int frame) { request(request::GoTo{frame}); }
+  void request_step(int by) { request(request::Step{by}); }
   void request_play(bool play) { request(request::Play{play}); }  ///< from the frame shown on
   void request_speed(double frames_per_second);
   /// Nothing is asked for and nothing is being worked on: view() stays as it is. False without a worker.
@@ -109,6 +110,7 @@ class Session {
   // Requests, one by one.
   void carry_out(const SessionRequest& wanted);
   void carry_out(const request::GoTo& wanted);
+  void carry_out(const request::Step& wanted);
   void carry_out(const request::Play& wanted);
   void carry_out(const request::Bookmarks& wanted);
   void carry_out(const request::Pins& wanted);

@@ -113,6 +113,8 @@ void Session::carry_out(const request::GoTo& wanted) {
   debug_.stopped_by.reset();
 }
 
+void Session::carry_out(const request::Step& wanted) { carry_out(request::GoTo{target_ + wanted.by}); }
+
 void Session::carry_out(const request::Play& wanted) {
   const bool loops = debug_.loop && debug_.span;
   playing_ = wanted.play && (loops || current_->index + 1 < source_->size());

@@ -81,6 +81,7 @@ WorkbenchHost AppController::host() {
     };
   };
   return {.go_to_frame = ask([](Session& session, int frame) { session.request_frame(frame); }),
+          .step = ask([](Session& session, int by) { session.request_step(by); }),
           .play = ask([](Session& session, bool play) { session.request_play(play); }),
           .speed = ask([](Session& session, double fps) { session.request_speed(fps); }),
           .open = [this](const std::string& where) { open(where); },

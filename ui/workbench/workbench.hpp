@@ -20,6 +20,7 @@ namespace stillpoint {
 /// What the workbench has done by whoever runs it. Functions left empty are not offered, as in images.
 struct WorkbenchHost {
   std::function<void(int)> go_to_frame{};
+  std::function<void(int)> step{};  ///< so many frames on from the one asked for last
   std::function<void(bool)> play{};
   std::function<void(double)> speed{};             ///< frames a second, while playing
   std::function<void(const std::string&)> open{};  ///< a folder or generated:KIND, as it was left
@@ -104,6 +105,7 @@ class Workbench {
   void add_debug_actions();
   void add_mark_actions();
   void go_to(int frame);
+  void step(int by);
   void ask(SessionRequest request);
   void toggle_bookmark();
   void tell_notice();

@@ -82,14 +82,22 @@ void Workbench::add_playback_actions() {
                 .enabled = [this] { return session_ != nullptr && host_.play; },
                 .checked = [this] { return session_ != nullptr && session_->playing; },
                 .run = [this] { host_.play(!session_->playing); }});
-  add("step", "Step forward", icons::kStepForward, {Key::kRight, {}}, true, [this]() -> Target {
-    if (session_->current->index + 1 >= session_->frame_count) return std::nullopt;
-    return session_->current->index + 1;
-  });
-  add("step_back", "Step back", icons::kStepBack, {Key::kLeft, {}}, true, [this]() -> Target {
-    if (session_->current->index == 0) return std::nullopt;
-    return session_->current->index - 1;
-  });
+  const auto add_step = [this](const char* name, const char* title, const char* icon, Key key, int by) {
+    actions_.add({.name = name,
+                  .title = title,
+                  .group = "Playback",
+                  .icon = icon,
+                  .keys = {{key, {}}},
+                  .repeats = true,
+                  .enabled =
+                      [this, by] {
+                        const int frame = can_go() ? session_->current->index + by : -1;
+                        return frame >= 0 && frame < session_->frame_count;
+                      },
+                  .run = [this, by] { step(by); }});
+  };
+  add_step("step", "Step forward", icons::kStepForward, Key::kRight, 1);
+  add_step("step_back", "Step back", icons::kStepBack, Key::kLeft, -1);
   add("first", "First frame", icons::kFastBack, {Key::kHome, {}}, false, []() -> Target { return 0; });
   add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false,
       [this]() -> Target { return std::max(0, session_->processed - 1); });
@@ -188,6 +196,13 @@ void Workbench::go_to(int frame) {
   if (!can_go()) return;
   if (session_->playing && host_.play) host_.play(false);
   host_.go_to_frame(std::clamp(frame, 0, session_->frame_count - 1));
+}
+
+void Workbench::step(int by) {
+  // A key that is held is to stop where it is let go of.
+  if (!host_.step || actions_.key_is_held()) return go_to(session_->current->index + by);
+  if (session_->playing && host_.play) host_.play(false);
+  host_.step(by);
 }
 
 void Workbench::toggle_panel(const std::string& name) {

@@ -219,6 +219,16 @@ TEST_F(SessionDebug, TheWorkerDoesTheSame) {
       [](const SessionView& v) { return v.debug.preview && v.debug.preview_config->features.count == 310; }));
 }
 
+TEST_F(SessionDebug, NoneOfSeveralQuickStepsIsLost) {
+  StartedSession s(session());
+  for (int step = 0; step < 6; ++step) s->request_step(1);  // faster than frames are processed
+  s->request_step(-1);
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.current->index == 5 && !v.busy; }));
+  for (int step = 0; step < 40; ++step) s->request_step(-1);
+  s->request_step(2);  // from the end that was come to, not from beyond it
+  EXPECT_TRUE(s.wait_for([](const SessionView& v) { return v.current->index == 2 && !v.busy; }));
+}
+
 TEST_F(SessionDebug, ChangesOfMarksAreTakenBackAndMadeAgain) {
   const auto s = session();
   s->request(request::Bookmarks{{{3, "here"}}});
