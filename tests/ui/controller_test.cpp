@@ -279,10 +279,10 @@ TEST(Settings, AFullDiskLeavesWhatWasThere) {
   const TemporaryFolder folder;
   const std::string path = folder.path("settings.json");
   Settings settings;
-  settings.window_size = {800, 600};
+  settings.window_size = std::array<int, 2>{800, 600};
   write_settings(path, settings);
   const std::string before = folder.read("settings.json");
-  settings.window_size = {1234, 777};
+  settings.window_size = std::array<int, 2>{1234, 777};
   {
     const FullDisk full;
     EXPECT_THROW(write_settings(path, settings), InputError);

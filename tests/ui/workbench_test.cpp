@@ -210,7 +210,7 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
   Settings settings;
   settings.look = {ThemeName::kLight, 1.25F};
   settings.layout = default_layout();
-  settings.window_size = {1234, 777};
+  settings.window_size = std::array<int, 2>{1234, 777};
   const RecentSequence a{"a",
                          {"camera=freiburg3", "frames=60"},
                          {"run.method=paper"},

@@ -18,6 +18,8 @@ class BookmarksPanel final : public NamedPanel {
  public:
   explicit BookmarksPanel(Shared shared) : NamedPanel("bookmarks", "Bookmarks", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {290.0F, 160.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& bookmarks = session.debug.bookmarks;
     const int here = session.current->index;

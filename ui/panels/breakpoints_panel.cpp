@@ -36,6 +36,8 @@ class BreakpointsPanel final : public NamedPanel {
  public:
   explicit BreakpointsPanel(Shared shared) : NamedPanel("breakpoints", "Breakpoints", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     draw_new(frame, session, actions);
     ImGui::BeginChild("list");

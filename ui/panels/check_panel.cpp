@@ -32,6 +32,8 @@ class CheckPanel final : public NamedPanel {
                        PanelActions& actions) { actions.requests.emplace_back(request::CheckSequence{}); }}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const CheckView& check = session.debug.check;
     Controls controls(frame);

@@ -27,6 +27,8 @@ class ComparePanel final : public NamedPanel {
  public:
   explicit ComparePanel(Shared shared) : NamedPanel("compare", "Compare runs", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
     if (ghosts.empty() && shows_preview(session)) {
@@ -138,8 +140,10 @@ class ComparePanel final : public NamedPanel {
   void draw_frame_shown(const UiFrame& frame, const SessionView& session, const GhostView& ghost,
                         PanelActions& actions) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const bool beside = room.x > 1.5F * room.y;
-    const float figures_width = beside ? std::min(0.42F * room.x, 330.0F * frame.scale) : room.x;
+    // Three columns that can be read, or none beside the picture.
+    const float least = 250.0F * frame.scale;
+    const bool beside = room.x > 1.5F * room.y && room.x > 1.8F * least;
+    const float figures_width = beside ? std::clamp(0.42F * room.x, least, 330.0F * frame.scale) : room.x;
     const float row = frame.fonts.small->FontSize + 4.0F * frame.scale;
     const float figures_height = row * static_cast<float>(difference_.figures.size() + 2);
     const bool has_figures = beside || room.y > figures_height + 120.0F * frame.scale;

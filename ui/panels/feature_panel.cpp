@@ -67,6 +67,8 @@ class FeaturePanel final : public FramePanel {
  public:
   explicit FeaturePanel(Shared shared) : FramePanel("feature", "Feature", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {280.0F, 240.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     const std::string missing = missing_features(session);

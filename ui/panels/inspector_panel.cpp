@@ -93,6 +93,8 @@ class InspectorPanel final : public FramePanel {
                        PanelActions& actions) { actions.requests.emplace_back(request::Pins{}); }}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {260.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     if (room.x > 760.0F * frame.scale) {
@@ -153,16 +155,21 @@ class InspectorPanel final : public FramePanel {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
     const auto count = static_cast<int>(std::min<std::size_t>(shown.size(), kMostColumns));
-    if (ImGui::BeginTable(
-            "points", 1 + count,
-            ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY)) {
-      ImGui::TableSetupScrollFreeze(0, 1);
-      float widest = 0.0F;
-      for (const ReadingGroup& group : shown.front().groups)
-        for (const Reading& reading : group.readings)
-          widest = std::max(widest, ImGui::CalcTextSize(reading.name.c_str()).x);
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
-                              std::min(widest, 0.45F * ImGui::GetContentRegionAvail().x));
+    float widest = 0.0F;
+    for (const ReadingGroup& group : shown.front().groups)
+      for (const Reading& reading : group.readings)
+        widest = std::max(widest, ImGui::CalcTextSize(reading.name.c_str()).x);
+    // Columns that have no room beside each other are scrolled to.
+    const float room = ImGui::GetContentRegionAvail().x,
+                needed =
+                    std::min(widest, 0.45F * room) + static_cast<float>(count) * kLeastColumn * frame.scale;
+    const bool scrolls = needed > room;
+    if (ImGui::BeginTable("points", 1 + count,
+                          ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp |
+                              ImGuiTableFlags_ScrollY | (scrolls ? ImGuiTableFlags_ScrollX : 0),
+                          {0.0F, 0.0F}, scrolls ? needed : 0.0F)) {
+      ImGui::TableSetupScrollFreeze(scrolls ? 1 : 0, 1);
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, std::min(widest, 0.45F * room));
       for (int i = 0; i < count; ++i) ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
       draw_column_names(shown, count, session, actions);
       for (std::size_t g = 0; g < shown.front().groups.size(); ++g) draw_group(frame, shown, count, g);
@@ -262,6 +269,7 @@ class InspectorPanel final : public FramePanel {
   }
 
   static constexpr std::size_t kMostColumns = 8;
+  static constexpr float kLeastColumn = 84.0F;  // design px, of the readings at one point
 
   int what_ = 0;
 };

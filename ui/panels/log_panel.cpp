@@ -59,6 +59,8 @@ class LogPanel final : public NamedPanel {
  public:
   explicit LogPanel(Shared shared) : NamedPanel("log", "Log", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 150.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (run_ != session.run.get() || records_ != session.run->records.size()) {
       run_ = session.run.get();

@@ -35,6 +35,11 @@ struct PanelCommand {
   std::function<void(const SessionView&, PanelActions&)> run;
 };
 
+/// Design px, of a panel's tile with its heading.
+struct PanelSize {
+  float width = 0.0F, height = 0.0F;
+};
+
 /// One view of the session. What it draws is the same in a window and in an image file.
 ///
 /// It draws its controls, captions, legends and scales; its title is left to whoever gives it a place. It
@@ -53,6 +58,8 @@ class Panel {
   [[nodiscard]] virtual const std::string& title() const = 0;
   /// Draws into the current ImGui window or child, filling what is left of it.
   virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
+  /// In a smaller tile it cannot be read: it shares one with its neighbour then.
+  [[nodiscard]] virtual PanelSize least() const { return {270.0F, 180.0F}; }
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
   /// Whether there may be anything to show of this sequence: where not, the panel is none of all.

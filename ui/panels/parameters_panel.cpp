@@ -20,6 +20,8 @@ class ParametersPanel final : public NamedPanel {
  public:
   explicit ParametersPanel(Shared shared) : NamedPanel("parameters", "Parameters", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {330.0F, 240.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     follow(session);
     Config defaults, run = session.config;

@@ -46,6 +46,8 @@ class StagesPanel final : public FramePanel {
              .run = step(-1)}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {420.0F, 280.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     actions.compare_frames = true;
     list(session);

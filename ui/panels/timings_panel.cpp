@@ -74,6 +74,8 @@ class TimingsPanel final : public NamedPanel {
  public:
   explicit TimingsPanel(Shared shared) : NamedPanel("timings", "Timings", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {440.0F, 220.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty()) {
       draw_absent(frame, "No frame has been processed yet.");

@@ -17,6 +17,8 @@ class TrajectoryPanel final : public NamedPanel {
  public:
   explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {330.0F, 190.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty() || session.run->trajectory.empty()) {
       draw_absent(frame, session.run->records.empty()

@@ -164,7 +164,8 @@ void Workbench::draw_error() {
     ImGui::TextUnformatted(message_.c_str());
     ImGui::PopTextWrapPos();
     if (ImGui::Button("Put away")) error_open_ = false;
-    if (session_ != nullptr && find_panel("log") != nullptr && !contains(layout_, "log")) {
+    if (session_ != nullptr && find_panel("log") != nullptr &&
+        (!contains(layout_, "log") || is_behind("log"))) {
       ImGui::SameLine();
       if (ImGui::Button("Show the log")) {
         error_open_ = false;

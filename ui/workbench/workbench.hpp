@@ -17,6 +17,9 @@
 
 namespace stillpoint {
 
+/// Design px, between tiles.
+inline constexpr float kTileGap = 5.0F;
+
 /// What the workbench has done by whoever runs it. Functions left empty are not offered, as in images.
 struct WorkbenchHost {
   std::function<void(int)> go_to_frame{};
@@ -66,8 +69,11 @@ class Workbench {
   /// A sequence that is being opened, as a notice over what is shown; empty ends it.
   void set_opening(std::string where) { opening_ = std::move(where); }
 
-  /// Where a panel was drawn last, px; nothing where it is not shown.
+  /// Where a panel was drawn last, px; nothing where it is not seen, as behind another's tab.
   [[nodiscard]] std::optional<LayoutRect> tile_of(const std::string& panel) const;
+
+  /// The tiles drawn last, with those that share a place.
+  [[nodiscard]] const std::vector<PlacedPanel>& places() const { return places_; }
 
   /// A fact about what is shown, by name, for recordings that expect one: "frame", "panels", "theme", …;
   /// nothing for a name there is not.
@@ -127,9 +133,14 @@ class Workbench {
   void draw_splitters(const PlacedLayout& placed);
   void take_turns(const std::vector<PlacedPanel>& placed);
   [[nodiscard]] const SessionView& view_of(const std::string& tile) const;
-  void draw_tile(const std::string& name, const LayoutRect& rect);
+  void draw_tile(const PlacedPanel& tile);
+  [[nodiscard]] PlacedLayout placed_tiles(const LayoutRect& area) const;
+  void bring_to_front(const std::string& panel);
+  void next_tab();
+  [[nodiscard]] bool is_behind(const std::string& panel) const;
   [[nodiscard]] const SessionView& previewed(const SessionView& session);
-  void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
+  void draw_tile_heading(Panel& panel, const PlacedPanel& tile, float height);
+  void draw_tabs(const PlacedPanel& tile, float height, float width);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
   void draw_palette_list();
@@ -163,6 +174,8 @@ class Workbench {
   std::string opening_, last_trouble_;
   std::map<std::string, PanelChoices> choices_;
   std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
+  std::vector<PlacedPanel> places_;          ///< … with the tabs that share them
+  std::vector<std::string> fronts_;          ///< tabs that were brought to the front, the last at the end
   Look look_;
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;

@@ -146,6 +146,17 @@ void Workbench::add_view_actions() {
        .keys = {{Key::kM, {}}},
        .enabled = [this] { return session_ != nullptr && (!maximised_.empty() || !hovered_panel_.empty()); },
        .run = [this] { maximised_ = maximised_.empty() ? hovered_panel_ : ""; }});
+  actions_.add({.name = "next_tab",
+                .title = "Next tab of the tile under the mouse",
+                .group = "View",
+                .keys = {{Key::kTab, kCtrl}},
+                .enabled =
+                    [this] {
+                      return std::any_of(places_.begin(), places_.end(), [this](const PlacedPanel& place) {
+                        return place.panel == hovered_panel_ && !place.tabs.empty();
+                      });
+                    },
+                .run = [this] { after_frame_ = [this] { next_tab(); }; }});
   actions_.add({.name = "reset_layout",
                 .title = "Reset layout",
                 .group = "View",
@@ -164,7 +175,7 @@ void Workbench::add_panel_actions() {
     actions_.add({.name = "panel." + name,
                   .title = "Show or hide: " + panel->title(),
                   .group = "Panels",
-                  .checked = [this, name] { return contains(layout_, name); },
+                  .checked = [this, name] { return contains(layout_, name) && !is_behind(name); },
                   .run = [this, name] { after_frame_ = [this, name] { toggle_panel(name); }; }});
   }
   for (const auto& panel : panels_)
@@ -187,7 +198,7 @@ void Workbench::add_panel_command(const std::string& panel, PanelCommand command
              PanelActions wanted;
              shared->run(*session_, wanted);
              carry_out(wanted);
-             if (!shared->shows || contains(layout_, panel)) return;
+             if (!shared->shows || (contains(layout_, panel) && !is_behind(panel))) return;
              after_frame_ = [this, panel] { toggle_panel(panel); };
            }});
 }
@@ -207,10 +218,10 @@ void Workbench::step(int by) {
 
 void Workbench::toggle_panel(const std::string& name) {
   maximised_.clear();
-  if (contains(layout_, name))
-    remove_panel(layout_, name);
-  else
-    add_panel(layout_, name, tiles_area_);
+  if (is_behind(name)) return bring_to_front(name);
+  if (contains(layout_, name)) return remove_panel(layout_, name);
+  add_panel(layout_, name, tiles_area_);
+  bring_to_front(name);
 }
 
 void Workbench::scale_by(float factor) {
