@@ -29,6 +29,8 @@ class ComparePanel final : public NamedPanel {
 
   [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
 
+  [[nodiscard]] bool shows_image_alone() const override { return false; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
     if (ghosts.empty() && shows_preview(session)) {

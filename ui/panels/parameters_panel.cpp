@@ -22,6 +22,12 @@ class ParametersPanel final : public NamedPanel {
 
   [[nodiscard]] PanelSize least() const override { return {330.0F, 240.0F}; }
 
+  void find(const std::string& words) override {
+    filter_ = {};
+    words.copy(filter_.data(), filter_.size() - 1);
+    only_changed_ = false;
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     follow(session);
     Config defaults, run = session.config;

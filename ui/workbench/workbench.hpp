@@ -14,6 +14,7 @@
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"
 #include "ui/workbench/open_dialog.hpp"
+#include "ui/workbench/palette.hpp"
 
 namespace stillpoint {
 
@@ -144,6 +145,10 @@ class Workbench {
   void draw_tile_menu(const std::string& name);
   void draw_palette();
   void draw_palette_list();
+  [[nodiscard]] std::vector<PaletteRow> palette_rows();
+  void add_run_rows(std::vector<PaletteRow>& rows);
+  void add_parameter_rows(std::vector<PaletteRow>& rows);
+  void show_parameter(const std::string& key);
   void draw_shortcuts();
   void draw_shortcut_list(int columns) const;
   [[nodiscard]] bool ask_for_path(PathDialog& dialog, const char* title, const char* what,
@@ -218,9 +223,19 @@ class Workbench {
   bool level_ = true;
 
   // How fast frames go by while playing.
+  struct Pace {
+    int begun_at = 0, shown = 0, dropped = 0;  // frames
+    double begun_s = 0.0, seconds = 0.0;
+  };
+  void follow_play();
+  [[nodiscard]] std::string pace_text() const;
+  std::optional<Pace> pace_;  // of what is played; nothing while nothing is
+  int last_dropped_ = 0;      // when it was played last
   int last_shown_ = -1;
-  double last_shown_s_ = 0.0, shown_interval_s_ = 0.0;
 };
+
+/// Begins an overlay centred in x, its top at a share of the height; ImGui::End() ends it.
+bool begin_overlay(const UiFrame& frame, const char* name, ImVec2 size, float top_share);
 
 /// Draws `text` in small type at most `width` px wide, cut with an ellipsis.
 void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour);
