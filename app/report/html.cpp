@@ -104,9 +104,13 @@ std::string table_html(const std::vector<std::string>& header,
   html += "</tr></thead><tbody>\n";
   for (const auto& row : rows) {
     html += "<tr>";
-    for (const HtmlCell& cell : row)
+    for (const HtmlCell& cell : row) {
+      const std::string text =
+          cell.link.empty() ? escaped(cell.text)
+                            : fmt::format("<a href=\"#{}\">{}</a>", escaped(cell.link), escaped(cell.text));
       html += fmt::format("<td class=\"{}{}\">{}{}</td>", cell.number ? "number" : "text",
-                          cell.best ? " best" : "", escaped(cell.text), cell.best ? " ✓" : "");
+                          cell.best ? " best" : "", text, cell.best ? " ✓" : "");
+    }
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

@@ -30,6 +30,7 @@ struct HtmlCell {
   std::string text;     ///< not escaped yet
   bool number = false;  ///< aligned right
   bool best = false;    ///< of its column: marked, and not by colour alone
+  std::string link{};   ///< where in the page it leads to, an id; empty: nowhere
 };
 
 /// A table that scrolls sideways where it is too wide. @param header not escaped yet
