@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <opencv2/imgcodecs.hpp>
 
 #include "app/report/html.hpp"
 #include "app/version.hpp"
@@ -68,9 +67,7 @@ AxisRange extent_of(const std::vector<Path>& paths, std::size_t axis) {
 }
 
 std::string drawn_figure(const Plot& plot, const std::string& caption) {
-  const std::string png = plot_drawn(PlotFigure(plot, PlotView{}), ".png");
-  const std::vector<unsigned char> bytes(png.begin(), png.end());
-  return figure_html(cv::imdecode(bytes, cv::IMREAD_COLOR), caption);
+  return figure_html_of_png(plot_drawn(PlotFigure(plot, PlotView{}), ".png"), caption);
 }
 
 /// From the side that shows most of where the camera went.

@@ -43,6 +43,7 @@ class CheckPanel final : public NamedPanel {
       actions.perform.emplace_back("check_input");
     ImGui::EndDisabled();
     // Its bar is always there: one that came with the last line would wrap all others anew under the mouse.
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("findings", {}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
@@ -65,6 +66,11 @@ class CheckPanel final : public NamedPanel {
       for (const std::string& line : check.times) text_in_lines(line);
     }
     ImGui::EndChild();
+    offer_table(frame, "findings", low, [&] {
+      Table table{{"about", "finding"}, {}};
+      for (const Finding& finding : check.findings) table.rows.push_back({finding.about, finding.sentence});
+      return table;
+    });
   }
 
  private:

@@ -163,6 +163,7 @@ class InspectorPanel final : public FramePanel {
     const float room = ImGui::GetContentRegionAvail().x,
                 needed =
                     std::min(widest, 0.45F * room) + static_cast<float>(count) * kLeastColumn * frame.scale;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     const bool scrolls = needed > room;
     if (ImGui::BeginTable("points", 1 + count,
                           ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp |
@@ -175,8 +176,22 @@ class InspectorPanel final : public FramePanel {
       for (std::size_t g = 0; g < shown.front().groups.size(); ++g) draw_group(frame, shown, count, g);
       ImGui::EndTable();
     }
+    offer_table(frame, "points", low, [&] { return points_table(shown); });
     ImGui::PopStyleVar();
     ImGui::PopFont();
+  }
+
+  static Table points_table(const std::vector<Column>& shown) {
+    Table table{{"layer", "reading"}, {}};
+    for (const Column& column : shown)
+      table.header.push_back(column.pin < 0 ? column.name : "Pin " + column.name);
+    for (std::size_t g = 0; g < shown.front().groups.size(); ++g)
+      for (std::size_t r = 0; r < shown.front().groups[g].readings.size(); ++r) {
+        std::vector<std::string> row{shown.front().groups[g].title, shown.front().groups[g].readings[r].name};
+        for (const Column& column : shown) row.push_back(column.groups[g].readings[r].value);
+        table.rows.push_back(std::move(row));
+      }
+    return table;
   }
 
   static void draw_column_names(const std::vector<Column>& shown, int count, const SessionView& session,
@@ -242,6 +257,7 @@ class InspectorPanel final : public FramePanel {
   static void table(const UiFrame& frame, const char* id, const Rows& rows, int pairs) {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable(id, 2 * pairs, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       float widest = 0.0F;
       for (const auto& [name, value] : rows) widest = std::max(widest, ImGui::CalcTextSize(name.c_str()).x);
@@ -264,6 +280,11 @@ class InspectorPanel final : public FramePanel {
       }
       ImGui::EndTable();
     }
+    offer_table(frame, id, low, [&] {
+      Table table{{"figure", "value"}, {}};
+      for (const auto& [name, value] : rows) table.rows.push_back({name, value});
+      return table;
+    });
     ImGui::PopStyleVar();
     ImGui::PopFont();
   }

@@ -6,6 +6,7 @@
 
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
 #include "ui/session/data_sources.hpp"
@@ -77,6 +78,7 @@ class TimelinePanel final : public NamedPanel {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
     handle_mouse(frame, session, before, low.y + ruler_height(frame), actions);
+    offer_by_right_click(frame, "timeline", ImGui::IsItemHovered(), [&] { return offers(frame, session); });
     // What the mouse changed shows in this frame, not the next.
     const TimelinePaint paint(frame, low, high, range_.value_or(everything(session)));
     draw_rows(frame, session, paint, low, high, actions);
@@ -87,6 +89,47 @@ class TimelinePanel final : public NamedPanel {
   }
 
  private:
+  /// Each lane as a plot, and all of them as a table.
+  [[nodiscard]] std::vector<SaveOffer> offers(const UiFrame& frame, const SessionView& session) const {
+    std::vector<SaveOffer> offers;
+    const std::vector<double> frames(model_.frames.begin(), model_.frames.end());
+    std::vector<std::vector<double>> ghosts;
+    for (const auto& of_ghost : model_.ghost_frames) ghosts.emplace_back(of_ghost.begin(), of_ghost.end());
+    for (const TimelineLane& lane : model_.lanes) {
+      const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
+      Plot plot{
+          .x_label = "frame", .y_label = shown_name(info), .y_unit = std::string(shown_unit(info.unit).unit)};
+      plot.series.push_back({session.run->name, frames, lane.values, lane_colour(info, frame.theme.name)});
+      for (std::size_t g = 0; g < lane.ghosts.size() && g < ghosts.size(); ++g) {
+        const RunLook look = ghost_look(g, frame.theme.name);
+        plot.series.push_back(
+            {session.debug.ghosts[g].name, ghosts[g], lane.ghosts[g], look.colour, look.line});
+      }
+      if (range_) plot.x_limits = range_;
+      SaveOffer offer = offer_of(std::string(info.name), plot);
+      offer.what = fmt::format("{} as a plot", shown_name(info));
+      offer.values = {};
+      offers.push_back(std::move(offer));
+    }
+    Table table{{"frame", "status"}, {}};
+    for (const TimelineLane& lane : model_.lanes) {
+      const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
+      const std::string unit(shown_unit(info.unit).unit);
+      table.header.push_back(unit.empty() ? shown_name(info)
+                                          : fmt::format("{} ({})", shown_name(info), unit));
+    }
+    for (std::size_t i = 0; i < model_.frames.size(); ++i) {
+      std::vector<std::string> row{fmt::format("{}", model_.frames[i]),
+                                   std::string(to_string(session.run->records[i].status))};
+      for (const TimelineLane& lane : model_.lanes)
+        row.push_back(std::isfinite(lane.values[i]) ? fmt::format("{}", lane.values[i]) : std::string());
+      table.rows.push_back(std::move(row));
+    }
+    offers.push_back(offer_of("timeline", std::move(table)));
+    offers.back().what = "all lanes as a table";
+    return offers;
+  }
+
   [[nodiscard]] static float ruler_height(const UiFrame& frame) {
     return frame.fonts.small->FontSize + 4.0F * frame.scale;
   }
