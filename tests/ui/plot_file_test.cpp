@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(Panels, RightClick,
                                            std::pair("compare", ".csv"), std::pair("bookmarks", ".csv"),
                                            std::pair("breakpoints", ".csv"), std::pair("log", ".csv"),
                                            std::pair("parameters", ".csv"), std::pair("check", ".csv"),
-                                           std::pair("feature", ".csv"), std::pair("stages", ".csv")),
+                                           std::pair("stages", ".csv")),
                          [](const auto& one) { return one.param.first; });
 
 TEST_F(PlotFile, IsOfferedByARightClick) {
