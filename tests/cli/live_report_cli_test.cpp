@@ -94,7 +94,7 @@ TEST_F(LiveReport, IsOnePageThatNeedsNothingElse) {
     const std::size_t from = text.find("<section class=\"made\">"), to = text.find("</section>", from);
     return from == std::string::npos || to == std::string::npos ? text : text.erase(from, to - from);
   };
-  EXPECT_THAT(html, HasSubstr("live.html --"));
+  EXPECT_THAT(html, HasSubstr("live.html</td>"));
   EXPECT_TRUE(without_command(page("again.html")) == without_command(html));
   ASSERT_EQ(run_cli({"report", run("none"), "--worst", "0", "--out", sequence_.path("plain.html")}).exit_code,
             0);
