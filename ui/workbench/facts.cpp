@@ -12,7 +12,7 @@ namespace {
 std::string yes(bool is) { return is ? "yes" : "no"; }
 
 constexpr std::array<const char*, 16> kFacts{
-    "dropped", "frame",  "frames",    "processed", "playing",   "status",  "title",      "method",
+    "frame",   "frames", "processed", "playing",   "dropped",   "status",  "title",      "method",
     "message", "panels", "maximised", "theme",     "shortcuts", "palette", "log.errors", "choices"};
 
 }  // namespace
