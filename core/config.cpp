@@ -69,6 +69,12 @@ std::string current_key(std::string_view key) {
   return std::string(key);
 }
 
+/// Parameters that there are no more. Files that name them, settings of older runs above all, are still read.
+bool is_retired(std::string_view key) {
+  return key ==
+         "bundle.apply_after_frames";  // adjustments took so long that they were solved beside tracking
+}
+
 /// The parameter of that key, under the name it was asked for by: complaints name what was written.
 Parameter find_parameter(const std::vector<Parameter>& all, std::string_view wanted,
                          const std::string& where) {
@@ -213,8 +219,6 @@ void BundleConfig::list(ParameterTable& table) {
   table.number("max_fixed_keyframes", max_fixed_keyframes, 20, 1, 200, "keyframes",
                "keyframes that share their points, held fixed");
   table.number("iterations", iterations, 5, 1, 100, "steps", "most Levenberg-Marquardt steps");
-  table.number("apply_after_frames", apply_after_frames, 3, 0, 10, "frames",
-               "how long after its keyframe a result enters the map");
 }
 
 void RunConfig::list(ParameterTable& table) {
@@ -287,8 +291,10 @@ Config config_from_toml(const std::string& text, const std::string& path) {
     if (!node.is_table())
       throw InputError(fmt::format("{}'{}' stands outside a section such as [motion]", where, section.str()));
     for (auto&& [key, value] : *node.as_table()) {
+      const std::string name = fmt::format("{}.{}", section.str(), key.str());
+      if (is_retired(name)) continue;
       const std::string line = line_prefix(path, value.source());
-      assign(find_parameter(all, fmt::format("{}.{}", section.str(), key.str()), line), value, line);
+      assign(find_parameter(all, name, line), value, line);
     }
   }
   return config;

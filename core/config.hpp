@@ -107,7 +107,6 @@ struct BundleConfig {
   int max_keyframes;
   int max_fixed_keyframes;
   int iterations;
-  int apply_after_frames;
 };
 
 struct RunConfig {

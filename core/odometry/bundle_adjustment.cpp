@@ -1,12 +1,12 @@
 #include "core/odometry/bundle_adjustment.hpp"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <limits>
 #include <map>
+#include <optional>
 
+#include "core/geometry/schur_equations.hpp"
 #include "core/odometry/matching.hpp"
 #include "core/odometry/pose_solver.hpp"
 
@@ -14,133 +14,6 @@ namespace stillpoint {
 namespace {
 
 constexpr double kChi2Depth = 3.841;  // 95 % bound with one degree of freedom
-
-using PoseBlock = std::array<double, 7>;  // unit quaternion x y z w, then translation: camera_from_world
-
-/// camera_from_world moved by exp(ξ^) from the left. Costs give their Jacobian by ξ in the first six columns,
-/// so the manifold's own Jacobian only selects them.
-class PoseManifold : public ceres::Manifold {
- public:
-  [[nodiscard]] int AmbientSize() const override { return 7; }
-  [[nodiscard]] int TangentSize() const override { return 6; }
-
-  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
-    const Eigen::Map<const Eigen::Quaterniond> q(x);
-    const Eigen::Map<const Eigen::Vector3d> t(x + 4);
-    const Pose motion = se3_exp(Eigen::Map<const Vector6d>(delta));
-    Eigen::Map<Eigen::Quaterniond> q_moved(x_plus_delta);
-    Eigen::Map<Eigen::Vector3d> t_moved(x_plus_delta + 4);
-    const Eigen::Vector3d translation = motion * t;
-    q_moved = (Eigen::Quaterniond(motion.linear()) * q).normalized();
-    t_moved = translation;
-    return true;
-  }
-
-  bool PlusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>> j(jacobian);
-    j.setZero();
-    j.topRows<6>().setIdentity();
-    return true;
-  }
-
-  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
-    Eigen::Map<Vector6d> difference(y_minus_x);
-    difference = se3_log(pose(y) * pose(x).inverse());
-    return true;
-  }
-
-  bool MinusJacobian(const double*, double* jacobian) const override {
-    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>> j(jacobian);
-    j.setZero();
-    j.leftCols<6>().setIdentity();
-    return true;
-  }
-
-  static Pose pose(const double* block) {
-    Pose result = Pose::Identity();
-    result.linear() = Eigen::Map<const Eigen::Quaterniond>(block).toRotationMatrix();
-    result.translation() = Eigen::Map<const Eigen::Vector3d>(block + 4);
-    return result;
-  }
-};
-
-/// One half of an observation's residual, each over its standard deviation: the pixel, or the measured depth
-/// as disparity. Both halves have two rows, the second of depth's being zero: Ceres' eliminator knows blocks
-/// of one size at compile time, and takes half as long with them. An outlier counts nothing.
-class ObservationCost : public ceres::SizedCostFunction<2, 7, 3> {
- public:
-  enum class Half : std::uint8_t { pixel, depth };
-
-  ObservationCost(Half half, const Camera& camera, const BundleProblem::Edge& edge, double depth_weight,
-                  const std::uint8_t& outlier)
-      : half_(half), camera_(camera), edge_(edge), depth_weight_(depth_weight), outlier_(outlier) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    using Jacobian = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
-    Eigen::Map<Eigen::Vector2d> residual(residuals);
-    Jacobian by_camera_point = Jacobian::Zero();
-    const Eigen::Matrix3d rotation = Eigen::Map<const Eigen::Quaterniond>(parameters[0]).toRotationMatrix();
-    const Eigen::Map<const Eigen::Vector3d> t(parameters[0] + 4), point(parameters[1]);
-    const Eigen::Vector3d p = rotation * point + t;
-    if (outlier_ != 0) {
-      residual.setZero();
-    } else if (p.z() < kNearestProjected) {
-      return false;
-    } else {
-      const double weight = std::sqrt(edge_.static_weight) / edge_.sigma_px, iz = 1.0 / p.z();
-      if (half_ == Half::pixel) {
-        residual.x() = weight * (camera_.fx * p.x() * iz + camera_.cx - edge_.pixel.x());
-        residual.y() = weight * (camera_.fy * p.y() * iz + camera_.cy - edge_.pixel.y());
-        by_camera_point.row(0) << weight * camera_.fx * iz, 0, -weight * camera_.fx * p.x() * iz * iz;
-        by_camera_point.row(1) << 0, weight * camera_.fy * iz, -weight * camera_.fy * p.y() * iz * iz;
-      } else {
-        const double bf = weight * depth_weight_ * camera_.baseline_or(kDepthBaseline) * camera_.fx;
-        residual << bf * (1.0 / edge_.depth - iz), 0.0;
-        by_camera_point(0, 2) = bf * iz * iz;
-      }
-    }
-    if (!jacobians) return true;
-    if (jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, 2, 7, Eigen::RowMajor>> j(jacobians[0]);
-      j.leftCols<3>() = by_camera_point;
-      j.middleCols<3>(3) = -by_camera_point * hat(p);
-      j.rightCols<1>().setZero();
-    }
-    if (jacobians[1]) {
-      Eigen::Map<Jacobian> j(jacobians[1]);
-      j = by_camera_point * rotation;
-    }
-    return true;
-  }
-
- private:
-  Half half_;
-  const Camera& camera_;
-  const BundleProblem::Edge& edge_;
-  double depth_weight_;
-  const std::uint8_t& outlier_;
-};
-
-/// Huber's loss while it is switched on, plain squares afterwards.
-class SwitchedHuber : public ceres::LossFunction {
- public:
-  SwitchedHuber(double bound, const bool& robust) : huber_(bound), robust_(robust) {}
-  void Evaluate(double squared, double out[3]) const override {
-    if (robust_) return huber_.Evaluate(squared, out);
-    out[0] = squared, out[1] = 1.0, out[2] = 0.0;
-  }
-
- private:
-  ceres::HuberLoss huber_;
-  const bool& robust_;
-};
-
-PoseBlock to_block(const Pose& pose) {
-  PoseBlock block;
-  Eigen::Map<Eigen::Quaterniond>(block.data()) = Eigen::Quaterniond(pose.linear()).normalized();
-  Eigen::Map<Eigen::Vector3d>(block.data() + 4) = pose.translation();
-  return block;
-}
 
 /// The squared weighted residual of an edge, and its plain distance in the image.
 struct EdgeError {
@@ -172,82 +45,151 @@ double rms(const BundleProblem& problem, const std::vector<std::uint8_t>& outlie
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// The problem as Ceres holds it; solved once robustly and once more without the outliers found meanwhile.
+/// Huber's loss of a squared residual: its cost in the unit of squares, and the weight of its squares.
+struct Loss {
+  double cost = 0.0, weight = 1.0;
+};
+Loss huber(double squared, double bound_squared, bool robust) {
+  if (!robust || squared <= bound_squared) return {squared, 1.0};
+  const double share = std::sqrt(bound_squared / squared);
+  return {2.0 * share * squared - bound_squared, share};
+}
+
+/// Levenberg-Marquardt over the edges of a problem that are no outliers, robustly or not.
 class BundleSolver {
  public:
   BundleSolver(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
                double depth_weight)
-      : problem_(problem), ceres_problem_(ownership()) {
-    poses_.reserve(problem.views.size());
-    for (const auto& view : problem.views) poses_.push_back(to_block(view.camera_from_world));
-    ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      ceres_problem_.AddParameterBlock(poses_[i].data(), 7, &manifold_);
-      if (problem.views[i].fixed) ceres_problem_.SetParameterBlockConstant(poses_[i].data());
-      ordering_->AddElementToGroup(poses_[i].data(), 1);
-    }
-    for (auto& point : problem.points) {
-      ceres_problem_.AddParameterBlock(point.position.data(), 3);
-      ordering_->AddElementToGroup(point.position.data(), 0);
-    }
-    using Half = ObservationCost::Half;
-    for (std::size_t i = 0; i < problem.edges.size(); ++i) {
-      const auto& edge = problem.edges[i];
-      add(Half::pixel, camera, edge, depth_weight, outlier[i]);
-      if (edge.depth > 0 && depth_weight > 0) add(Half::depth, camera, edge, depth_weight, outlier[i]);
-    }
+      : problem_(problem), outlier_(outlier), camera_(camera), depth_weight_(depth_weight) {
+    for (const auto& view : problem.views) place_.push_back(view.fixed ? SchurEquations::kFixed : free_++);
   }
-  BundleSolver(const BundleSolver&) = delete;
-  BundleSolver& operator=(const BundleSolver&) = delete;
 
-  /// One Levenberg-Marquardt run over the edges that are no outliers; moves views and points. False if it
-  /// failed.
-  bool solve(bool robust, int max_iterations, int& iterations) {
-    robust_ = robust;
-    ceres::Solver::Options options;
-    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>(*ordering_);
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.max_num_iterations = max_iterations;
-    options.num_threads = 1;  // sums in one order: the same bytes on any machine load
-    options.function_tolerance = 1e-4;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &ceres_problem_, &summary);
-    if (!summary.IsSolutionUsable()) return false;
-    iterations += summary.num_successful_steps;
-    for (std::size_t i = 0; i < poses_.size(); ++i)
-      if (!problem_.views[i].fixed)
-        problem_.views[i].camera_from_world = PoseManifold::pose(poses_[i].data());
+  /// Moves views and points; adds the steps that were taken. False if an edge's point is not before its
+  /// camera.
+  bool solve(bool robust, int max_steps, int& steps) {
+    constexpr double kConverged = 1e-4;  // of the cost: less of a gain ends it
+    constexpr double kLeastGain = 1e-3;  // of the gain foreseen, for a step to be taken
+    constexpr double kMostDamped = 1e32;
+    double damping = 1e-4, harder = 2.0;
+    double cost = linearise(robust);
+    if (!std::isfinite(cost)) return false;
+    for (int i = 0; i < max_steps && damping < kMostDamped; ++i) {
+      if (!equations_.solve(damping, step_) || step_.cost_change >= 0) break;
+      take_step();
+      const double next = cost_of(robust);
+      const double gain = (cost - next) / -step_.cost_change;  // infinitely small where a point fell behind
+      const bool converged = std::abs(cost - next) <= kConverged * cost;
+      if (!(gain > kLeastGain)) {
+        undo_step();
+        if (converged) break;
+        damping *= harder, harder *= 2.0;
+        continue;
+      }
+      ++steps;
+      if (converged) break;
+      // Nielsen's rule (1999): the better the equations foresaw the gain, the less damping.
+      damping *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3)), harder = 2.0;
+      cost = linearise(robust);
+    }
     return true;
   }
 
  private:
-  static ceres::Problem::Options ownership() {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;  // blocks are distinct by construction
-    return options;
+  /// An edge's residuals over their standard deviations, and what they cost.
+  struct Evaluated {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();         // m, in the camera
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // pixel, and depth as disparity
+    double scale = 0.0;                                  // 1 / px
+    Loss pixel, depth;
+  };
+
+  /// Nothing where the point is not before the camera.
+  [[nodiscard]] std::optional<Evaluated> evaluate(const BundleProblem::Edge& edge, bool robust) const {
+    Evaluated e;
+    e.p = problem_.views[static_cast<std::size_t>(edge.view)].camera_from_world *
+          problem_.points[static_cast<std::size_t>(edge.point)].position;
+    if (!(e.p.z() >= kNearestProjected)) return std::nullopt;
+    const double iz = 1.0 / e.p.z();
+    e.scale = std::sqrt(edge.static_weight) / edge.sigma_px;
+    e.residual.x() = e.scale * (camera_.fx * e.p.x() * iz + camera_.cx - edge.pixel.x());
+    e.residual.y() = e.scale * (camera_.fy * e.p.y() * iz + camera_.cy - edge.pixel.y());
+    if (edge.depth > 0) e.residual.z() = e.scale * disparity_ * (1.0 / edge.depth - iz);
+    e.pixel = huber(e.residual.head<2>().squaredNorm(), kChi2Pixel, robust);
+    e.depth = huber(e.residual.z() * e.residual.z(), kChi2Depth, robust);
+    return e;
   }
 
-  void add(ObservationCost::Half half, const Camera& camera, const BundleProblem::Edge& edge,
-           double depth_weight, const std::uint8_t& outlier) {
-    costs_.emplace_back(half, camera, edge, depth_weight, outlier);
-    ceres_problem_.AddResidualBlock(&costs_.back(),
-                                    half == ObservationCost::Half::pixel ? &pixel_loss_ : &depth_loss_,
-                                    poses_[static_cast<std::size_t>(edge.view)].data(),
-                                    problem_.points[static_cast<std::size_t>(edge.point)].position.data());
+  /// The loss of all edges; infinite where a point is not before its camera.
+  [[nodiscard]] double cost_of(bool robust) const {
+    double cost = 0.0;
+    for (std::size_t i = 0; i < problem_.edges.size(); ++i) {
+      if (outlier_[i]) continue;
+      const auto e = evaluate(problem_.edges[i], robust);
+      if (!e) return std::numeric_limits<double>::infinity();
+      cost += e->pixel.cost + e->depth.cost;
+    }
+    return cost;
+  }
+
+  /// Makes the equations anew; returns the loss of all edges.
+  double linearise(bool robust) {
+    equations_.reset(free_, static_cast<int>(problem_.points.size()));
+    double cost = 0.0;
+    for (std::size_t i = 0; i < problem_.edges.size(); ++i) {
+      if (outlier_[i]) continue;
+      const auto& edge = problem_.edges[i];
+      const auto e = evaluate(edge, robust);
+      if (!e) return std::numeric_limits<double>::infinity();
+      cost += e->pixel.cost + e->depth.cost;
+      // ∂r/∂p has the rows (a 0 c), (0 b d) and (0 0 e).
+      const double iz = 1.0 / e->p.z(), sx = e->scale * camera_.fx * iz, sy = e->scale * camera_.fy * iz;
+      const double sz = edge.depth > 0 ? e->scale * disparity_ * iz * iz : 0.0;
+      const double tx = -sx * e->p.x() * iz, ty = -sy * e->p.y() * iz;
+      const double w = e->pixel.weight, wz = e->depth.weight;
+      SightEquations sight;
+      sight.p = e->p;
+      sight.h << w * sx * sx, 0.0, w * sx * tx,  //
+          0.0, w * sy * sy, w * sy * ty,         //
+          w * sx * tx, w * sy * ty, w * (tx * tx + ty * ty) + wz * sz * sz;
+      const Eigen::Vector3d& r = e->residual;
+      sight.g << w * sx * r.x(), w * sy * r.y(), w * (tx * r.x() + ty * r.y()) + wz * sz * r.z();
+      equations_.add(place_[static_cast<std::size_t>(edge.view)], edge.point,
+                     problem_.views[static_cast<std::size_t>(edge.view)].camera_from_world.linear(), sight);
+    }
+    return cost;
+  }
+
+  void take_step() {
+    poses_before_.clear(), points_before_.clear();
+    for (std::size_t i = 0; i < problem_.views.size(); ++i) {
+      Pose& pose = problem_.views[i].camera_from_world;
+      poses_before_.push_back(pose);
+      if (place_[i] != SchurEquations::kFixed)
+        pose = normalised(se3_exp(step_.poses[static_cast<std::size_t>(place_[i])]) * pose);
+    }
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) {
+      points_before_.push_back(problem_.points[i].position);
+      problem_.points[i].position += step_.points[i];
+    }
+  }
+
+  void undo_step() {
+    for (std::size_t i = 0; i < problem_.views.size(); ++i)
+      problem_.views[i].camera_from_world = poses_before_[i];
+    for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].position = points_before_[i];
   }
 
   BundleProblem& problem_;
-  bool robust_ = true;
-  PoseManifold manifold_;
-  SwitchedHuber pixel_loss_{std::sqrt(kChi2Pixel), robust_}, depth_loss_{std::sqrt(kChi2Depth), robust_};
-  std::vector<PoseBlock> poses_;
-  std::deque<ObservationCost> costs_;  // never moved: Ceres points into it
-  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
-  ceres::Problem ceres_problem_;  // last: it points into all of the above
+  const std::vector<std::uint8_t>& outlier_;
+  const Camera& camera_;
+  double depth_weight_;
+  double disparity_ = depth_weight_ * camera_.baseline_or(kDepthBaseline) * camera_.fx;  // px m
+  int free_ = 0;
+  std::vector<int> place_;  // of each view among the free ones, or SchurEquations::kFixed
+  SchurEquations equations_;
+  SchurEquations::Step step_;
+  std::vector<Pose> poses_before_;
+  std::vector<Eigen::Vector3d> points_before_;
 };
 
 }  // namespace

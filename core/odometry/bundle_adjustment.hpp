@@ -49,7 +49,7 @@ struct BundleSolution {
 /// that see those points.
 [[nodiscard]] BundleProblem make_bundle_problem(const LocalMap& map, int keyframe, const Config& config);
 
-/// Minimises the robust reprojection error over free views and points with Ceres (Levenberg-Marquardt, Schur
+/// Minimises the robust reprojection error over free views and points (Levenberg-Marquardt, points by Schur
 /// complement), first with all edges under Huber's loss, then without the outliers. Deterministic.
 [[nodiscard]] BundleSolution solve_bundle(BundleProblem problem, const Camera& camera,
                                           const BundleConfig& config, double depth_weight);

@@ -44,7 +44,6 @@ FrameResult FeatureOdometry::run_frame(const Frame& frame, const PreparedFrame& 
   record.note = frame.problem;
   const Stopwatch whole;
 
-  mapper_.begin_frame(record);
   if (!frame.readable()) {
     lose(frame, FrameStatus::unreadable, "the image could not be read", record);
   } else {
@@ -203,8 +202,6 @@ bool FeatureOdometry::looks_back() const {
 }
 
 void FeatureOdometry::finish() {
-  FrameRecord unused;
-  mapper_.end_bundle(unused);
   smoother_.advance(std::numeric_limits<int>::max(), mapper_.map(), camera_, config_.tracking);
 }
 

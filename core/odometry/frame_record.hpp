@@ -80,7 +80,7 @@ struct StageTimes {
   double matching = 0.0;  ///< both searches against the map
   double pose = 0.0;      ///< EPnP, consensus and refinement
   double mapping = 0.0;   ///< keyframe, new points, fusion, culling
-  double bundle = 0.0;    ///< waiting for and applying bundle adjustment
+  double bundle = 0.0;    ///< bundle adjustment, solved and applied
   /// The whole frame. In a run of a whole sequence the next frame's features, and what needs no pose of its
   /// motion, are found while this one is tracked; of them total has what was waited for.
   double total = 0.0;

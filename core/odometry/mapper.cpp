@@ -7,26 +7,6 @@
 
 namespace stillpoint {
 
-void Mapper::begin_frame(FrameRecord& record) {
-  if (pending_ && record.index >= pending_->due) end_bundle(record);
-}
-
-void Mapper::end_bundle(FrameRecord& record) {
-  if (!pending_) return;
-  const Stopwatch watch;
-  const BundleSolution& solution = pending_->solution.get();
-  apply_bundle(solution, map_);
-  record.bundle_rms_before_px = solution.initial_rms_px;
-  record.bundle_rms_px = solution.rms_px;
-  record.bundle_iterations = solution.iterations;
-  if (map_.has_keyframe(pending_->keyframe)) {
-    update_points(map_.keyframe(pending_->keyframe).points);
-    record.culled_keyframes += cull_keyframes(map_, pending_->keyframe, camera_, config_);
-  }
-  pending_.reset();
-  record.ms.bundle += watch.milliseconds();
-}
-
 void Mapper::remove_dynamic_points(const Frame& image, const cv::Mat& mask, const Pose& camera_from_world,
                                    int about) {
   if (config_.map.cull_dynamic)
@@ -39,8 +19,7 @@ void Mapper::count_sightings(const std::vector<int>& in_view, const std::vector<
 }
 
 bool Mapper::wants_keyframe(const Frame& image, const TrackedFrame& frame, int inliers) const {
-  // One adjustment at a time: a keyframe before the last one's is done would have to wait for it.
-  if (!image.has_depth() || pending_) return false;
+  if (!image.has_depth()) return false;
   const FeatureSet& features = *frame.features;
   const double far = camera_.depth_limit(config_.map.far_depth_m);
   int near_tracked = 0, near_new = 0;
@@ -66,17 +45,13 @@ bool Mapper::wants_keyframe(const Frame& image, const TrackedFrame& frame, int i
 
 bool Mapper::bears_keyframe(const Frame& image, const TrackedFrame& frame) const {
   constexpr int kFeatures = 100;  // with depth: fewer make no keyframe to track against
-  if (!image.has_depth() || pending_) return false;
+  if (!image.has_depth()) return false;
   if (map_.observers(frame.points).empty()) return false;  // nothing would tie it to the map
   const auto& depth = frame.features->depth;
   return std::count_if(depth.begin(), depth.end(), [](float z) { return z > 0; }) >= kFeatures;
 }
 
 void Mapper::add_keyframe(const Frame& image, TrackedFrame& frame, FrameRecord& record) {
-  end_bundle(record);
-  // The adjustment may have taken points out of the map, and moved it under this frame.
-  forget_removed(frame);
-
   const Stopwatch watch;
   Keyframe keyframe;
   keyframe.frame_index = image.index;
@@ -95,22 +70,23 @@ void Mapper::add_keyframe(const Frame& image, TrackedFrame& frame, FrameRecord& 
   record.ms.mapping = watch.milliseconds();
 
   if (map_.keyframes().size() < 2) return;
-  begin_bundle(id, image.index);
-  if (config_.bundle.apply_after_frames == 0) {
-    end_bundle(record);
-    frame.camera_from_world = map_.pose_of(id);
-    forget_removed(frame);
-  }
+  adjust(id, record);
+  // The map has moved under this frame, and points may have left it.
+  frame.camera_from_world = map_.pose_of(id);
+  forget_removed(frame);
 }
 
-void Mapper::begin_bundle(int keyframe, int frame_index) {
-  auto solve = [problem = make_bundle_problem(map_, keyframe, config_), camera = camera_,
-                bundle = config_.bundle, weight = config_.tracking.depth_weight]() mutable {
-    return solve_bundle(std::move(problem), camera, bundle, weight);
-  };
-  const auto when = config_.run.threads > 1 ? std::launch::async : std::launch::deferred;
-  pending_ = PendingBundle{std::async(when, std::move(solve)).share(), keyframe,
-                           frame_index + config_.bundle.apply_after_frames};
+void Mapper::adjust(int keyframe, FrameRecord& record) {
+  const Stopwatch watch;
+  const BundleSolution solution = solve_bundle(make_bundle_problem(map_, keyframe, config_), camera_,
+                                               config_.bundle, config_.tracking.depth_weight);
+  apply_bundle(solution, map_);
+  record.bundle_rms_before_px = solution.initial_rms_px;
+  record.bundle_rms_px = solution.rms_px;
+  record.bundle_iterations = solution.iterations;
+  update_points(map_.keyframe(keyframe).points);
+  record.culled_keyframes = cull_keyframes(map_, keyframe, camera_, config_);
+  record.ms.bundle = watch.milliseconds();
 }
 
 void Mapper::forget_removed(TrackedFrame& frame) const {

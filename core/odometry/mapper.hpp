@@ -1,7 +1,6 @@
 #pragma once
 
-#include <future>
-#include <optional>
+#include <vector>
 
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
@@ -12,21 +11,14 @@
 
 namespace stillpoint {
 
-/// Keeps the local map: keyframes, new points, fusion, culling, and METHOD.md §2.4, local bundle adjustment,
-/// one at a time, solved beside tracking. All that changes the map is here. A value: copies share a pending
-/// adjustment's solution.
+/// Keeps the local map: keyframes, new points, fusion, culling, and METHOD.md §2.4, local bundle adjustment.
+/// All that changes the map is here.
 class Mapper {
  public:
   Mapper(const Camera& camera, const Config& config) : camera_(camera), config_(config) {}
 
   void adopt(const Config& config) { config_ = config; }
   [[nodiscard]] const LocalMap& map() const { return map_; }
-
-  /// A pending adjustment enters the map when the frame with the right number comes. When it does is fixed by
-  /// the frame's number, so that threads change nothing but the time.
-  void begin_frame(FrameRecord& record);
-  /// … or now, due or not.
-  void end_bundle(FrameRecord& record);
 
   /// Takes the map points that lie on what is dynamic out of the map. @param mask CV_8UC1, 255 = dynamic;
   /// empty: nothing does. @param about keyframe near which the camera is
@@ -43,12 +35,7 @@ class Mapper {
   void add_keyframe(const Frame& image, TrackedFrame& frame, FrameRecord& record);
 
  private:
-  struct PendingBundle {
-    std::shared_future<BundleSolution> solution;
-    int keyframe = kNone;
-    int due = 0;  // frame index at which it enters the map
-  };
-  void begin_bundle(int keyframe, int frame_index);
+  void adjust(int keyframe, FrameRecord& record);
   void forget_removed(TrackedFrame& frame) const;
   void update_points(const std::vector<int>& points);
 
@@ -56,7 +43,6 @@ class Mapper {
   Config config_;
   LocalMap map_;
   int last_keyframe_frame_ = 0;  // frame index of the newest keyframe
-  std::optional<PendingBundle> pending_;
 };
 
 }  // namespace stillpoint

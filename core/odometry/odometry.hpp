@@ -39,7 +39,7 @@ class Odometry {
     return engine_->process_prepared(frame, std::move(prepared), known_mask);
   }
 
-  /// Lets a pending bundle adjustment enter the map and looks back at the last poses: after the last frame.
+  /// Looks back at the last poses: after the last frame.
   void finish() { engine_->finish(); }
 
   /// The same map and the same place, but the next frames are processed with another config. What the new

@@ -121,6 +121,13 @@ TEST_F(ConfigFile, SectionsAndSwitchesOfEarlierVersionsAreStillRead) {
   EXPECT_EQ(config.of<PaperConfig>().max_corners, 99);
 }
 
+TEST_F(ConfigFile, ConstantsThatThereAreNoMoreAreReadPast) {
+  const Config config = read("[bundle]\napply_after_frames = 3\niterations = 7\n");
+  EXPECT_THAT(differences(config, Config{}), testing::ElementsAre("bundle.iterations"));
+  Config set;
+  EXPECT_THROW(set_parameter(set, "bundle.apply_after_frames=3"), InputError) << "would change nothing";
+}
+
 TEST_F(ConfigFile, ConstantsAreStillReadUnderTheirFormerNames) {
   const Config config = read(
       "[tracking]\nlook_back_frames = 7\n[map]\npurge_moving = false\n[stillpoint]\nsegment_px = 12\n"

@@ -1,11 +1,12 @@
 #include "core/odometry/ptam/ptam_solver.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/geometry/schur_equations.hpp"
 
 namespace stillpoint {
 namespace {
@@ -49,97 +50,33 @@ double tukey_cost(double squared, double bound_squared) {
   return bound_squared / 3.0 * (1.0 - rest * rest * rest);
 }
 
-/// Normal equations of a bundle, points eliminated as they are summed.
-class BundleStep {
- public:
-  BundleStep(const PtamBundle& bundle, const Camera& camera, const PtamConfig& config,
-             const std::vector<int>& place, const std::vector<std::vector<int>>& of_point,
-             double bound_squared)
-      : bundle_(bundle),
-        camera_(camera),
-        config_(config),
-        place_(place),
-        of_point_(of_point),
-        bound_(bound_squared) {}
-
-  /// Steps of views (6 each, of the free ones) and points (3 each). False where it is undecided.
-  bool solve(double damping, Eigen::VectorXd& of_views, std::vector<Eigen::Vector3d>& of_points) {
-    const auto free = static_cast<Eigen::Index>(
-        std::count_if(place_.begin(), place_.end(), [](int at) { return at >= 0; }));
-    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(6 * free, 6 * free);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(6 * free);
-    struct Part {
-      Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-      Eigen::Vector3d b = Eigen::Vector3d::Zero();
-      std::vector<std::pair<int, Eigen::Matrix<double, 6, 3>>> by_view;
-    };
-    std::vector<Part> parts(bundle_.points.size());
-    for (std::size_t i = 0; i < bundle_.points.size(); ++i) {
-      Part& part = parts[i];
-      Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-      for (const int index : of_point_[i]) add(index, h, b, own, part.b, part.by_view);
-      own.diagonal() *= 1.0 + damping;
-      own.diagonal().array() += 1e-9;
-      part.inverse = own.inverse();
-      for (const auto& [view, across] : part.by_view) {
-        const Eigen::Matrix<double, 6, 3> gain = across * part.inverse;
-        b.segment<6>(6 * view).noalias() -= gain * part.b;
-        for (const auto& [other, theirs] : part.by_view)
-          h.block<6, 6>(6 * view, 6 * other).noalias() -= gain * theirs.transpose();
-      }
-    }
-    of_views = Eigen::VectorXd::Zero(6 * free);
-    if (free > 0) {
-      for (Eigen::Index i = 0; i < h.rows(); ++i) h(i, i) += damping * std::abs(h(i, i)) + 1e-9;
-      of_views = -solve_ldlt(h, b);
-      if (!of_views.allFinite()) return false;
-    }
-    of_points.assign(parts.size(), Eigen::Vector3d::Zero());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      Eigen::Vector3d right = parts[i].b;
-      for (const auto& [view, across] : parts[i].by_view)
-        right += across.transpose() * of_views.segment<6>(6 * view);
-      of_points[i] = -(parts[i].inverse * right);
-    }
-    return true;
-  }
-
- private:
-  void add(int index, Eigen::MatrixXd& h, Eigen::VectorXd& b, Eigen::Matrix3d& own, Eigen::Vector3d& own_b,
-           std::vector<std::pair<int, Eigen::Matrix<double, 6, 3>>>& by_view) const {
-    const PtamBundle::Measurement& one = bundle_.measurements[static_cast<std::size_t>(index)];
-    const Residual residual = residual_of(bundle_, one, camera_, config_.bundle_depth_weight);
-    if (!residual.seen) return;
+/// The equations of a bundle with Tukey's weights.
+/// @param place of each view among the free ones, or SchurEquations::kFixed @param order measurements, point
+/// by point
+void linearise(const PtamBundle& bundle, const Camera& camera, const PtamConfig& config,
+               const std::vector<int>& place, const std::vector<int>& order, double bound_squared,
+               SchurEquations& equations) {
+  const auto free =
+      std::count_if(place.begin(), place.end(), [](int at) { return at != SchurEquations::kFixed; });
+  equations.reset(static_cast<int>(free), static_cast<int>(bundle.points.size()));
+  for (const int index : order) {
+    const PtamBundle::Measurement& one = bundle.measurements[static_cast<std::size_t>(index)];
+    const Residual residual = residual_of(bundle, one, camera, config.bundle_depth_weight);
+    if (!residual.seen) continue;
     const double scale = std::ldexp(1.0, -one.level);
     Eigen::Matrix3d by_point = Eigen::Matrix3d::Zero();
-    by_point.topRows<2>() = scale * pixel_by_point(camera_, residual.p);
+    by_point.topRows<2>() = scale * pixel_by_point(camera, residual.p);
     if (one.depth > 0.0)
-      by_point(2, 2) = scale * config_.bundle_depth_weight * camera_.baseline_or(kDepthBaseline) *
-                       camera_.fx / (residual.p.z() * residual.p.z());
-    const double pixel = one.static_weight * tukey_weight(residual.squared(), bound_),
-                 depth = one.static_weight * tukey_weight(residual.r[2] * residual.r[2], bound_);
-    const Eigen::Vector3d w(pixel, pixel, depth);
-    const Eigen::Matrix3d rotation =
-        bundle_.views[static_cast<std::size_t>(one.view)].camera_from_world.linear();
-    const Eigen::Matrix3d by_world = by_point * rotation;
-    own.noalias() += by_world.transpose() * w.asDiagonal() * by_world;
-    own_b.noalias() += by_world.transpose() * w.asDiagonal() * residual.r;
-    const int at = place_[static_cast<std::size_t>(one.view)];
-    if (at < 0) return;
-    Eigen::Matrix<double, 3, 6> by_pose;
-    by_pose << by_point, -by_point * hat(residual.p);
-    h.block<6, 6>(6 * at, 6 * at).noalias() += by_pose.transpose() * w.asDiagonal() * by_pose;
-    b.segment<6>(6 * at).noalias() += by_pose.transpose() * w.asDiagonal() * residual.r;
-    by_view.emplace_back(at, by_pose.transpose() * w.asDiagonal() * by_world);
+      by_point(2, 2) = scale * config.bundle_depth_weight * camera.baseline_or(kDepthBaseline) * camera.fx /
+                       (residual.p.z() * residual.p.z());
+    const double pixel = one.static_weight * tukey_weight(residual.squared(), bound_squared),
+                 depth = one.static_weight * tukey_weight(residual.r[2] * residual.r[2], bound_squared);
+    const Eigen::Matrix3d weighted = by_point.transpose() * Eigen::Vector3d(pixel, pixel, depth).asDiagonal();
+    const auto view = static_cast<std::size_t>(one.view);
+    equations.add(place[view], one.point, bundle.views[view].camera_from_world.linear(),
+                  {weighted * by_point, weighted * residual.r, residual.p});
   }
-
-  const PtamBundle& bundle_;
-  const Camera& camera_;
-  const PtamConfig& config_;
-  const std::vector<int>& place_;
-  const std::vector<std::vector<int>>& of_point_;
-  double bound_;
-};
+}
 
 double cost_of(const PtamBundle& bundle, const Camera& camera, const PtamConfig& config,
                double bound_squared) {
@@ -240,29 +177,34 @@ PtamPose solve_ptam_pose(std::vector<PtamSight>& sights, const Pose& start, cons
 
 void solve_ptam_bundle(PtamBundle& bundle, const Camera& camera, const PtamConfig& config) {
   constexpr double kWorse = 4.0, kBetter = 0.3, kStill = 1e-6;
-  std::vector<int> place;  // of each view among the free ones; -1: fixed
+  std::vector<int> place;  // of each view among the free ones
   int free = 0;
-  for (const auto& view : bundle.views) place.push_back(view.fixed ? -1 : free++);
-  std::vector<std::vector<int>> of_point(bundle.points.size());
-  for (std::size_t i = 0; i < bundle.measurements.size(); ++i)
-    of_point[static_cast<std::size_t>(bundle.measurements[i].point)].push_back(static_cast<int>(i));
+  for (const auto& view : bundle.views) place.push_back(view.fixed ? SchurEquations::kFixed : free++);
+  std::vector<int> order(bundle.measurements.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return bundle.measurements[static_cast<std::size_t>(a)].point <
+           bundle.measurements[static_cast<std::size_t>(b)].point;
+  });
+  SchurEquations equations;
+  SchurEquations::Step step;
   bundle.rms_before_px = rms_of(bundle, camera, false);
   double damping = 1e-4;
   for (int tries = 0; tries < config.bundle_iterations; ++tries) {
     const double bound = bound_of(bundle, camera, config);
-    BundleStep step(bundle, camera, config, place, of_point, bound);
-    Eigen::VectorXd of_views;
-    std::vector<Eigen::Vector3d> of_points;
-    if (!step.solve(damping, of_views, of_points)) break;
+    linearise(bundle, camera, config, place, order, bound, equations);
+    if (!equations.solve(damping, step)) break;
     PtamBundle moved = bundle;
-    double squared = of_views.squaredNorm();
-    for (std::size_t i = 0; i < moved.views.size(); ++i)
-      if (place[i] >= 0)
-        moved.views[i].camera_from_world =
-            normalised(se3_exp(of_views.segment<6>(6 * place[i])) * moved.views[i].camera_from_world);
+    double squared = 0.0;
+    for (std::size_t i = 0; i < moved.views.size(); ++i) {
+      if (place[i] == SchurEquations::kFixed) continue;
+      const Vector6d& change = step.poses[static_cast<std::size_t>(place[i])];
+      moved.views[i].camera_from_world = normalised(se3_exp(change) * moved.views[i].camera_from_world);
+      squared += change.squaredNorm();
+    }
     for (std::size_t i = 0; i < moved.points.size(); ++i) {
-      moved.points[i].world += of_points[i];
-      squared += of_points[i].squaredNorm();
+      moved.points[i].world += step.points[i];
+      squared += step.points[i].squaredNorm();
     }
     if (cost_of(moved, camera, config, bound) > cost_of(bundle, camera, config, bound)) {
       damping *= kWorse;
