@@ -81,7 +81,7 @@ bool SchurEquations::solve(double damping, Step& step) const {
   double change_of_cost = 0.0;
   const auto foresee = [&](const auto& part, const auto& delta) {
     change_of_cost += part.g.dot(delta) -
-             (damping * part.h.diagonal().array() + kLeastDamped).matrix().dot(delta.cwiseAbs2());
+                      (damping * part.h.diagonal().array() + kLeastDamped).matrix().dot(delta.cwiseAbs2());
   };
   step.poses.resize(poses_.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {

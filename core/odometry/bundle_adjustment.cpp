@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "core/geometry/levenberg_marquardt.hpp"
 #include "core/geometry/schur_equations.hpp"
 #include "core/odometry/matching.hpp"
 #include "core/odometry/pose_solver.hpp"
@@ -55,90 +56,29 @@ Loss huber(double squared, double bound_squared, bool robust) {
   return {2.0 * share * squared - bound_squared, share};
 }
 
-/// Levenberg-Marquardt over the edges of a problem that are no outliers, robustly or not.
-class BundleSolver {
+/// Views and points on their way to the least cost of the edges that are no outliers.
+class BundleDescent {
  public:
-  BundleSolver(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
-               double depth_weight)
+  BundleDescent(BundleProblem& problem, const std::vector<std::uint8_t>& outlier, const Camera& camera,
+                double depth_weight)
       : problem_(problem), outlier_(outlier), camera_(camera), depth_weight_(depth_weight) {
     for (const auto& view : problem.views) place_.push_back(view.fixed ? SchurEquations::kFixed : free_++);
   }
 
-  /// Moves views and points; adds the steps that were taken. False if an edge's point is not before its
-  /// camera.
-  bool solve(bool robust, int max_steps, int& steps) {
-    constexpr double kConverged = 1e-4;  // of the cost: less of a gain ends it
-    constexpr double kLeastGain = 1e-3;  // of the gain foreseen, for a step to be taken
-    constexpr double kMostDamped = 1e32;
-    double damping = 1e-4, harder = 2.0;
-    double cost = linearise(robust);
-    if (!std::isfinite(cost)) return false;
-    for (int i = 0; i < max_steps && damping < kMostDamped; ++i) {
-      if (!equations_.solve(damping, step_) || step_.cost_change >= 0) break;
-      take_step();
-      const double next = cost_of(robust);
-      const double gain = (cost - next) / -step_.cost_change;  // infinitely small where a point fell behind
-      const bool converged = std::abs(cost - next) <= kConverged * cost;
-      if (!(gain > kLeastGain)) {
-        undo_step();
-        if (converged) break;
-        damping *= harder, harder *= 2.0;
-        continue;
-      }
-      ++steps;
-      if (converged) break;
-      // Nielsen's rule (1999): the better the equations foresaw the gain, the less damping.
-      damping *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3)), harder = 2.0;
-      cost = linearise(robust);
-    }
-    return true;
-  }
-
- private:
-  /// An edge's residuals over their standard deviations, and what they cost.
-  struct Evaluated {
-    Eigen::Vector3d p = Eigen::Vector3d::Zero();         // m, in the camera
-    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // pixel, and depth as disparity
-    double scale = 0.0;                                  // 1 / px
-    Loss pixel, depth;
-  };
-
-  /// Nothing where the point is not before the camera.
-  [[nodiscard]] std::optional<Evaluated> evaluate(const BundleProblem::Edge& edge, bool robust) const {
-    Evaluated e;
-    e.p = problem_.views[static_cast<std::size_t>(edge.view)].camera_from_world *
-          problem_.points[static_cast<std::size_t>(edge.point)].position;
-    if (!(e.p.z() >= kNearestProjected)) return std::nullopt;
-    const double iz = 1.0 / e.p.z();
-    e.scale = std::sqrt(edge.static_weight) / edge.sigma_px;
-    e.residual.x() = e.scale * (camera_.fx * e.p.x() * iz + camera_.cx - edge.pixel.x());
-    e.residual.y() = e.scale * (camera_.fy * e.p.y() * iz + camera_.cy - edge.pixel.y());
-    if (edge.depth > 0) e.residual.z() = e.scale * disparity_ * (1.0 / edge.depth - iz);
-    e.pixel = huber(e.residual.head<2>().squaredNorm(), kChi2Pixel, robust);
-    e.depth = huber(e.residual.z() * e.residual.z(), kChi2Depth, robust);
-    return e;
+  /// Under Huber's loss or plain squares.
+  Descent descend(bool robust, int most_steps) {
+    robust_ = robust;
+    return levenberg_marquardt(*this, most_steps);
   }
 
   /// The loss of all edges; infinite where a point is not before its camera.
-  [[nodiscard]] double cost_of(bool robust) const {
-    double cost = 0.0;
-    for (std::size_t i = 0; i < problem_.edges.size(); ++i) {
-      if (outlier_[i]) continue;
-      const auto e = evaluate(problem_.edges[i], robust);
-      if (!e) return std::numeric_limits<double>::infinity();
-      cost += e->pixel.cost + e->depth.cost;
-    }
-    return cost;
-  }
-
-  /// Makes the equations anew; returns the loss of all edges.
-  double linearise(bool robust) {
+  double linearise() {
     equations_.reset(free_, static_cast<int>(problem_.points.size()));
     double cost = 0.0;
     for (std::size_t i = 0; i < problem_.edges.size(); ++i) {
       if (outlier_[i]) continue;
       const auto& edge = problem_.edges[i];
-      const auto e = evaluate(edge, robust);
+      const auto e = evaluate(edge);
       if (!e) return std::numeric_limits<double>::infinity();
       cost += e->pixel.cost + e->depth.cost;
       // ∂r/∂p has the rows (a 0 c), (0 b d) and (0 0 e).
@@ -159,7 +99,9 @@ class BundleSolver {
     return cost;
   }
 
-  void take_step() {
+  double step(double damping) {
+    if (!equations_.solve(damping, step_) || step_.cost_change >= 0) return 0.0;
+    std::swap(equations_, equations_before_);
     poses_before_.clear(), points_before_.clear();
     for (std::size_t i = 0; i < problem_.views.size(); ++i) {
       Pose& pose = problem_.views[i].camera_from_world;
@@ -171,12 +113,43 @@ class BundleSolver {
       points_before_.push_back(problem_.points[i].position);
       problem_.points[i].position += step_.points[i];
     }
+    return -step_.cost_change;
   }
 
-  void undo_step() {
+  void undo() {
+    std::swap(equations_, equations_before_);
     for (std::size_t i = 0; i < problem_.views.size(); ++i)
       problem_.views[i].camera_from_world = poses_before_[i];
     for (std::size_t i = 0; i < problem_.points.size(); ++i) problem_.points[i].position = points_before_[i];
+  }
+
+  [[nodiscard]] bool converged(double cost, double next) const {
+    return std::abs(cost - next) <= 1e-4 * cost;
+  }
+
+ private:
+  /// An edge's residuals over their standard deviations, and what they cost.
+  struct Evaluated {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero();         // m, in the camera
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // pixel, and depth as disparity
+    double scale = 0.0;                                  // 1 / px
+    Loss pixel, depth;
+  };
+
+  /// Nothing where the point is not before the camera.
+  [[nodiscard]] std::optional<Evaluated> evaluate(const BundleProblem::Edge& edge) const {
+    Evaluated e;
+    e.p = problem_.views[static_cast<std::size_t>(edge.view)].camera_from_world *
+          problem_.points[static_cast<std::size_t>(edge.point)].position;
+    if (!(e.p.z() >= kNearestProjected)) return std::nullopt;
+    const double iz = 1.0 / e.p.z();
+    e.scale = std::sqrt(edge.static_weight) / edge.sigma_px;
+    e.residual.x() = e.scale * (camera_.fx * e.p.x() * iz + camera_.cx - edge.pixel.x());
+    e.residual.y() = e.scale * (camera_.fy * e.p.y() * iz + camera_.cy - edge.pixel.y());
+    if (edge.depth > 0) e.residual.z() = e.scale * disparity_ * (1.0 / edge.depth - iz);
+    e.pixel = huber(e.residual.head<2>().squaredNorm(), kChi2Pixel, robust_);
+    e.depth = huber(e.residual.z() * e.residual.z(), kChi2Depth, robust_);
+    return e;
   }
 
   BundleProblem& problem_;
@@ -184,9 +157,10 @@ class BundleSolver {
   const Camera& camera_;
   double depth_weight_;
   double disparity_ = depth_weight_ * camera_.baseline_or(kDepthBaseline) * camera_.fx;  // px m
+  bool robust_ = true;
   int free_ = 0;
   std::vector<int> place_;  // of each view among the free ones, or SchurEquations::kFixed
-  SchurEquations equations_;
+  SchurEquations equations_, equations_before_;
   SchurEquations::Step step_;
   std::vector<Pose> poses_before_;
   std::vector<Eigen::Vector3d> points_before_;
@@ -274,11 +248,13 @@ BundleSolution solve_bundle(BundleProblem problem, const Camera& camera, const B
     }
   };
   const int half = std::max(1, config.iterations / 2);
-  BundleSolver solver(moved, solution.outlier, camera, depth_weight);
-  if (!solver.solve(true, half, solution.iterations)) return solution;
-  mark_outliers();
-  if (!solver.solve(false, config.iterations, solution.iterations)) return solution;
-  mark_outliers();
+  BundleDescent solver(moved, solution.outlier, camera, depth_weight);
+  for (const bool robust : {true, false}) {
+    const Descent descent = solver.descend(robust, robust ? half : config.iterations);
+    if (!descent.begun) return solution;
+    solution.iterations += descent.taken;
+    mark_outliers();
+  }
   solution.rms_px = rms(moved, solution.outlier, camera);
   solution.usable = true;
   return solution;

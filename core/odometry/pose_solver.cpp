@@ -6,6 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 
+#include "core/geometry/levenberg_marquardt.hpp"
 #include "core/geometry/normal_equations.hpp"
 #include "core/odometry/adaptive_kernel.hpp"
 
@@ -186,32 +187,39 @@ class PoseProblem {
   std::optional<AdaptiveKernel> kernel_;  // none: Huber's
 };
 
-/// Levenberg-Marquardt over the inliers; returns the number of steps taken.
-int levenberg_marquardt(const PoseProblem& problem, bool robust, int max_steps, Pose& pose) {
-  constexpr double kConverged = 1e-7;  // m and rad: far below what pixels can tell
-  double lambda = 1e-4;
-  NormalEquations current = problem.normal_equations(pose, robust);
-  int steps = 0;
-  while (steps < max_steps) {
-    ++steps;
-    Matrix6d damped = current.h;
-    damped.diagonal() += lambda * current.h.diagonal() + Vector6d::Constant(1e-9);
-    const Vector6d step = -solve_ldlt(damped, current.g);
-    if (!step.allFinite()) break;
-    const Pose candidate = se3_exp(step) * pose;
-    const NormalEquations next = problem.normal_equations(candidate, robust);
-    if (next.cost < current.cost) {
-      pose = candidate;
-      current = next;
-      lambda = std::max(lambda * 0.1, 1e-9);
-      if (step.norm() < kConverged) break;
-    } else {
-      lambda *= 10.0;
-      if (lambda > 1e6 || step.norm() < kConverged) break;
-    }
+/// A pose on its way to the least cost over the observations in use.
+class PoseDescent {
+ public:
+  PoseDescent(const PoseProblem& problem, bool robust, const Pose& start)
+      : problem_(problem), robust_(robust), pose_(start) {}
+
+  double linearise() {
+    equations_ = problem_.normal_equations(pose_, robust_);
+    return equations_.cost;
   }
-  return steps;
-}
+  double step(double damping) {
+    pose_before_ = pose_, before_ = equations_;
+    const Vector6d added = damping * equations_.h.diagonal() + Vector6d::Constant(1e-9);
+    Matrix6d damped = equations_.h;
+    damped.diagonal() += added;
+    change_ = -solve_ldlt(damped, equations_.g);
+    const double foreseen = added.dot(change_.cwiseAbs2()) - equations_.g.dot(change_);
+    if (foreseen > 0) pose_ = se3_exp(change_) * pose_;
+    return foreseen;
+  }
+  void undo() { pose_ = pose_before_, equations_ = before_; }
+  [[nodiscard]] bool converged(double, double) const {
+    return change_.norm() < 1e-7;  // m and rad: far below what pixels can tell
+  }
+  [[nodiscard]] const Pose& pose() const { return pose_; }
+
+ private:
+  const PoseProblem& problem_;
+  bool robust_;
+  Pose pose_, pose_before_ = pose_;
+  NormalEquations equations_, before_;
+  Vector6d change_ = Vector6d::Zero();
+};
 
 }  // namespace
 
@@ -242,11 +250,11 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
   for (int round = 0; round < config.refine_rounds; ++round) {
     // Robust while outliers are still among the inliers; plain least squares once they are told apart.
     const bool robust = round < 2;
-    Pose pose = result.camera_from_world;
-    if (robust && config.adaptive_kernel) problem.adapt_kernel(pose);
-    result.iterations += levenberg_marquardt(problem, robust, config.refine_iterations, pose);
-    result.camera_from_world = pose;
-    result.inliers = problem.mark_inliers(pose, 1.0, result.inlier);
+    if (robust && config.adaptive_kernel) problem.adapt_kernel(result.camera_from_world);
+    PoseDescent descent(problem, robust, result.camera_from_world);
+    result.iterations += levenberg_marquardt(descent, config.refine_iterations).tried;
+    result.camera_from_world = descent.pose();
+    result.inliers = problem.mark_inliers(result.camera_from_world, 1.0, result.inlier);
     problem.use(result.inlier);
     if (result.inliers < kFewestInliers) break;
   }

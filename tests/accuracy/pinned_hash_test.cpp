@@ -1,6 +1,6 @@
 // What refactoring must not change: all that a run computes, to the last bit.
 //
-// A pinned hash belongs to Debian 12's OpenCV, Eigen and Ceres on x86-64, with OpenCV's baseline code: AVX2
+// A pinned hash belongs to Debian 12's OpenCV and Eigen on x86-64, with OpenCV's baseline code: AVX2
 // code rounds otherwise, and gives `stillpoint` (and the generator, in a few pixels of some sequences) other
 // last bits. main.cpp turns it off, so the hashes hold on every x86-64 CPU as far as OpenCV goes; glibc's
 // choice of AVX2 and FMA code changes none. On a system with other versions the tests skip.

@@ -86,8 +86,7 @@ TEST_P(SteadyState, AsksForLittle) {
 }
 
 // A quarter more than is asked for, and of small blocks half as much again: images and tables that come and
-// go by the frame, whose pages stay with the program; the paper's homography is refined by Ceres, which keeps
-// no memory.
+// go by the frame, whose pages stay with the program.
 INSTANTIATE_TEST_SUITE_P(Methods, SteadyState,
                          testing::Values(Bounds{"none", 15, 2.4e6, 900}, Bounds{"paper", 65, 22.5e6, 35000},
                                          Bounds{"stillpoint", 56, 6.7e6, 1800}),

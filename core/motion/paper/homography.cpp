@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "core/geometry/levenberg_marquardt.hpp"
 #include "core/geometry/normal_equations.hpp"
 
 namespace stillpoint {
@@ -106,39 +107,36 @@ class ReprojectionProblem {
   double px_per_unit_;  ///< of the destination
 };
 
-struct Minimum {
-  Parameters at;
-  int steps = 0;  ///< tried, those that were not taken included
-};
+/// Parameters on their way to the least reprojection error.
+class HomographyDescent {
+ public:
+  HomographyDescent(const ReprojectionProblem& problem, const Parameters& start)
+      : problem_(problem), at_(start) {}
 
-/// Levenberg-Marquardt, damped and ended as Ceres does by default: by a trust region that begins at 1e4, when
-/// a step changes the cost by less than 1e-6 of it or the parameters by less than 1e-8.
-Minimum minimise(const ReprojectionProblem& problem, const Parameters& start, int max_steps) {
-  Minimum best{start};
-  double cost = problem.cost(start), radius = 1e4, shrink = 2.0;
-  ReprojectionProblem::Normal normal = problem.normal_equations(start);
-  while (best.steps < max_steps && radius > 1e-32) {
-    ++best.steps;
-    Eigen::Matrix<double, 8, 8> damped = normal.h;
-    damped.diagonal() *= 1.0 + 1.0 / radius;
-    const Parameters step = solve_ldlt<8>(damped, normal.g);
-    const double expected = step.dot(normal.g - 0.5 * (normal.h * step));
-    const Parameters next = best.at + step;
-    const double next_cost = problem.cost(next), gain = cost - next_cost;
-    if (step.norm() <= 1e-8 * (best.at.norm() + 1e-8) || std::abs(gain) <= 1e-6 * cost) break;
-    if (!std::isfinite(next_cost) || !(gain > 1e-3 * expected)) {
-      radius /= shrink;
-      shrink *= 2.0;
-      continue;
-    }
-    radius = std::min(1e16, radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain / expected - 1.0, 3)));
-    shrink = 2.0;
-    best.at = next;
-    cost = next_cost;
-    normal = problem.normal_equations(next);
+  double linearise() {
+    normal_ = problem_.normal_equations(at_);
+    return problem_.cost(at_);
   }
-  return best;
-}
+  double step(double damping) {
+    before_ = at_, normal_before_ = normal_;
+    Eigen::Matrix<double, 8, 8> damped = normal_.h;
+    damped.diagonal() *= 1.0 + damping;
+    change_ = solve_ldlt<8>(damped, normal_.g);
+    const double foreseen = change_.dot(normal_.g - 0.5 * (normal_.h * change_));
+    if (foreseen > 0) at_ += change_;
+    return foreseen;
+  }
+  void undo() { at_ = before_, normal_ = normal_before_; }
+  [[nodiscard]] bool converged(double cost, double next) const {
+    return change_.norm() <= 1e-8 * (before_.norm() + 1e-8) || std::abs(cost - next) <= 1e-6 * cost;
+  }
+  [[nodiscard]] const Parameters& at() const { return at_; }
+
+ private:
+  const ReprojectionProblem& problem_;
+  Parameters at_, before_ = at_, change_ = Parameters::Zero();
+  ReprojectionProblem::Normal normal_, normal_before_;
+};
 
 std::vector<Track> inliers_of(const std::vector<Track>& tracks) {
   std::vector<Track> inliers;
@@ -225,13 +223,14 @@ RefinedHomography refine_homography(const cv::Matx33d& start, const std::vector<
   if (std::abs(normalised(2, 2)) < 1e-12) return {start, 0};
   normalised *= 1.0 / normalised(2, 2);
 
-  const Minimum best = minimise(ReprojectionProblem(inliers, source, destination),
-                                Eigen::Map<const Parameters>(normalised.val), max_iterations);
-  if (!best.at.allFinite()) return {start, 0};
-  std::copy_n(best.at.data(), 8, normalised.val);
+  const ReprojectionProblem problem(inliers, source, destination);
+  HomographyDescent descent(problem, Eigen::Map<const Parameters>(normalised.val));
+  const int steps = levenberg_marquardt(descent, max_iterations).tried;
+  if (!descent.at().allFinite()) return {start, 0};
+  std::copy_n(descent.at().data(), 8, normalised.val);
   cv::Matx33d refined = destination.matrix.inv() * normalised * source.matrix;
   refined *= 1.0 / refined(2, 2);
-  return {refined, best.steps};
+  return {refined, steps};
 }
 
 HomographyEstimate estimate_homography(std::vector<Track>& tracks, const cv::Size& image,
