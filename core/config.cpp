@@ -215,7 +215,7 @@ void MapConfig::list(ParameterTable& table) {
 }
 
 void BundleConfig::list(ParameterTable& table) {
-  table.number("max_keyframes", max_keyframes, 8, 1, 100, "keyframes", "local keyframes refined");
+  table.number("max_keyframes", max_keyframes, 12, 1, 100, "keyframes", "local keyframes refined");
   table.number("max_fixed_keyframes", max_fixed_keyframes, 20, 1, 200, "keyframes",
                "keyframes that share their points, held fixed");
   table.number("iterations", iterations, 5, 1, 100, "steps", "most Levenberg-Marquardt steps");
