@@ -61,7 +61,10 @@ FrameResult FeatureOdometry::run_frame(const Frame& frame, const PreparedFrame& 
     record.features_kept = tracked.features->size();
     record.features_removed = record.features_found - record.features_kept;
     record.features = std::move(tracked.records);
-    motion_.commit(input, result.motion, {record.estimated, record.world_from_camera.inverse()});
+    // A keyframe's pose in the map is no longer the one it was solved to.
+    const Pose in_map = solver_.path().begun() ? solver_.path().last_camera_from_world(mapper_.map())
+                                               : record.world_from_camera.inverse();
+    motion_.commit(input, result.motion, {record.estimated, in_map});
     solver_.direct().remember(frame, record, result.mask, solver_.features().depth_lag(frame),
                               solver_.path().velocity());
   }
@@ -155,19 +158,20 @@ void FeatureOdometry::keep(const Frame& frame, FrameSolver::Solution& solution, 
   path.measure(tracked.camera_from_world, mapper_.map(), frame.timestamp);
   direct.count(solution.inliers, solution.directly);
 
+  const Pose solved = tracked.camera_from_world;  // what is recorded: by eq. (5), as what it is compared with
   const bool keyframe = solution.directly
                             ? direct.degraded_for_long() && mapper_.bears_keyframe(frame, tracked)
                             : mapper_.wants_keyframe(frame, tracked, record.inliers);
   if (keyframe) {
     direct.end_degradation();
-    mapper_.add_keyframe(frame, tracked, record);  // §2.4 begins here, and ends some frames later
+    mapper_.add_keyframe(frame, tracked, record);  // §2.4, which moves the map, and this frame with it
   }
   // Points that so few corners show are looked for again from the frame that showed them well.
   if (enough || keyframe)
     path.follow(tracked, mapper_.map(), frame.timestamp);
   else
     path.follow_pose(tracked.camera_from_world, mapper_.map(), frame.timestamp);
-  write_pose(tracked.camera_from_world, record);
+  write_pose(solved, record);
 
   if (!looks_back()) return;
   if (!keyframe && !solution.directly)
