@@ -101,19 +101,16 @@ cv::Mat Painter::paint_panel(const SessionView& view, const std::string& name, s
       size);
 }
 
-std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
-  std::vector<Picture> pictures;
+void Painter::paint(const SessionView& view, const std::function<void(const Picture&)>& done) {
   if (workbench_chosen_)
-    pictures.push_back({kWorkbench, paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); },
-                                                options_.workbench_size)});
+    done({kWorkbench,
+          paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); }, options_.workbench_size)});
   for (Panel* chosen : panels_chosen_) {
     if (!chosen->is_for(view) && !named_.contains(chosen)) continue;
-    pictures.push_back(
-        {chosen->name(),
-         paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
-                     options_.panel_size)});
+    done({chosen->name(),
+          paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
+                      options_.panel_size)});
   }
-  return pictures;
 }
 
 void ImageWriter::write(const std::filesystem::path& path, const cv::Mat& image) {

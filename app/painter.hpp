@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -56,8 +57,8 @@ class Painter {
     return {width, height};
   }
 
-  /// Each picture chosen, of the frame shown.
-  [[nodiscard]] std::vector<Picture> paint(const SessionView& view);
+  /// Each picture chosen, of the frame shown; given to `done` as soon as it is drawn.
+  void paint(const SessionView& view, const std::function<void(const Picture&)>& done);
 
   /// Of the layout's choices, those that no control of a panel drawn so far took: misspelt, or of a control
   /// that was not there. "compensated: look=Wip"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -45,6 +47,16 @@ PainterOptions painter_options(const SnapshotArguments& arguments, const std::st
   return options;
 }
 
+/// Whether the panels named show what a method's stages made.
+bool shows_stages(const std::string& panels) {
+  const std::vector<std::string> names = split_list(panels);
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    for (const char* shows : {"all", "workbench", "motion", "stages", "feature", "inspector"})
+      if (name == shows) return true;
+    return false;
+  });
+}
+
 /// Where images go: files one by one, a video, or both.
 class Pictures {
  public:
@@ -62,13 +74,14 @@ class Pictures {
     if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
 
-  void add(const SessionView& view, const std::vector<Painter::Picture>& pictures) {
-    for (const auto& [name, image] : pictures) {
-      if (video_) video_->add(image, view.current->frame.timestamp);
-      if (folder_.empty()) continue;
-      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
+  /// Packed and written beside the drawing of the next one.
+  void add(const SessionView& view, Painter& painter) {
+    painter.paint(view, [&](const Painter::Picture& picture) {
+      if (video_) video_->add(picture.image, view.current->frame.timestamp);
+      if (folder_.empty()) return;
+      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, picture.name), picture.image);
       ++files_;
-    }
+    });
     list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
                          to_string(view.current->record->status));
     ++frames_;
@@ -125,6 +138,32 @@ std::vector<int> frames_where(const Condition& condition, const RunView& run,
   return chosen;
 }
 
+/// A session on its way to the first frame that is drawn, while what draws it is set up.
+class EarlySession {
+ public:
+  /// @param first frame; nothing where it is not known yet
+  EarlySession(const OpenedSource& place, const std::string& beside, std::optional<int> first)
+      : making_(std::async(std::launch::async, [this, &place, beside, first] {
+          auto session = std::make_unique<Session>(place.source, place.config, place.options);
+          if (!beside.empty()) session->request(request::StagesBeside{beside});
+          // One far ahead is waited for with a bar that tells how far it is.
+          constexpr int kMostFrames = 8;
+          if (first && *first < kMostFrames)
+            session->go_to(*first, [this](const FrameRecord& record) { seen_.push_back(record.status); });
+          return session;
+        })) {}
+  /// @param on_frame told of each frame that was processed meanwhile
+  [[nodiscard]] std::unique_ptr<Session> get(const std::function<void(FrameStatus)>& on_frame) {
+    auto session = making_.get();
+    for (const FrameStatus status : seen_) on_frame(status);
+    return session;
+  }
+
+ private:
+  std::vector<FrameStatus> seen_;
+  std::future<std::unique_ptr<Session>> making_;  // last: it ends before what it works with
+};
+
 void snapshot(const SnapshotArguments& arguments) {
   const std::optional<Condition> condition = when_condition(arguments);
   OpenedSource place = open_source(arguments.place);
@@ -133,34 +172,32 @@ void snapshot(const SnapshotArguments& arguments) {
   const std::string& method = place.config.run.method;
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
-  Painter painter(painter_options(arguments, method, place.source->camera().is_stereo()));
-  Pictures pictures(arguments, painter, usual_step(*place.source));
-
   place.options.keep_times = arguments.timings || finished_run;
   place.options.baseline = !arguments.no_baseline;
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
-  // The records of a finished run hold all but what these show.
-  place.options.catch_up = method_named(method).needs.keeps_state &&
-                           (painter.draws("motion") || painter.draws("stages") || painter.draws("feature") ||
-                            painter.draws("inspector") || painter.draws("workbench"));
-  Session session(place.source, place.config, place.options);
-  if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
+  const PainterOptions drawn = painter_options(arguments, method, place.source->camera().is_stereo());
+  // The records of a finished run hold all but the stages.
+  place.options.catch_up = method_named(method).needs.keeps_state && shows_stages(drawn.panels);
+  EarlySession early(place, arguments.beside, condition ? std::nullopt : std::optional(frames.front()));
+  Painter painter(drawn);
+  Pictures pictures(arguments, painter, usual_step(*place.source));
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
-    const auto on_frame = [&](const FrameRecord& record) {
-      progress.advance(std::string(to_string(record.status)));
+    const auto on_status = [&](FrameStatus status) {
+      progress.advance(std::string(to_string(status)));
       throw_if_interrupted();
     };
+    const auto on_frame = [&](const FrameRecord& record) { on_status(record.status); };
     try {
+      const auto session = early.get(on_status);
       if (condition) {
-        session.go_to(frames.back(), on_frame);
-        frames = frames_where(*condition, *session.view()->run, frames);
+        session->go_to(frames.back(), on_frame);
+        frames = frames_where(*condition, *session->view()->run, frames);
       }
       for (const int frame : frames) {
-        session.go_to(frame, on_frame);
-        if (painter.draws("stages") || painter.draws("workbench")) session.complete();
-        const auto view = session.view();
-        pictures.add(*view, painter.paint(*view));
+        session->go_to(frame, on_frame);
+        if (painter.draws("stages") || painter.draws("workbench")) session->complete();
+        pictures.add(*session->view(), painter);
         throw_if_interrupted();
       }
     } catch (const Interrupted&) {  // what was drawn is kept; it is thrown again below

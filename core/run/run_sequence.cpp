@@ -110,12 +110,18 @@ class PointColours {
           image.channels() == 3 ? image.at<cv::Vec3b>(at) : cv::Vec3b::all(image.at<std::uint8_t>(at));
     }
   }
+  /// Forgets those of points that left the map, once there are many of them.
+  void forget(const LocalMap& map) {
+    if (colours_.size() < 2 * map.point_count() + kFew) return;
+    std::erase_if(colours_, [&map](const auto& seen) { return !map.has_point(seen.first); });
+  }
   void give(std::vector<SavedPoint>& points) const {
     for (SavedPoint& point : points)
       if (const auto seen = colours_.find(point.id); seen != colours_.end()) point.colour = seen->second;
   }
 
  private:
+  static constexpr std::size_t kFew = 10000;
   std::unordered_map<int, cv::Vec3b> colours_;
 };
 
@@ -187,6 +193,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       units.push_back(orb_unit_ms(frame.gray));
     }
     colours.see(frame, processed.record.features);
+    colours.forget(odometry.map());
     if (options.on_frame) options.on_frame(processed);
     // Assigning nothing would keep the memory.
     if (!options.keep_features) processed.record.features = std::vector<FeatureRecord>();

@@ -5,6 +5,7 @@
 
 #include "tests/support/golden.hpp"
 #include "ui/gl/framebuffer.hpp"
+#include "ui/gl/mipmaps.hpp"
 #include "ui/gl/program.hpp"
 #include "ui/shell/graphics_context.hpp"
 
@@ -75,6 +76,39 @@ TEST_F(GlTest, FramebufferReadsBackTopRowFirst) {
     EXPECT_EQ(image.at<cv::Vec3b>(2, 3), cv::Vec3b(0, 0, 255));
     EXPECT_EQ(image.at<cv::Vec3b>(5, 7), cv::Vec3b(0, 0, 255));
   }
+}
+
+TEST_F(GlTest, LevelsAreThoseTheDriverWouldMake) {
+  for (const cv::Size size : {cv::Size(640, 480), cv::Size(64, 48)}) {
+    cv::Mat image(size, CV_8UC4);
+    cv::randu(image, 0, 256);
+    const std::vector<cv::Mat> levels = halved_levels(image);
+    ASSERT_GE(levels.size(), 4U);
+    Texture texture(*gl_, Sampling::kNearest);
+    texture.upload(image);
+    gl_->GenerateMipmap(GL_TEXTURE_2D);
+    GLuint framebuffer = 0;
+    gl_->GenFramebuffers(1, &framebuffer);
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    for (int i = 0; i < static_cast<int>(levels.size()); ++i) {
+      const cv::Mat& level = levels[static_cast<std::size_t>(i)];
+      gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.id(), i + 1);
+      gl_->ReadBuffer(GL_COLOR_ATTACHMENT0);
+      cv::Mat read(level.size(), CV_8UC4);
+      gl_->ReadPixels(0, 0, read.cols, read.rows, GL_BGRA, GL_UNSIGNED_BYTE, read.data);
+      EXPECT_LE(cv::norm(read, level, cv::NORM_INF), gl_->renderer.starts_with("llvmpipe") ? 0.0 : 2.0) << i;
+    }
+    gl_->DeleteFramebuffers(1, &framebuffer);
+  }
+}
+
+TEST_F(GlTest, SidesThatCannotBeHalvedAreLeftToTheDriver) {
+  EXPECT_TRUE(halved_levels(cv::Mat(375, 1242, CV_8UC3)).empty());
+  EXPECT_EQ(halved_levels(cv::Mat(480, 640, CV_32FC1, cv::Scalar(0.5))).back().at<float>(3, 4), 0.5F);
+  // From the one to the other and back, in one texture.
+  Texture texture(*gl_);
+  for (const cv::Size size : {cv::Size(64, 48), cv::Size(63, 47), cv::Size(64, 48)})
+    texture.upload(cv::Mat(size, CV_8UC3, cv::Scalar(1, 2, 3)));
 }
 
 /// What a texture looks like when drawn over a whole framebuffer of its size, through shaders/image.
