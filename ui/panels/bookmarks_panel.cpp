@@ -18,6 +18,8 @@ class BookmarksPanel final : public NamedPanel {
  public:
   explicit BookmarksPanel(Shared shared) : NamedPanel("bookmarks", "Bookmarks", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {290.0F, 160.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& bookmarks = session.debug.bookmarks;
     const int here = session.current->index;
@@ -42,6 +44,7 @@ class BookmarksPanel final : public NamedPanel {
       draw_absent(frame, "No bookmarks yet: B marks the frame shown, and a note says why.");
       return;
     }
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("list");
     if (ImGui::BeginTable("bookmarks", 4, ImGuiTableFlags_BordersInnerH)) {
       ImGui::TableSetupColumn("frame", ImGuiTableColumnFlags_WidthFixed, 58.0F * frame.scale);
@@ -55,6 +58,11 @@ class BookmarksPanel final : public NamedPanel {
       ImGui::EndTable();
     }
     ImGui::EndChild();
+    offer_table(frame, "bookmarks", low, [&] {
+      Table table{{"frame", "note"}, {}};
+      for (const Bookmark& one : bookmarks) table.rows.push_back({fmt::format("{}", one.frame), one.note});
+      return table;
+    });
   }
 
  private:

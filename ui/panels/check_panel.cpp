@@ -32,6 +32,8 @@ class CheckPanel final : public NamedPanel {
                        PanelActions& actions) { actions.requests.emplace_back(request::CheckSequence{}); }}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const CheckView& check = session.debug.check;
     Controls controls(frame);
@@ -41,6 +43,7 @@ class CheckPanel final : public NamedPanel {
       actions.perform.emplace_back("check_input");
     ImGui::EndDisabled();
     // Its bar is always there: one that came with the last line would wrap all others anew under the mouse.
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("findings", {}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
@@ -63,6 +66,11 @@ class CheckPanel final : public NamedPanel {
       for (const std::string& line : check.times) text_in_lines(line);
     }
     ImGui::EndChild();
+    offer_table(frame, "findings", low, [&] {
+      Table table{{"about", "finding"}, {}};
+      for (const Finding& finding : check.findings) table.rows.push_back({finding.about, finding.sentence});
+      return table;
+    });
   }
 
  private:

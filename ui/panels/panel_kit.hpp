@@ -12,6 +12,7 @@
 #include "core/inspect/frame_stages.hpp"
 #include "core/inspect/scene_point.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_view.hpp"
 
