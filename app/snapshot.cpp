@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -35,42 +36,31 @@ struct SnapshotArguments {
   bool force = false, no_baseline = false, timings = false;
 };
 
-PainterOptions painter_options(const SnapshotArguments& arguments, const std::string& method, bool stereo) {
+PainterOptions painter_options(const SnapshotArguments& arguments) {
   PainterOptions options;
-  options.stereo = stereo;
   options.panels = arguments.panels;
   if (options.panels.empty()) options.panels = arguments.out.empty() ? "workbench" : "all";
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
-  options.method = method;
   return options;
 }
 
-/// Whether the panels named show what a method's stages made.
-bool shows_stages(const std::string& panels) {
-  const std::vector<std::string> names = split_list(panels);
-  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    for (const char* shows : {"all", "workbench", "motion", "stages", "feature", "inspector"})
-      if (name == shows) return true;
-    return false;
-  });
+/// Whether the pictures show what a method's stages made.
+bool show_stages(const PictureChoice& chosen) {
+  constexpr std::array kShow = {"workbench", "motion", "stages", "feature", "inspector"};
+  return std::any_of(kShow.begin(), kShow.end(), [&](const char* name) { return chosen.draws(name); });
 }
 
 /// Where images go: files one by one, a video, or both.
 class Pictures {
  public:
-  /// @param step_s s between frames, mostly
-  Pictures(const SnapshotArguments& arguments, const Painter& painter, double step_s)
+  /// @param size of a video's pictures @param step_s s between frames, mostly
+  Pictures(const SnapshotArguments& arguments, std::pair<int, int> size, double step_s)
       : folder_(arguments.out) {
-    if (arguments.out.empty() && arguments.video.empty())
-      throw InputError("--out or --video must say where the images go");
-    if (!arguments.video.empty()) {
-      if (painter.picture_count() != 1)
-        throw InputError(fmt::format("--video takes one picture of each frame, and --panels names {}",
-                                     painter.picture_count()));
-      video_.emplace(arguments.video, painter.picture_size(), arguments.fps, step_s, arguments.force);
-    }
+    if (!arguments.video.empty())
+      video_.emplace(arguments.video, cv::Size(size.first, size.second), arguments.fps, step_s,
+                     arguments.force);
     if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
 
@@ -164,8 +154,21 @@ class EarlySession {
   std::future<std::unique_ptr<Session>> making_;  // last: it ends before what it works with
 };
 
+/// @throws InputError for what goes together with no sequence
+PictureChoice asked_for(const SnapshotArguments& arguments, const PainterOptions& options) {
+  PictureChoice chosen = choose_pictures(options);
+  if (arguments.out.empty() && arguments.video.empty())
+    throw InputError("--out or --video must say where the images go");
+  if (!arguments.video.empty() && chosen.count() != 1)
+    throw InputError(
+        fmt::format("--video takes one picture of each frame, and --panels names {}", chosen.count()));
+  return chosen;
+}
+
 void snapshot(const SnapshotArguments& arguments) {
   const std::optional<Condition> condition = when_condition(arguments);
+  PainterOptions options = painter_options(arguments);
+  const PictureChoice chosen = asked_for(arguments, options);
   OpenedSource place = open_source(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
   if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
@@ -175,12 +178,14 @@ void snapshot(const SnapshotArguments& arguments) {
   place.options.keep_times = arguments.timings || finished_run;
   place.options.baseline = !arguments.no_baseline;
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
-  const PainterOptions drawn = painter_options(arguments, method, place.source->camera().is_stereo());
   // The records of a finished run hold all but the stages.
-  place.options.catch_up = method_named(method).needs.keeps_state && shows_stages(drawn.panels);
+  place.options.catch_up = method_named(method).needs.keeps_state && show_stages(chosen);
+  options.method = method;
+  options.stereo = place.source->camera().is_stereo();
+  Pictures pictures(arguments, chosen.workbench ? options.workbench_size : options.panel_size,
+                    usual_step(*place.source));
   EarlySession early(place, arguments.beside, condition ? std::nullopt : std::optional(frames.front()));
-  Painter painter(drawn);
-  Pictures pictures(arguments, painter, usual_step(*place.source));
+  Painter painter(options, chosen);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
     const auto on_status = [&](FrameStatus status) {
@@ -196,7 +201,7 @@ void snapshot(const SnapshotArguments& arguments) {
       }
       for (const int frame : frames) {
         session->go_to(frame, on_frame);
-        if (painter.draws("stages") || painter.draws("workbench")) session->complete();
+        if (chosen.draws("stages") || chosen.draws("workbench")) session->complete();
         pictures.add(*session->view(), painter);
         throw_if_interrupted();
       }
