@@ -3,7 +3,7 @@
 #include <libdeflate.h>
 
 #include <array>
-#include <cstring>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 
@@ -19,13 +19,12 @@ void put_big_endian(std::vector<unsigned char>& to, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0}) to.push_back(static_cast<unsigned char>(value >> shift));
 }
 
-void begin_chunk(std::vector<unsigned char>& png, std::string_view type, std::size_t bytes) {
+void put_chunk(std::vector<unsigned char>& png, std::string_view type, const unsigned char* content,
+               std::size_t bytes) {
   put_big_endian(png, static_cast<std::uint32_t>(bytes));
+  const std::size_t at = png.size();
   png.insert(png.end(), type.begin(), type.end());
-}
-
-/// @param at where the chunk's type lies
-void end_chunk(std::vector<unsigned char>& png, std::size_t at) {
+  png.insert(png.end(), content, content + bytes);
   put_big_endian(png, libdeflate_crc32(0, png.data() + at, png.size() - at));
 }
 
@@ -51,39 +50,33 @@ std::vector<unsigned char> encode_plain_png(const cv::Mat& image) {
   if (image.empty() || image.depth() != CV_8U || channels == 2 || channels > 4) return {};
   const auto filter = channels == 1 ? filter_row<1> : channels == 3 ? filter_row<3> : filter_row<4>;
   const std::size_t row_bytes = 1 + static_cast<std::size_t>(image.cols) * static_cast<std::size_t>(channels);
-  std::vector<unsigned char> rows(row_bytes * static_cast<std::size_t>(image.rows));
+  const std::size_t bytes = row_bytes * static_cast<std::size_t>(image.rows);
+  // Not cleared first: each of their bytes is written below.
+  const auto rows = std::make_unique_for_overwrite<unsigned char[]>(bytes);
   for (int y = 0; y < image.rows; ++y) {
-    unsigned char* row = rows.data() + row_bytes * static_cast<std::size_t>(y);
+    unsigned char* row = rows.get() + row_bytes * static_cast<std::size_t>(y);
     row[0] = kFilterSub;
     filter(image.ptr(y), image.cols, row + 1);
   }
   const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> packer(
       libdeflate_alloc_compressor(kFastest), libdeflate_free_compressor);
   if (!packer) return {};
+  const std::size_t most = libdeflate_zlib_compress_bound(packer.get(), bytes);
+  const auto content = std::make_unique_for_overwrite<unsigned char[]>(most);
+  const std::size_t packed = libdeflate_zlib_compress(packer.get(), rows.get(), bytes, content.get(), most);
+  if (packed == 0 || packed > INT32_MAX) return {};
 
   std::vector<unsigned char> png(kPngSignature.begin(), kPngSignature.end());
-  begin_chunk(png, "IHDR", 13);
-  put_big_endian(png, static_cast<std::uint32_t>(image.cols));
-  put_big_endian(png, static_cast<std::uint32_t>(image.rows));
+  constexpr std::size_t kHeaderBytes = 13;
+  png.reserve(png.size() + 3 * kChunkFrame + kHeaderBytes + packed);
+  std::vector<unsigned char> header;
+  put_big_endian(header, static_cast<std::uint32_t>(image.cols));
+  put_big_endian(header, static_cast<std::uint32_t>(image.rows));
   const unsigned char colour_type = channels == 1 ? 0 : channels == 3 ? 2 : 6;
-  png.insert(png.end(), {8, colour_type, 0, 0, 0});
-  constexpr std::size_t kHeaderType = kPngSignature.size() + 4;
-  end_chunk(png, kHeaderType);
-  const std::size_t data = png.size();
-  begin_chunk(png, "IDAT", 0);
-  const std::size_t content = png.size(), most = libdeflate_zlib_compress_bound(packer.get(), rows.size());
-  png.resize(content + most);
-  const std::size_t packed =
-      libdeflate_zlib_compress(packer.get(), rows.data(), rows.size(), png.data() + content, most);
-  if (packed == 0 || packed > INT32_MAX) return {};
-  png.resize(content + packed);
-  for (int i = 0; i < 4; ++i)
-    png[data + static_cast<std::size_t>(i)] = static_cast<unsigned char>(packed >> (8 * (3 - i)));
-  png.reserve(png.size() + 2 * kChunkFrame);
-  end_chunk(png, data + 4);
-  const std::size_t end = png.size() + 4;
-  begin_chunk(png, "IEND", 0);
-  end_chunk(png, end);
+  header.insert(header.end(), {8, colour_type, 0, 0, 0});
+  put_chunk(png, "IHDR", header.data(), header.size());
+  put_chunk(png, "IDAT", content.get(), packed);
+  put_chunk(png, "IEND", nullptr, 0);
   return png;
 }
 
