@@ -90,6 +90,7 @@ class Session {
   struct Ghost {
     std::string name;
     std::unique_ptr<ShownRun> run;
+    std::shared_ptr<const RunView> run_view{};   // as published last
     std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
     std::optional<int> diverged{};
     int compared = 0;  // frames
@@ -105,6 +106,8 @@ class Session {
   void show_image_first();
   void choose_other();
   void publish();
+  [[nodiscard]] bool runs_may_wait() const;
+  [[nodiscard]] bool renew_runs();
   [[nodiscard]] DebugView debug_view();
   [[nodiscard]] bool lacks_before() const;
 
@@ -171,6 +174,7 @@ class Session {
   std::shared_ptr<const FrameView> current_;
   std::shared_ptr<const FrameView> whole_;  // shown before the image of the one that is worked out; else null
   std::shared_ptr<const RunView> run_view_, baseline_view_;
+  std::chrono::steady_clock::time_point runs_due_{};  // when they are to be made anew
   std::uint64_t revision_ = 0;
   int target_ = 0;  // the frame wanted
   int wanted_ = 0;  // frames to have processed, once there is time
