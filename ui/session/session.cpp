@@ -167,16 +167,16 @@ DebugView Session::debug_view() {
 /// Whether the runs that are shown may stay as they were made last while frames are added. All poses are
 /// evaluated anew each time, which of many takes longer than a frame.
 bool Session::runs_may_wait() const {
-  const bool comes_to_rest = !playing_ && run_->track().processed() > target_ && !has_background();
+  const int processed = run_->track().processed();
+  const bool grow = playing_ || processed <= target_ || processed < wanted_;
   const bool all_were_made = run_view_ && std::all_of(ghosts_.begin(), ghosts_.end(), [](const Ghost& ghost) {
                                return ghost.run_view != nullptr;
                              });
-  return worker_.joinable() && all_were_made && !comes_to_rest && Clock::now() < runs_due_;
+  return worker_.joinable() && grow && all_were_made && Clock::now() < runs_due_;
 }
 
 /// @returns whether the session's own has grown
 bool Session::renew_runs() {
-  constexpr int kTimesAsLong = 30;  // nothing is renewed then: it takes a thirtieth of the time at most
   const auto begin = Clock::now();
   for (Ghost& ghost : ghosts_) ghost.run_view = ghost.run->run_view();
   const bool grown = run_view_ != run_->run_view();
@@ -187,7 +187,7 @@ bool Session::renew_runs() {
     ++revision_;
   }
   const auto end = Clock::now();
-  runs_due_ = end + kTimesAsLong * (end - begin);
+  runs_due_ = end + options_.runs_wait * (end - begin);
   return grown;
 }
 

@@ -30,6 +30,8 @@ struct SessionOptions {
   std::vector<std::shared_ptr<const RecordedRun>> beside{};  ///< finished runs that stand beside as ghosts
   std::string no_images{};  ///< why the source has no images, one sentence: nothing can be processed then
   bool catch_up = false;    ///< go_to() lets odometry see a recorded run's frames as far as the one shown
+  int runs_wait = 30;  ///< while a worker adds frames, runs stay as shown so many times as long as making
+                       ///< them anew took: it takes a thirtieth of the time at most
   std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
 };
 
