@@ -15,49 +15,59 @@ namespace {
 
 constexpr const char* kWorkbench = "workbench";
 
+std::vector<std::string> names_of(const std::vector<std::unique_ptr<Panel>>& panels) {
+  std::vector<std::string> names;
+  for (const auto& panel : panels) names.push_back(panel->name());
+  return names;
+}
+
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 }  // namespace
 
-Painter::Painter(const PainterOptions& options)
+bool PictureChoice::draws(const std::string& name) const {
+  return name == kWorkbench ? workbench : is_among(panels, name);
+}
+
+PictureChoice choose_pictures(const PainterOptions& options) {
+  const std::vector<std::string> known = names_of(make_panels());
+  PictureChoice chosen;
+  const auto take = [&chosen](const std::string& panel) {
+    if (!is_among(chosen.panels, panel)) chosen.panels.push_back(panel);
+  };
+  for (const std::string& name : split_list(options.panels)) {
+    if (name == kWorkbench) {
+      chosen.workbench = true;
+    } else if (name == "all") {
+      for (const std::string& panel : known) take(panel);
+    } else if (is_among(known, name)) {
+      take(name);
+      chosen.named.insert(name);
+    } else {
+      throw InputError(fmt::format("--panels {}: there is no such panel; there are all, {}, {}", name,
+                                   kWorkbench, fmt::join(known, ", ")));
+    }
+  }
+  if (chosen.count() == 0) throw InputError("--panels: names no panel");
+  if (!options.layout.empty()) chosen.layout = read_layout(options.layout, known);
+  return chosen;
+}
+
+Painter::Painter(const PainterOptions& options, PictureChoice chosen)
     : options_(options),
       offscreen_({.width = options.workbench_size.first,
                   .height = options.workbench_size.second,
                   .look = options.look}),
       panels_(make_panels()),
-      workbench_(make_panels()) {
-  choose(options.panels);
-  if (options.layout.empty()) {
-    workbench_.set_layout(default_layout(options.method, options.stereo));
-    return;
-  }
-  const LayoutNode layout = read_layout(options.layout, workbench_.panel_names());
-  take_choices(layout);
-  workbench_.set_layout(layout);
+      workbench_(make_panels()),
+      chosen_(std::move(chosen)) {
+  if (chosen_.layout) take_choices(*chosen_.layout);
+  workbench_.set_layout(chosen_.layout ? *chosen_.layout : default_layout(options.method, options.stereo));
 }
 
 Painter::~Painter() { offscreen_.make_current(); }
-
-void Painter::choose(const std::string& names) {
-  std::vector<std::string> known;
-  for (const auto& panel : panels_) known.push_back(panel->name());
-  for (const std::string& name : split_list(names)) {
-    if (name == kWorkbench) {
-      workbench_chosen_ = true;
-      continue;
-    }
-    bool found = false;
-    for (const auto& panel : panels_) {
-      if (name != "all" && name != panel->name()) continue;
-      found = true;
-      if (name != "all") named_.insert(panel.get());
-      if (std::find(panels_chosen_.begin(), panels_chosen_.end(), panel.get()) == panels_chosen_.end())
-        panels_chosen_.push_back(panel.get());
-    }
-    if (!found)
-      throw InputError(fmt::format("--panels {}: there is no such panel; there are all, {}, {}", name,
-                                   kWorkbench, fmt::join(known, ", ")));
-  }
-  if (picture_count() == 0) throw InputError("--panels: names no panel");
-}
 
 void Painter::take_choices(const LayoutNode& layout) {
   for (const LayoutNode& child : layout.children) take_choices(child);
@@ -66,19 +76,13 @@ void Painter::take_choices(const LayoutNode& layout) {
 
 std::vector<std::string> Painter::choices_left() const {
   std::vector<std::string> left;
-  for (const Panel* chosen : panels_chosen_) {
-    const auto choices = choices_.find(chosen);
+  for (const std::string& name : chosen_.panels) {
+    const auto choices = choices_.find(&panel(name));
     if (choices == choices_.end()) continue;
     for (const auto& [control, value] : choices->second.left())
-      left.push_back(fmt::format("{}: {}={}", chosen->name(), control, value));
+      left.push_back(fmt::format("{}: {}={}", name, control, value));
   }
   return left;
-}
-
-bool Painter::draws(const std::string& name) const {
-  if (name == kWorkbench) return workbench_chosen_;
-  return std::any_of(panels_chosen_.begin(), panels_chosen_.end(),
-                     [&](const Panel* panel) { return panel->name() == name; });
 }
 
 Panel& Painter::panel(const std::string& name) const {
@@ -101,19 +105,17 @@ cv::Mat Painter::paint_panel(const SessionView& view, const std::string& name, s
       size);
 }
 
-std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
-  std::vector<Picture> pictures;
-  if (workbench_chosen_)
-    pictures.push_back({kWorkbench, paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); },
-                                                options_.workbench_size)});
-  for (Panel* chosen : panels_chosen_) {
-    if (!chosen->is_for(view) && !named_.contains(chosen)) continue;
-    pictures.push_back(
-        {chosen->name(),
-         paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
-                     options_.panel_size)});
+void Painter::paint(const SessionView& view, const std::function<void(const Picture&)>& done) {
+  if (chosen_.workbench)
+    done({kWorkbench,
+          paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); }, options_.workbench_size)});
+  for (const std::string& name : chosen_.panels) {
+    Panel& chosen = panel(name);
+    if (!chosen.is_for(view) && !chosen_.named.contains(name)) continue;
+    done({name,
+          paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, chosen, choices_[&chosen]); },
+                      options_.panel_size)});
   }
-  return pictures;
 }
 
 void ImageWriter::write(const std::filesystem::path& path, const cv::Mat& image) {

@@ -2,10 +2,12 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -29,6 +31,21 @@ struct PainterOptions {
   bool stereo = false;   ///< … for stereo pairs
 };
 
+/// Which pictures options ask for: known before anything is opened or drawn.
+struct PictureChoice {
+  bool workbench = false;
+  std::vector<std::string> panels{};  ///< in the order they are drawn in
+  std::set<std::string> named{};      ///< of these, those that were not chosen as one of all
+  std::optional<LayoutNode> layout{};
+
+  [[nodiscard]] std::size_t count() const { return panels.size() + (workbench ? 1 : 0); }
+  /// Whether `name` is among them.
+  [[nodiscard]] bool draws(const std::string& name) const;
+};
+
+/// @throws InputError for a panel or a layout that there is not
+[[nodiscard]] PictureChoice choose_pictures(const PainterOptions& options);
+
 /// Draws panels and the workbench as images, in one GL context for all of them.
 class Painter {
  public:
@@ -38,26 +55,15 @@ class Painter {
     cv::Mat image;     ///< CV_8UC3, BGR
   };
 
-  /// @throws InputError for a panel or a layout that there is not
-  explicit Painter(const PainterOptions& options);
+  /// @throws InputError as choose_pictures does
+  explicit Painter(const PainterOptions& options) : Painter(options, choose_pictures(options)) {}
+  Painter(const PainterOptions& options, PictureChoice chosen);
   ~Painter();
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
-  /// Whether `name` is among the pictures chosen.
-  [[nodiscard]] bool draws(const std::string& name) const;
-  [[nodiscard]] std::size_t picture_count() const {
-    return panels_chosen_.size() + (workbench_chosen_ ? 1 : 0);
-  }
-
-  /// Of the first of them, px.
-  [[nodiscard]] cv::Size picture_size() const {
-    const auto [width, height] = workbench_chosen_ ? options_.workbench_size : options_.panel_size;
-    return {width, height};
-  }
-
-  /// Each picture chosen, of the frame shown.
-  [[nodiscard]] std::vector<Picture> paint(const SessionView& view);
+  /// Each picture chosen, of the frame shown; given to `done` as soon as it is drawn.
+  void paint(const SessionView& view, const std::function<void(const Picture&)>& done);
 
   /// Of the layout's choices, those that no control of a panel drawn so far took: misspelt, or of a control
   /// that was not there. "compensated: look=Wip"
@@ -71,7 +77,6 @@ class Painter {
   [[nodiscard]] cv::Mat paint_frame(const FrameFunction& draw, std::pair<int, int> size);
 
  private:
-  void choose(const std::string& names);
   void take_choices(const LayoutNode& layout);
   [[nodiscard]] Panel& panel(const std::string& name) const;
 
@@ -79,9 +84,7 @@ class Painter {
   Offscreen offscreen_;  // first: the panels' textures live in its context
   std::vector<std::unique_ptr<Panel>> panels_;
   Workbench workbench_;
-  bool workbench_chosen_ = false;
-  std::vector<Panel*> panels_chosen_;
-  std::set<const Panel*> named_;                  // of these, those that were not chosen as one of all
+  PictureChoice chosen_;
   std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 

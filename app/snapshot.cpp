@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -33,42 +36,42 @@ struct SnapshotArguments {
   bool force = false, no_baseline = false, timings = false;
 };
 
-PainterOptions painter_options(const SnapshotArguments& arguments, const std::string& method, bool stereo) {
+PainterOptions painter_options(const SnapshotArguments& arguments) {
   PainterOptions options;
-  options.stereo = stereo;
   options.panels = arguments.panels;
   if (options.panels.empty()) options.panels = arguments.out.empty() ? "workbench" : "all";
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
-  options.method = method;
   return options;
+}
+
+/// Whether the pictures show what a method's stages made.
+bool show_stages(const PictureChoice& chosen) {
+  constexpr std::array kShow = {"workbench", "motion", "stages", "feature", "inspector"};
+  return std::any_of(kShow.begin(), kShow.end(), [&](const char* name) { return chosen.draws(name); });
 }
 
 /// Where images go: files one by one, a video, or both.
 class Pictures {
  public:
-  /// @param step_s s between frames, mostly
-  Pictures(const SnapshotArguments& arguments, const Painter& painter, double step_s)
+  /// @param size of a video's pictures @param step_s s between frames, mostly
+  Pictures(const SnapshotArguments& arguments, std::pair<int, int> size, double step_s)
       : folder_(arguments.out) {
-    if (arguments.out.empty() && arguments.video.empty())
-      throw InputError("--out or --video must say where the images go");
-    if (!arguments.video.empty()) {
-      if (painter.picture_count() != 1)
-        throw InputError(fmt::format("--video takes one picture of each frame, and --panels names {}",
-                                     painter.picture_count()));
-      video_.emplace(arguments.video, painter.picture_size(), arguments.fps, step_s, arguments.force);
-    }
+    if (!arguments.video.empty())
+      video_.emplace(arguments.video, cv::Size(size.first, size.second), arguments.fps, step_s,
+                     arguments.force);
     if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
 
-  void add(const SessionView& view, const std::vector<Painter::Picture>& pictures) {
-    for (const auto& [name, image] : pictures) {
-      if (video_) video_->add(image, view.current->frame.timestamp);
-      if (folder_.empty()) continue;
-      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, name), image);
+  /// Packed and written beside the drawing of the next one.
+  void add(const SessionView& view, Painter& painter) {
+    painter.paint(view, [&](const Painter::Picture& picture) {
+      if (video_) video_->add(picture.image, view.current->frame.timestamp);
+      if (folder_.empty()) return;
+      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, picture.name), picture.image);
       ++files_;
-    }
+    });
     list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
                          to_string(view.current->record->status));
     ++frames_;
@@ -125,42 +128,81 @@ std::vector<int> frames_where(const Condition& condition, const RunView& run,
   return chosen;
 }
 
+/// A session on its way to the first frame that is drawn, while what draws it is set up.
+class EarlySession {
+ public:
+  /// @param first frame; nothing where it is not known yet
+  EarlySession(const OpenedSource& place, const std::string& beside, std::optional<int> first)
+      : making_(std::async(std::launch::async, [this, &place, beside, first] {
+          auto session = std::make_unique<Session>(place.source, place.config, place.options);
+          if (!beside.empty()) session->request(request::StagesBeside{beside});
+          // One far ahead is waited for with a bar that tells how far it is.
+          constexpr int kMostFrames = 8;
+          if (first && *first < kMostFrames)
+            session->go_to(*first, [this](const FrameRecord& record) { seen_.push_back(record.status); });
+          return session;
+        })) {}
+  /// @param on_frame told of each frame that was processed meanwhile
+  [[nodiscard]] std::unique_ptr<Session> get(const std::function<void(FrameStatus)>& on_frame) {
+    auto session = making_.get();
+    for (const FrameStatus status : seen_) on_frame(status);
+    return session;
+  }
+
+ private:
+  std::vector<FrameStatus> seen_;
+  std::future<std::unique_ptr<Session>> making_;  // last: it ends before what it works with
+};
+
+/// @throws InputError for what goes together with no sequence
+PictureChoice asked_for(const SnapshotArguments& arguments, const PainterOptions& options) {
+  PictureChoice chosen = choose_pictures(options);
+  if (arguments.out.empty() && arguments.video.empty())
+    throw InputError("--out or --video must say where the images go");
+  if (!arguments.video.empty() && chosen.count() != 1)
+    throw InputError(
+        fmt::format("--video takes one picture of each frame, and --panels names {}", chosen.count()));
+  return chosen;
+}
+
 void snapshot(const SnapshotArguments& arguments) {
   const std::optional<Condition> condition = when_condition(arguments);
+  PainterOptions options = painter_options(arguments);
+  const PictureChoice chosen = asked_for(arguments, options);
   OpenedSource place = open_source(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
   if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
   const std::string& method = place.config.run.method;
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
-  Painter painter(painter_options(arguments, method, place.source->camera().is_stereo()));
-  Pictures pictures(arguments, painter, usual_step(*place.source));
-
   place.options.keep_times = arguments.timings || finished_run;
   place.options.baseline = !arguments.no_baseline;
   if (arguments.no_baseline) place.options.recorded_baseline = nullptr;
-  // The records of a finished run hold all but what these show.
-  place.options.catch_up = method_named(method).needs.keeps_state &&
-                           (painter.draws("motion") || painter.draws("stages") || painter.draws("feature") ||
-                            painter.draws("inspector") || painter.draws("workbench"));
-  Session session(place.source, place.config, place.options);
-  if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
+  // The records of a finished run hold all but the stages.
+  place.options.catch_up = method_named(method).needs.keeps_state && show_stages(chosen);
+  options.method = method;
+  options.stereo = place.source->camera().is_stereo();
+  Pictures pictures(arguments, chosen.workbench ? options.workbench_size : options.panel_size,
+                    usual_step(*place.source));
+  EarlySession early(place, arguments.beside, condition ? std::nullopt : std::optional(frames.front()));
+  Painter painter(options, chosen);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
-    const auto on_frame = [&](const FrameRecord& record) {
-      progress.advance(std::string(to_string(record.status)));
+    const auto on_status = [&](FrameStatus status) {
+      progress.advance(std::string(to_string(status)));
       throw_if_interrupted();
     };
+    const auto on_frame = [&](const FrameRecord& record) { on_status(record.status); };
     try {
+      const auto session = early.get(on_status);
       if (condition) {
-        session.go_to(frames.back(), on_frame);
-        frames = frames_where(*condition, *session.view()->run, frames);
+        session->go_to(frames.back(), on_frame);
+        frames = frames_where(*condition, *session->view()->run, frames);
       }
       for (const int frame : frames) {
-        session.go_to(frame, on_frame);
-        if (painter.draws("stages") || painter.draws("workbench")) session.complete();
-        const auto view = session.view();
-        pictures.add(*view, painter.paint(*view));
+        session->go_to(frame, on_frame);
+        if (chosen.draws("stages") || chosen.draws("workbench")) session->complete();
+        pictures.add(*session->view(), painter);
         throw_if_interrupted();
       }
     } catch (const Interrupted&) {  // what was drawn is kept; it is thrown again below

@@ -13,6 +13,7 @@
 #include "core/media/jpeg_codec.hpp"
 #include "core/media/media_module.hpp"
 #include "core/media/png_decoder.hpp"
+#include "core/media/png_encoder.hpp"
 #include "core/out_folder.hpp"
 #include "core/text_file.hpp"
 
@@ -78,7 +79,9 @@ cv::Mat decode_pixels(const std::vector<unsigned char>& bytes) {
 }
 
 std::vector<unsigned char> encode_png(const cv::Mat& image, int level) {
-  return encode(image, {level, level <= 1 ? std::optional<int>(SPNG_FILTER_CHOICE_SUB) : std::nullopt, {}});
+  if (level > 1) return encode(image, {level, {}, {}});
+  std::vector<unsigned char> plain = encode_plain_png(image);
+  return plain.empty() ? encode(image, {1, SPNG_FILTER_CHOICE_SUB, {}}) : plain;
 }
 
 std::vector<unsigned char> encode_camera_png(const cv::Mat& image) {

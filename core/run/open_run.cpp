@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <future>
+
 #include "core/error.hpp"
 #include "core/run/recorded_source.hpp"
 #include "core/sequence/fingerprint.hpp"
@@ -59,11 +61,16 @@ OpenedRun open_run(const fs::path& folder, const std::string& sequence) {
         "{}: has no {}, without which a run cannot be looked at; `stillpoint run … --force` writes it anew",
         folder.string(), kRecordsName));
   OpenedRun opened;
-  const auto recorded = std::make_shared<RecordedRun>(read_records(folder));
+  // The sequence is opened while the records are read.
+  std::future<std::unique_ptr<FrameSource>> opening;
+  const auto recorded = std::make_shared<RecordedRun>(read_records(folder, [&](const SequenceOrigin& origin) {
+    opening = std::async(std::launch::async, [&folder, &sequence, origin] {
+      return open_as_it_was(origin, sequence.empty() ? place_of(origin, folder) : sequence, folder);
+    });
+  }));
   opened.recorded = recorded;
-  const SequenceOrigin& origin = recorded->origin;
   try {
-    opened.source = open_as_it_was(origin, sequence.empty() ? place_of(origin, folder) : sequence, folder);
+    opened.source = opening.get();
     // A run that was killed left no ground truth: the sequence still has it.
     if (!recorded->cut_short.empty()) recorded->ground_truth = opened.source->ground_truth();
   } catch (const InputError& error) {

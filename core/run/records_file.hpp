@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -115,6 +116,8 @@ struct RecordedRun {
 /// What is damaged among the frames of a whole file is told when they are looked at; all else at once.
 /// @throws InputError in one sentence for a file that is missing, no records file, of another version,
 /// damaged, or cut short before its first frame
-[[nodiscard]] RecordedRun read_records(const std::filesystem::path& run_folder);
+/// @param on_origin told which sequence it was of as soon as that is known
+[[nodiscard]] RecordedRun read_records(const std::filesystem::path& run_folder,
+                                       const std::function<void(const SequenceOrigin&)>& on_origin = {});
 
 }  // namespace stillpoint

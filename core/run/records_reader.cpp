@@ -171,13 +171,14 @@ void do_without_tail(RecordedRun& recorded, const std::string& cut_short) {
 }
 
 /// @throws ChunkDamaged, Exhausted and what JSON throws where it is damaged
-void read_all_of(RecordsReading& reading) {
+void read_all_of(RecordsReading& reading, const std::function<void(const SequenceOrigin&)>& on_origin) {
   RecordedRun& recorded = reading.recorded;
   const ChunkFile& file = *reading.file;
   bool whole = false;
   try {
     const Chunk header = file.read(kRecordsHeadBytes);
     read_header(header, recorded);
+    if (on_origin) on_origin(recorded.origin);
     if (file.tables()) read_tables(*file.tables(), reading);
     whole = file.tables() || read_frames(header.next, reading);
   } catch (const ChunkCutShort&) {
@@ -214,11 +215,12 @@ std::string run_name(const RecordedRun& recorded) {
   return recorded.outside.empty() ? run_label(recorded.run.config) : recorded.outside;
 }
 
-RecordedRun read_records(const std::filesystem::path& run_folder) {
+RecordedRun read_records(const std::filesystem::path& run_folder,
+                         const std::function<void(const SequenceOrigin&)>& on_origin) {
   RecordsReading reading{std::make_shared<const ChunkFile>(run_folder / kRecordsName)};
   const auto damaged = [&reading] { return reading.file->damaged(reading.recorded.run.records.size()); };
   try {
-    read_all_of(reading);
+    read_all_of(reading, on_origin);
   } catch (const ChunkDamaged&) {
     throw damaged();
   } catch (const Exhausted&) {

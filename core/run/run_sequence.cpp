@@ -75,15 +75,44 @@ class PreparedNext {
   double waited_ms_ = 0.0;
 };
 
+/// LocalMap::pose_of for many keyframes: those that left the map are looked up, not looked for.
+class KeyframePoses {
+ public:
+  explicit KeyframePoses(const LocalMap& map) : map_(&map) {
+    for (const RetiredKeyframe& keyframe : map.retired()) retired_.emplace(keyframe.id, &keyframe);
+  }
+  [[nodiscard]] const Pose& of(int keyframe) {
+    const auto [known, is_new] = poses_.try_emplace(keyframe, Pose::Identity());
+    if (is_new) known->second = found(keyframe);
+    return known->second;
+  }
+
+ private:
+  /// In pose_of's order of factors: the same to the last bit.
+  [[nodiscard]] Pose found(int keyframe) const {
+    Pose camera_from_ancestor = Pose::Identity();
+    for (auto at = retired_.find(keyframe); at != retired_.end(); at = retired_.find(keyframe)) {
+      camera_from_ancestor = camera_from_ancestor * at->second->camera_from_anchor;
+      if (at->second->anchor == kNone) return camera_from_ancestor;
+      keyframe = at->second->anchor;
+    }
+    return camera_from_ancestor * map_->pose_of(keyframe);
+  }
+
+  const LocalMap* map_;
+  std::unordered_map<int, const RetiredKeyframe*> retired_;
+  std::unordered_map<int, Pose> poses_;
+};
+
 }  // namespace
 
 std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map) {
   std::vector<SavedKeyframe> saved;
+  KeyframePoses poses(map);
   for (const auto& [id, keyframe] : map.keyframes())
     saved.push_back({id, keyframe.frame_index, {keyframe.timestamp, keyframe.camera_from_world.inverse()}});
   for (const RetiredKeyframe& retired : map.retired())
-    saved.push_back(
-        {retired.id, retired.frame_index, {retired.timestamp, map.pose_of(retired.id).inverse()}});
+    saved.push_back({retired.id, retired.frame_index, {retired.timestamp, poses.of(retired.id).inverse()}});
   std::sort(saved.begin(), saved.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   return saved;
 }
@@ -110,12 +139,18 @@ class PointColours {
           image.channels() == 3 ? image.at<cv::Vec3b>(at) : cv::Vec3b::all(image.at<std::uint8_t>(at));
     }
   }
+  /// Forgets those of points that left the map, once there are many of them.
+  void forget(const LocalMap& map) {
+    if (colours_.size() < 2 * map.point_count() + kFew) return;
+    std::erase_if(colours_, [&map](const auto& seen) { return !map.has_point(seen.first); });
+  }
   void give(std::vector<SavedPoint>& points) const {
     for (SavedPoint& point : points)
       if (const auto seen = colours_.find(point.id); seen != colours_.end()) point.colour = seen->second;
   }
 
  private:
+  static constexpr std::size_t kFew = 10000;
   std::unordered_map<int, cv::Vec3b> colours_;
 };
 
@@ -128,6 +163,7 @@ std::vector<SavedPoint> moved_points(const LocalMap& map) {
 
 Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records) {
   Trajectory trajectory;
+  KeyframePoses poses(odometry.map());
   for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
     const auto revised = odometry.revised_poses().find(record.index);
@@ -135,8 +171,7 @@ Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRe
         revised != odometry.revised_poses().end()
             ? revised->second
             : KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference};
-    const Pose camera_from_world =
-        pose.camera_from_reference * odometry.map().pose_of(pose.reference_keyframe);
+    const Pose camera_from_world = pose.camera_from_reference * poses.of(pose.reference_keyframe);
     trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
   }
   return trajectory;
@@ -187,6 +222,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       units.push_back(orb_unit_ms(frame.gray));
     }
     colours.see(frame, processed.record.features);
+    colours.forget(odometry.map());
     if (options.on_frame) options.on_frame(processed);
     // Assigning nothing would keep the memory.
     if (!options.keep_features) processed.record.features = std::vector<FeatureRecord>();

@@ -77,6 +77,42 @@ TEST_F(Snapshot, SaysWhatIsWrongInOneSentence) {
   expect_one_sentence(run_cli({"snapshot", sequence_.path("nowhere"), "--out", out()}), "nowhere");
 }
 
+TEST_F(Snapshot, SaysWhatItCannotDrawBeforeTheSequenceIsOpened) {
+  // Of a sequence that is not there nothing is said: it has not been looked for.
+  const auto from_nowhere = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"snapshot", sequence_.path("nowhere")});
+    return run_cli(more);
+  };
+  expect_one_sentence(from_nowhere({"--panels", "input,unionmask", "--out", out()}),
+                      "there is no such panel");
+  expect_one_sentence(from_nowhere({"--panels", ",", "--out", out()}), "names no panel");
+  expect_one_sentence(from_nowhere({"--size", "9x9", "--out", out()}), "--size");
+  expect_one_sentence(from_nowhere({"--layout", sequence_.path("none.json"), "--out", out()}),
+                      "cannot be read");
+  expect_one_sentence(from_nowhere({"--panels", "input"}), "--out or --video");
+  expect_one_sentence(from_nowhere({"--panels", "input,motion", "--video", sequence_.path("v.mp4")}),
+                      "--panels names 2");
+  EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Snapshot, APictureThatCannotBeWrittenIsToldWhicheverItIs) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full to stand for a full disk";
+  // They are packed beside drawing: the first fails while others are drawn, the last when all are.
+  const std::vector<std::string> pictures = {"000002_input", "000004_trajectory"};
+  for (const std::string& full : pictures) {
+    const std::string folder = sequence_.path("out_of_" + full);
+    fs::create_directories(folder);
+    fs::create_symlink("/dev/full", folder + "/" + full + ".png");
+    const CliResult result = snapshot(
+        {"--frames", "2,4", "--panels", "input,errors,timeline,trajectory", "--out", folder, "--force"});
+    // A slow machine was shown how far it is before.
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr("stillpoint: " + folder + "/" + full + ".png: cannot be written"));
+    EXPECT_FALSE(fs::exists(folder + "/snapshots.txt")) << "taken for whole";
+  }
+}
+
 TEST_F(Snapshot, KeepsEarlierImagesUnlessForced) {
   const std::vector<std::string> wanted = {"--frames", "0", "--panels", "input", "--out", out()};
   EXPECT_EQ(snapshot(wanted).exit_code, 0);

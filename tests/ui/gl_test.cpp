@@ -5,6 +5,7 @@
 
 #include "tests/support/golden.hpp"
 #include "ui/gl/framebuffer.hpp"
+#include "ui/gl/mipmaps.hpp"
 #include "ui/gl/program.hpp"
 #include "ui/shell/graphics_context.hpp"
 
@@ -77,9 +78,33 @@ TEST_F(GlTest, FramebufferReadsBackTopRowFirst) {
   }
 }
 
-/// What a texture looks like when drawn over a whole framebuffer of its size, through shaders/image.
-cv::Mat drawn(const Gl& gl, const Texture& texture) {
-  const Framebuffer target(gl, texture.width(), texture.height());
+TEST_F(GlTest, LevelsAreThoseTheDriverWouldMake) {
+  for (const cv::Size size : {cv::Size(640, 480), cv::Size(64, 48)}) {
+    cv::Mat image(size, CV_8UC4);
+    cv::randu(image, 0, 256);
+    const std::vector<cv::Mat> levels = halved_levels(image);
+    ASSERT_GE(levels.size(), 4U);
+    Texture texture(*gl_, Sampling::kNearest);
+    texture.upload(image);
+    gl_->GenerateMipmap(GL_TEXTURE_2D);
+    GLuint framebuffer = 0;
+    gl_->GenFramebuffers(1, &framebuffer);
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    for (int i = 0; i < static_cast<int>(levels.size()); ++i) {
+      const cv::Mat& level = levels[static_cast<std::size_t>(i)];
+      gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.id(), i + 1);
+      gl_->ReadBuffer(GL_COLOR_ATTACHMENT0);
+      cv::Mat read(level.size(), CV_8UC4);
+      gl_->ReadPixels(0, 0, read.cols, read.rows, GL_BGRA, GL_UNSIGNED_BYTE, read.data);
+      EXPECT_LE(cv::norm(read, level, cv::NORM_INF), gl_->renderer.starts_with("llvmpipe") ? 0.0 : 2.0) << i;
+    }
+    gl_->DeleteFramebuffers(1, &framebuffer);
+  }
+}
+
+/// What a texture looks like when drawn over a whole framebuffer, through shaders/image.
+cv::Mat drawn(const Gl& gl, const Texture& texture, int width, int height) {
+  const Framebuffer target(gl, width, height);
   const float quad[] = {-1, 1, 0, 0, 0, 1, 1, 0, 1, 0, -1, -1, 0, 0, 1, 1, -1, 0, 1, 1};
   const GlObject array = make_vertex_array(gl), buffer = make_buffer(gl);
   gl.BindVertexArray(array.id());
@@ -99,6 +124,48 @@ cv::Mat drawn(const Gl& gl, const Texture& texture) {
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   target.resolve();
   return target.read();
+}
+
+cv::Mat drawn(const Gl& gl, const Texture& texture) {
+  return drawn(gl, texture, texture.width(), texture.height());
+}
+
+TEST_F(GlTest, SidesThatCannotBeHalvedAreLeftToTheDriver) {
+  EXPECT_TRUE(halved_levels(cv::Mat(375, 1242, CV_8UC3)).empty());
+  EXPECT_TRUE(halved_levels(cv::Mat(481, 641, CV_8UC1)).empty());
+  EXPECT_TRUE(halved_levels(cv::Mat()).empty());
+  EXPECT_EQ(halved_levels(cv::Mat(480, 640, CV_32FC1, cv::Scalar(0.5))).back().at<float>(3, 4), 0.5F);
+  // From the one to the other and back, in one texture. A level that is missing, or left from before, would
+  // show where it is drawn smaller.
+  Texture texture(*gl_);
+  int grey = 0;
+  for (const cv::Size size : {cv::Size(64, 48), cv::Size(63, 47), cv::Size(64, 48), cv::Size(640, 480),
+                              cv::Size(1242, 375), cv::Size(1, 1), cv::Size(256, 256), cv::Size(37, 2)})
+    for (const int type : {CV_8UC3, CV_8UC1, CV_8UC4}) {
+      const int is = grey = (grey + 37) % 256;
+      texture.upload(cv::Mat(size, type, cv::Scalar(is, is, is, 255)));
+      for (const int smaller : {1, 2, 3, 5, 8, 16, 30}) {
+        const cv::Mat shown =
+            drawn(*gl_, texture, std::max(1, size.width / smaller), std::max(1, size.height / smaller));
+        EXPECT_LE(cv::norm(shown, cv::Mat(shown.size(), CV_8UC3, cv::Scalar::all(is)), cv::NORM_INF), 1.0)
+            << size << " of type " << type << " drawn " << smaller << " times smaller";
+      }
+    }
+}
+
+TEST_F(GlTest, SmallerIsTheMeanOfWhatIsUnderIt) {
+  for (const cv::Size size : {cv::Size(640, 480), cv::Size(641, 479)}) {
+    cv::Mat image(size, CV_8UC3);
+    cv::randu(image, 0, 256);
+    cv::GaussianBlur(image, image, {}, 4.0);
+    Texture texture(*gl_);
+    texture.upload(image);
+    cv::Mat expected;
+    cv::resize(image, expected, {size.width / 4, size.height / 4}, 0, 0, cv::INTER_AREA);
+    const cv::Mat shown = drawn(*gl_, texture, expected.cols, expected.rows);
+    EXPECT_LT(cv::norm(shown, expected, cv::NORM_L1) / static_cast<double>(3 * expected.total()), 1.5)
+        << size;
+  }
 }
 
 TEST_F(GlTest, TexturesShowImagesAsOpenCvHoldsThem) {

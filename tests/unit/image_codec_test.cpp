@@ -13,6 +13,7 @@
 
 #include "core/media/jpeg_codec.hpp"
 #include "core/media/png_decoder.hpp"
+#include "core/media/png_encoder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
@@ -40,6 +41,23 @@ TEST_P(ImageCodec, ReadsBackWhatItWroteAsOpenCvDoes) {
     EXPECT_TRUE(same_pixels(decode_pixels(bytes), image)) << level;
     EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image)) << level;
   }
+}
+
+TEST_P(ImageCodec, QuickPngsOfAnySizeAreWholeAndTheSameEachTime) {
+  // Of noise, which does not pack, and of one value, which does; wider than tall and the other way round.
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 7}, {7, 1}, {2, 2}, {53, 37}, {1001, 3}, {1201, 677}})
+    for (const bool noisy : {true, false}) {
+      cv::Mat image(height, width, GetParam(), cv::Scalar(3, 250, 77, 128));
+      if (noisy) cv::randu(image, 0, image.depth() == CV_16U ? 65536 : 256);
+      const auto bytes = encode_png(image, 1);
+      EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image)) << image.size() << noisy;
+      EXPECT_TRUE(same_pixels(decode_pixels(bytes), image)) << image.size() << noisy;
+      EXPECT_EQ(encode_png(image, 1), bytes);
+      if (!noisy && image.total() > 100000) {
+        EXPECT_LT(bytes.size(), image.total() * image.elemSize() / 50);
+      }
+    }
 }
 
 TEST_P(ImageCodec, ReadsBackWhatACameraTook) {
@@ -142,9 +160,38 @@ TEST_P(ImageCodec, OfADamagedPngThereIsNothing) {
     EXPECT_TRUE(decode_plain_png({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}).empty());
 }
 
-TEST(ImageCodecs, AViewIntoALargerImageIsWrittenAlone) {
-  const cv::Mat whole = noise(CV_8UC1), part = whole(cv::Rect(5, 6, 20, 10));
-  EXPECT_TRUE(same_pixels(decode_pixels(encode_png(part, 1)), part));
+TEST_P(ImageCodec, AViewIntoALargerImageIsWrittenAlone) {
+  const cv::Mat whole = noise(GetParam()), part = whole(cv::Rect(5, 6, 20, 10));
+  for (const int level : {1, 3})
+    EXPECT_TRUE(same_pixels(decode_pixels(encode_png(part, level)), part)) << level;
+}
+
+TEST(ImageCodecs, AQuickPngIsWhatTheStandardSays) {
+  // Two pixels beside each other: what is left of the second is taken off it, in the order red, green, blue.
+  cv::Mat image(1, 2, CV_8UC3);
+  image.at<cv::Vec3b>(0, 0) = {10, 20, 30};
+  image.at<cv::Vec3b>(0, 1) = {13, 19, 34};
+  const auto bytes = encode_plain_png(image);
+  ASSERT_GT(bytes.size(), 57U);
+  const auto number = [&](std::size_t at) {
+    return std::uint32_t{bytes[at]} << 24U | std::uint32_t{bytes[at + 1]} << 16U |
+           std::uint32_t{bytes[at + 2]} << 8U | bytes[at + 3];
+  };
+  const std::uint32_t packed = number(33);
+  EXPECT_EQ(bytes.size(), 33U + 12U + packed + 12U);
+  std::array<unsigned char, 16> rows{};
+  uLongf size = rows.size();
+  ASSERT_EQ(uncompress(rows.data(), &size, bytes.data() + 41, packed), Z_OK);
+  const std::array<unsigned char, 7> wanted{1, 30, 20, 10, 4, 255, 3};
+  ASSERT_EQ(size, wanted.size());
+  EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), rows.begin()));
+  // Each chunk's checksum by zlib: the header's, the data's and the end's.
+  for (const auto& [type, content] :
+       {std::pair<std::size_t, std::uint32_t>{12, 13}, {37, packed}, {49 + packed, 0}})
+    EXPECT_EQ(number(type + 4 + content), crc32(0, bytes.data() + type, content + 4)) << type;
+  for (const int other : {CV_16UC1, CV_8UC2, CV_32FC1, CV_8SC1})
+    EXPECT_TRUE(encode_plain_png(cv::Mat(4, 4, other, cv::Scalar(0))).empty()) << other;
+  EXPECT_TRUE(encode_plain_png(cv::Mat()).empty());
 }
 
 TEST(ImageCodecs, UnusualPngsAreReadByOpenCv) {

@@ -6,6 +6,7 @@
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/mapping.hpp"
+#include "core/run/run_sequence.hpp"
 
 namespace stillpoint {
 namespace {
@@ -164,6 +165,14 @@ TEST_F(Wall, RedundantKeyframesRetireAndTheirPosesStayKnown) {
   EXPECT_TRUE(map_.has_keyframe(4)) << "the newest is not judged yet";
   for (const auto& retired : map_.retired())
     EXPECT_NEAR(map_.pose_of(retired.id).translation().x(), -0.05 * retired.id, 1e-12);
+  // Many at once are found as one by one, to the last bit; also where one hangs on another that left later.
+  map_.retire_keyframe(4);
+  const std::vector<SavedKeyframe> saved = saved_keyframes(map_);
+  EXPECT_EQ(saved.size(), map_.keyframes().size() + map_.retired().size());
+  for (const SavedKeyframe& keyframe : saved)
+    EXPECT_EQ(
+        (keyframe.pose.world_from_camera.matrix() - map_.pose_of(keyframe.id).inverse().matrix()).norm(),
+        0.0);
   for (const int id : ids)
     for (const Observation& o : map_.point(id).observations) EXPECT_TRUE(map_.has_keyframe(o.keyframe));
 }

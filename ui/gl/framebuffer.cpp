@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace stillpoint {
@@ -75,11 +76,14 @@ cv::Mat Framebuffer::read() const {
 }
 
 cv::Mat read_pixels(const Gl& gl, int width, int height) {
-  // Black rather than whatever lay in memory, should a driver read nothing.
-  cv::Mat image(height, width, CV_8UC3, cv::Scalar::all(0));
+  // Black rather than whatever lay in memory, should a driver read nothing. Four channels are how it lies
+  // there; drivers are slow to leave one out.
+  cv::Mat pixels(height, width, CV_8UC4, cv::Scalar::all(0));
   gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl.ReadPixels(0, 0, width, height, GL_BGR, GL_UNSIGNED_BYTE, image.data);
-  cv::flip(image, image, 0);
+  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data);
+  cv::flip(pixels, pixels, 0);
+  cv::Mat image;
+  cv::cvtColor(pixels, image, cv::COLOR_RGBA2BGR);
   return image;
 }
 

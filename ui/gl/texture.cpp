@@ -5,9 +5,12 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "ui/gl/mipmaps.hpp"
+
 namespace stillpoint {
 namespace {
 
+constexpr int kAllLevels = 1000;  // as GL has it for a new texture
 constexpr std::uint64_t kOpaque = std::uint64_t{1} << 63U;
 
 struct PixelFormat {
@@ -69,7 +72,22 @@ void Texture::upload(const cv::Mat& image) {
     gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, image.channels() == 1 ? grey : colour);
   }
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  if (sampling_ == Sampling::kPixels) gl_->GenerateMipmap(GL_TEXTURE_2D);
+  if (sampling_ == Sampling::kPixels) upload_levels(image);
+}
+
+void Texture::upload_levels(const cv::Mat& image) {
+  // Drawn in software, a driver's own way takes a compiler first and then as long as drawing does.
+  const PixelFormat format = pixel_format(image.type());
+  const std::vector<cv::Mat> levels = halved_levels(image);
+  const int last = levels.empty() ? kAllLevels : static_cast<int>(levels.size());
+  if (last != last_level_) gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, last);
+  last_level_ = last;
+  if (levels.empty()) gl_->GenerateMipmap(GL_TEXTURE_2D);
+  for (int i = 0; i < static_cast<int>(levels.size()); ++i) {
+    const cv::Mat& level = levels[static_cast<std::size_t>(i)];
+    gl_->TexImage2D(GL_TEXTURE_2D, i + 1, format.internal, level.cols, level.rows, 0, format.format,
+                    format.type, level.data);
+  }
 }
 
 void Texture::allocate(int width, int height) {

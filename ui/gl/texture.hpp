@@ -41,10 +41,12 @@ class Texture {
   void note_change() const;
 
  private:
+  void upload_levels(const cv::Mat& image);
+
   const Gl* gl_;
   GlObject texture_;
   Sampling sampling_;
-  int width_ = 0, height_ = 0, type_ = -1;
+  int width_ = 0, height_ = 0, type_ = -1, last_level_ = -1;
   mutable std::uint32_t content_ = 0;  // no two contents of any texture have the same
 };
 

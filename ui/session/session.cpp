@@ -8,6 +8,11 @@
 #include "core/inspect/frame_neighbours.hpp"
 
 namespace stillpoint {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
 
 Session::Session(std::shared_ptr<const FrameSource> source, const Config& config,
                  const SessionOptions& options)
@@ -152,16 +157,28 @@ DebugView Session::debug_view() {
                             .config = ghost.run->track().config(),
                             .from = ghost.run->track().begins_at(),
                             .busy = ghost.run->track().processed() < run_->track().processed(),
-                            .run = ghost.run->run_view(),
+                            .run = ghost.run_view,
                             .current = ghost.current,
                             .diverged = ghost.diverged,
                             .outside = !ghost.run->track().outside().empty()});
   return debug;
 }
 
-void Session::publish() {
-  const auto last = this->view();
-  update_breakpoints();
+/// Whether the runs that are shown may stay as they were made last while frames are added. All poses are
+/// evaluated anew each time, which of many takes longer than a frame.
+bool Session::runs_may_wait() const {
+  const int processed = run_->track().processed();
+  const bool grow = playing_ || processed <= target_ || processed < wanted_;
+  const bool all_were_made = run_view_ && std::all_of(ghosts_.begin(), ghosts_.end(), [](const Ghost& ghost) {
+                               return ghost.run_view != nullptr;
+                             });
+  return worker_.joinable() && grow && all_were_made && Clock::now() < runs_due_;
+}
+
+/// @returns whether the session's own has grown
+bool Session::renew_runs() {
+  const auto begin = Clock::now();
+  for (Ghost& ghost : ghosts_) ghost.run_view = ghost.run->run_view();
   const bool grown = run_view_ != run_->run_view();
   if (grown) {
     run_view_ = run_->run_view();
@@ -169,6 +186,15 @@ void Session::publish() {
     if (baseline_) baseline_view_ = std::make_shared<const RunView>(baseline_->view());
     ++revision_;
   }
+  const auto end = Clock::now();
+  runs_due_ = end + options_.runs_wait * (end - begin);
+  return grown;
+}
+
+void Session::publish() {
+  const auto last = this->view();
+  update_breakpoints();
+  const bool grown = !runs_may_wait() && renew_runs();
   auto view = std::make_shared<SessionView>();
   view->title = source_->name();
   view->camera = source_->camera();

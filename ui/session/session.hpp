@@ -30,6 +30,8 @@ struct SessionOptions {
   std::vector<std::shared_ptr<const RecordedRun>> beside{};  ///< finished runs that stand beside as ghosts
   std::string no_images{};  ///< why the source has no images, one sentence: nothing can be processed then
   bool catch_up = false;    ///< go_to() lets odometry see a recorded run's frames as far as the one shown
+  int runs_wait = 30;  ///< while a worker adds frames, runs stay as shown so many times as long as making
+                       ///< them anew took: it takes a thirtieth of the time at most
   std::optional<SidecarPlaces> sidecar{};  ///< where bookmarks and the like are kept; nothing = they are not
 };
 
@@ -90,6 +92,7 @@ class Session {
   struct Ghost {
     std::string name;
     std::unique_ptr<ShownRun> run;
+    std::shared_ptr<const RunView> run_view{};   // as published last
     std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
     std::optional<int> diverged{};
     int compared = 0;  // frames
@@ -105,6 +108,8 @@ class Session {
   void show_image_first();
   void choose_other();
   void publish();
+  [[nodiscard]] bool runs_may_wait() const;
+  [[nodiscard]] bool renew_runs();
   [[nodiscard]] DebugView debug_view();
   [[nodiscard]] bool lacks_before() const;
 
@@ -171,6 +176,7 @@ class Session {
   std::shared_ptr<const FrameView> current_;
   std::shared_ptr<const FrameView> whole_;  // shown before the image of the one that is worked out; else null
   std::shared_ptr<const RunView> run_view_, baseline_view_;
+  std::chrono::steady_clock::time_point runs_due_{};  // when they are to be made anew
   std::uint64_t revision_ = 0;
   int target_ = 0;  // the frame wanted
   int wanted_ = 0;  // frames to have processed, once there is time

@@ -264,6 +264,7 @@ void Session::work(const std::stop_token& stop) {
       wanted_ = 0;
       if (whole_) current_ = std::exchange(whole_, nullptr);
       target_ = current_->index;
+      runs_due_ = {};
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.
       rest(stop, false);

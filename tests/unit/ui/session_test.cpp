@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "core/run/run_report.hpp"
@@ -174,6 +175,51 @@ TEST_P(SessionTest, TheWorkerComesToTheSame) {
         expected.records[i].world_from_camera, 0.0))
         << i;
   }
+}
+
+TEST_P(SessionTest, RunsStayWhileFramesAreAddedAndAreLevelAtRest) {
+  // So long that none would be made anew before the end, were it not for coming to rest.
+  Session session(source_, config_, {.runs_wait = 1000000000});
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::pair<std::size_t, bool>> seen;  // records, and whether frames were being added
+  session.start([&] {
+    const auto view = session.view();
+    const std::lock_guard lock(mutex);
+    EXPECT_LE(view->run->records.size(), static_cast<std::size_t>(view->processed));
+    for (const GhostView& ghost : view->debug.ghosts) EXPECT_NE(ghost.run, nullptr);
+    seen.emplace_back(view->run->records.size(), view->playing);
+    changed.notify_all();
+  });
+  const auto comes_to = [&](int frame) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, std::chrono::seconds(120), [&] {
+      const auto view = session.view();
+      return view->current->index == frame && view->current->record != nullptr && !view->playing;
+    });
+  };
+  session.request_frame(2);
+  ASSERT_TRUE(comes_to(2));
+  EXPECT_EQ(session.view()->run->records.size(), 3U);
+  session.request(request::AddGhost{config_, "another", 0});
+  session.request_speed(1000);
+  session.request_play(true);
+  ASSERT_TRUE(comes_to(kSessionFrames - 1));
+  const auto last = session.view();
+  EXPECT_EQ(last->run->records.size(), static_cast<std::size_t>(kSessionFrames));
+  EXPECT_EQ(last->run->trajectory.size(), batch().trajectory.size());
+  EXPECT_EQ(last->baseline == nullptr, method_of(config_).baseline);
+  if (last->baseline) {
+    EXPECT_EQ(last->baseline->records.size(), static_cast<std::size_t>(kSessionFrames));
+  }
+  ASSERT_EQ(last->debug.ghosts.size(), 1U);
+  const std::lock_guard lock(mutex);
+  // The first of those shown while it played may have been made when the ghost came, the others wait.
+  std::set<std::size_t> while_playing;
+  for (const auto& [records, playing] : seen)
+    if (playing) while_playing.insert(records);
+  EXPECT_LE(while_playing.size(), 2U);
+  EXPECT_FALSE(while_playing.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SessionTest, ::testing::Values("none", "paper", "stillpoint"));
