@@ -9,6 +9,7 @@
 
 #include "app/report/html.hpp"
 #include "core/config.hpp"
+#include "core/motion/methods.hpp"
 #include "ui/theme/palette.hpp"
 
 namespace stillpoint {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,5 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/ui/gallery.hpp"
 #include "ui/session/session.hpp"
 #include "ui/shell/offscreen.hpp"

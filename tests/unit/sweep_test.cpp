@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "tests/support/rendered.hpp"
+#include "core/run/run_report.hpp"
 
 namespace stillpoint {
 namespace {

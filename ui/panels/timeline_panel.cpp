@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_series.hpp"

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <functional>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/shell/ui_pace.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "ui/panels/panel_kit.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

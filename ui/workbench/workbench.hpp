@@ -12,6 +12,7 @@
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/workbench/layout.hpp"
 #include "ui/workbench/open_dialog.hpp"
 
