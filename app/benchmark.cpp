@@ -18,7 +18,9 @@
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
+#include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/cell_plan.hpp"
 #include "core/run/outside_run.hpp"
@@ -175,8 +177,9 @@ BenchmarkResult measure_outside(const Place& place, const SequenceOrigin& origin
       read_outside_run(place.source, origin, outside_files(argument, place.source.name()), warnings);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
-  const bool judges = std::any_of(recorded.masks.begin(), recorded.masks.end(),
-                                  [](const PackedMask& mask) { return !mask.empty(); });
+  bool judges = false;
+  for (std::size_t i = 0; !judges && i < recorded.run.records.size(); ++i)
+    judges = !recorded.details->of(i).mask.empty();
   BenchmarkResult reached = result_of(report_on(recorded.run, place.source), judges);
   reached.sequence = place.name;
   reached.method = recorded.outside;

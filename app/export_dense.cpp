@@ -32,8 +32,7 @@ void visit_frames(const OpenedRun& run, int every, const std::string& what, Visi
     const auto pose =
         nearest_pose(run.recorded->run.trajectory, records[at].timestamp, kAssociationTolerance);
     if (i % every == 0 && records[at].estimated && pose && frame.readable())
-      visit(frame, run.recorded->run.trajectory[*pose].world_from_camera,
-            unpack_mask(run.recorded->masks[at]));
+      visit(frame, run.recorded->run.trajectory[*pose].world_from_camera, run.recorded->mask(at));
     progress.advance("");
     throw_if_interrupted();
   }

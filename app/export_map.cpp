@@ -22,12 +22,14 @@ std::vector<Eigen::Vector3f> normals_of_map(const OpenedRun& opened, int every) 
   if (!opened.no_images.empty() || !opened.source->has_depth()) return {};
   PointNormals normals(opened.source->camera());
   Progress progress("normals", static_cast<int>(run.records.size()));
-  for (const FrameRecord& record : run.records) {
+  for (std::size_t i = 0; i < run.records.size(); ++i) {
+    const FrameRecord& record = run.records[i];
     progress.advance("");
     throw_if_interrupted();
     const auto pose = nearest_pose(run.trajectory, record.timestamp, kAssociationTolerance);
     if (!record.estimated || !pose || (!record.keyframe && record.index % every != 0)) continue;
-    normals.add(opened.source->read(record.index), record, run.trajectory[*pose].world_from_camera);
+    normals.add(opened.source->read(record.index), opened.recorded->record(i),
+                run.trajectory[*pose].world_from_camera);
   }
   return normals.of(run.points);
 }

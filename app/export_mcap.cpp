@@ -48,9 +48,9 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
     for (std::size_t i = 0; i < records.size(); ++i) {
       if (layered) {
         const auto view = layered->view(static_cast<int>(i));
-        file.add(view->frame, records[i], view->mask, layered->layers_of(*view));
+        file.add(view->frame, run.recorded->record(i), view->mask, layered->layers_of(*view));
       } else {
-        file.add(frames.next(), records[i], unpack_mask(run.recorded->masks[i]));
+        file.add(frames.next(), run.recorded->record(i), run.recorded->mask(i));
       }
       progress.advance("");
       throw_if_interrupted();

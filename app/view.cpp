@@ -34,7 +34,12 @@ struct ViewArguments {
 };
 
 WindowOptions window_options(const Settings& settings) {
-  return {.width = settings.window_size[0], .height = settings.window_size[1], .look = settings.look};
+  WindowOptions options{.look = settings.look};
+  if (settings.window_size) {
+    options.width = (*settings.window_size)[0], options.height = (*settings.window_size)[1];
+    options.grows_with_display = false;
+  }
+  return options;
 }
 
 /// The window, the controller in it, and what is kept from one time to the next.
@@ -117,7 +122,7 @@ class Viewer {
   void save() {
     settings_ = controller_.settings();
     const auto placement = window_.placement();
-    settings_.window_size = {placement[2], placement[3]};
+    settings_.window_size = std::array<int, 2>{placement[2], placement[3]};
     write_settings(settings_path_, settings_);
   }
 

@@ -97,6 +97,22 @@ std::string figure_html(const cv::Mat& picture, std::string_view caption, Packin
       exact ? "png" : "jpeg", base64(file), picture.cols, picture.rows, escaped(caption), escaped(caption));
 }
 
+std::string figure_html_of_png(std::string_view png, std::string_view caption) {
+  // The header's width and height, most significant byte first.
+  const auto number_at = [&png](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4 && i < png.size(); ++i)
+      value = value << 8U | static_cast<unsigned char>(png[i]);
+    return value;
+  };
+  constexpr std::size_t kWidthAt = 16, kHeightAt = 20;
+  return fmt::format(
+      "<figure><img src=\"data:image/png;base64,{}\" width=\"{}\" height=\"{}\" alt=\"{}\">"
+      "<figcaption>{}</figcaption></figure>\n",
+      base64({png.begin(), png.end()}), number_at(kWidthAt), number_at(kHeightAt), escaped(caption),
+      escaped(caption));
+}
+
 std::string table_html(const std::vector<std::string>& header,
                        const std::vector<std::vector<HtmlCell>>& rows) {
   std::string html = "<div class=\"scroll\"><table><thead><tr>";
@@ -104,9 +120,13 @@ std::string table_html(const std::vector<std::string>& header,
   html += "</tr></thead><tbody>\n";
   for (const auto& row : rows) {
     html += "<tr>";
-    for (const HtmlCell& cell : row)
+    for (const HtmlCell& cell : row) {
+      const std::string text =
+          cell.link.empty() ? escaped(cell.text)
+                            : fmt::format("<a href=\"#{}\">{}</a>", escaped(cell.link), escaped(cell.text));
       html += fmt::format("<td class=\"{}{}\">{}{}</td>", cell.number ? "number" : "text",
-                          cell.best ? " best" : "", escaped(cell.text), cell.best ? " ✓" : "");
+                          cell.best ? " best" : "", text, cell.best ? " ✓" : "");
+    }
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

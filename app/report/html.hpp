@@ -25,11 +25,15 @@ enum class Packing {
 [[nodiscard]] std::string figure_html(const cv::Mat& picture, std::string_view caption,
                                       Packing packing = Packing::kExact);
 
+/// The same with a picture that is packed already. @param png the file's bytes
+[[nodiscard]] std::string figure_html_of_png(std::string_view png, std::string_view caption);
+
 /// A cell of a table.
 struct HtmlCell {
   std::string text;     ///< not escaped yet
   bool number = false;  ///< aligned right
   bool best = false;    ///< of its column: marked, and not by colour alone
+  std::string link{};   ///< where in the page it leads to, an id; empty: nowhere
 };
 
 /// A table that scrolls sideways where it is too wide. @param header not escaped yet

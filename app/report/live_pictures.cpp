@@ -112,10 +112,10 @@ class FramePainter {
     std::size_t row = 0;
     const FrameRecord* record = record_at(run, index, row);
     if (record == nullptr) return picture;
-    if (const cv::Mat mask = unpack_mask(run.recorded().masks[row]);
-        !mask.empty() && cv::countNonZero(mask) > 0)
+    const FrameDetails::Detail detail = run.recorded().details->of(row);
+    if (const cv::Mat mask = unpack_mask(detail.mask); !mask.empty() && cv::countNonZero(mask) > 0)
       picture["mask"] = mask_picture(resized(mask, size_, cv::INTER_NEAREST), okabe_ito::kVermillion);
-    if (!record->features.empty()) picture["features"] = feature_text(record->features);
+    if (!detail.features.empty()) picture["features"] = feature_text(detail.features);
     if (!layered_[place]) return picture;
     const auto view = layered_[place]->view(index);
     (void)layered_[place]->layers_of(*view);

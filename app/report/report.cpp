@@ -12,6 +12,7 @@
 #include "app/report/live_data.hpp"
 #include "app/report/live_page.hpp"
 #include "app/report/live_pictures.hpp"
+#include "app/report/report_comparison.hpp"
 #include "app/report/report_pictures.hpp"
 #include "app/report/report_run.hpp"
 #include "app/report/report_sections.hpp"
@@ -88,12 +89,13 @@ void report(const ReportArguments& arguments) {
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const ReportGroup& group = groups[i];
     body += fmt::format("<h2 id=\"sequence{}\">{}</h2>\n", i + 1, escaped(group.sequence));
-    body += summary_table(group);
+    body += summary_table(group, arguments.worst);
     if (!arguments.interactive) {
       progress(group.sequence + ": errors and trajectories");
       body += "<h3>Error over time</h3>\n" + error_plots(painter, group);
-      body += "<h3>Trajectories</h3>\n" + trajectories(painter, group);
+      body += "<h3>Trajectories</h3>\n" + paths_compared(group) + trajectories(painter, group);
     }
+    body += one_frame_compared(painter, group, progress);
     body += "<h3>Stage timings</h3>\n" + stage_timings(group);
     for (std::size_t run = 0; run < group.runs.size(); ++run) {
       const std::string link =
@@ -101,7 +103,7 @@ void report(const ReportArguments& arguments) {
       body += worst_frame_panels(painter, group, group.runs[run], arguments.worst, link, progress);
     }
   }
-  body += configurations(groups) + scripts;
+  body += configurations(groups) + provenance(groups) + scripts;
   if (terminal) std::fputs("\r\033[K", stderr);
   const std::string page =
       page_html(title_of(groups), body, arguments.interactive ? live_style() : std::string());

@@ -19,17 +19,6 @@ constexpr std::pair<int, int> kPlotSize = {1130, 300}, kScenePanel = {720, 560},
                               kFramePanel = {640, 540};  // px
 constexpr int kApart = 10;                               // frames between two worst ones
 
-/// A session on a finished run, its group's baseline beside it.
-std::unique_ptr<Session> session_of(const ReportGroup& group, const ReportRun& run, bool catch_up) {
-  SessionOptions options;
-  options.recorded = run.opened.recorded;
-  if (group.baseline() != nullptr && group.baseline() != &run)
-    options.recorded_baseline = group.baseline()->opened.recorded;
-  options.no_images = run.opened.no_images;
-  options.catch_up = catch_up;
-  return std::make_unique<Session>(run.opened.source, run.result().config, options);
-}
-
 struct Curve {
   std::string name;
   Series series;
@@ -100,6 +89,16 @@ std::vector<std::pair<std::string, std::string>> panels_of(const ReportRun& run,
 
 }  // namespace
 
+std::unique_ptr<Session> session_of_report(const ReportGroup& group, const ReportRun& run, bool catch_up) {
+  SessionOptions options;
+  options.recorded = run.opened.recorded;
+  if (group.baseline() != nullptr && group.baseline() != &run)
+    options.recorded_baseline = group.baseline()->opened.recorded;
+  options.no_images = run.opened.no_images;
+  options.catch_up = catch_up;
+  return std::make_unique<Session>(run.opened.source, run.result().config, options);
+}
+
 RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme) {
   if (method_named(run.report.method).baseline)
     return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
@@ -112,6 +111,11 @@ std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count) {
   const MeasuredFrames frames{result.records, run.report.evaluation ? &*run.report.evaluation : nullptr,
                               &result.scores};
   return worst_frames(frames, usual_figure(frames), kApart, static_cast<std::size_t>(count));
+}
+
+std::string frame_anchor(const ReportGroup& group, const ReportRun& run, int frame) {
+  return fmt::format("frame{}-run{}-{}", frame, 1 + (&run - group.runs.data()),
+                     run.recorded().origin.fingerprint.substr(0, 8));
 }
 
 std::string error_plots(Painter& painter, const ReportGroup& group) {
@@ -132,7 +136,7 @@ std::string error_plots(Painter& painter, const ReportGroup& group) {
 std::string trajectories(Painter& painter, const ReportGroup& group) {
   std::string html = "<div class=\"grid\">\n";
   for (const ReportRun& run : group.runs) {
-    const auto session = session_of(group, run, false);
+    const auto session = session_of_report(group, run, false);
     session->go_to(run.report.frames - 1);
     html += figure_html(
         painter.paint_panel(*session->view(), "trajectory", kScenePanel),
@@ -146,7 +150,7 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
   const std::vector<WorstFrame> worst = worst_frames_of(run, count);
   if (worst.empty()) return {};
   const bool again = method_named(run.report.method).needs.keeps_state && run.opened.no_images.empty();
-  const auto session = session_of(group, run, again);
+  const auto session = session_of_report(group, run, again);
   const double start = run.result().records.front().timestamp;
   std::string html = fmt::format("<h3>Worst frames of {}</h3>\n", escaped(run.label));
   for (const WorstFrame& frame : worst) {
@@ -158,8 +162,9 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
     if (!link.empty())
       name =
           fmt::format("<a href=\"{}\">{}</a>", escaped(fmt::format(fmt::runtime(link), frame.index)), name);
-    html += fmt::format("<p>{}, {:.2f} s: {}.</p>\n<div class=\"grid\">\n", name,
-                        view->current->frame.timestamp - start, escaped(frame.why));
+    html += fmt::format("<p id=\"{}\">{}, {:.2f} s: {}.</p>\n<div class=\"grid\">\n",
+                        frame_anchor(group, run, frame.index), name, view->current->frame.timestamp - start,
+                        escaped(frame.why));
     for (const auto& [panel, caption] : panels_of(run, *view->current))
       html += figure_html(painter.paint_panel(*view, panel, kFramePanel), caption, Packing::kSmall);
     html += "</div>\n";

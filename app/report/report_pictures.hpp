@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "app/painter.hpp"
 #include "app/report/report_run.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/run_look.hpp"
+#include "ui/session/session.hpp"
 
 namespace stillpoint {
 
@@ -19,6 +21,14 @@ using ReportProgress = std::function<void(const std::string& what)>;
 
 /// A run's frames to look at first, worst first, each a failure of its own.
 [[nodiscard]] std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count);
+
+/// Where in the page a run's frame is shown, among its worst.
+[[nodiscard]] std::string frame_anchor(const ReportGroup& group, const ReportRun& run, int frame);
+
+/// A session on a finished run, its group's baseline beside it.
+/// @param catch_up frames are processed again as far as the one shown
+[[nodiscard]] std::unique_ptr<Session> session_of_report(const ReportGroup& group, const ReportRun& run,
+                                                         bool catch_up);
 
 // The parts of a report that are pictures: HTML with the pictures in it.
 

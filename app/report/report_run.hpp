@@ -11,7 +11,8 @@ namespace stillpoint {
 /// A run in a report.
 struct ReportRun {
   std::string folder;  ///< as it was named
-  std::string label;   ///< what the page calls it: its method and, where not the default, its engine, where that tells it from the others
+  std::string label;   ///< what the page calls it: its method and, where not the default, its engine, where
+                       ///< that tells it from the others
   OpenedRun opened;
   RunReport report;
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/report/html.hpp"
+#include "app/report/report_pictures.hpp"
 #include "core/config.hpp"
 #include "core/motion/methods.hpp"
 #include "ui/theme/palette.hpp"
@@ -95,6 +96,15 @@ std::string value_text(const Parameter& parameter) {
   return *std::get<std::string*>(parameter.value);
 }
 
+/// The worst frame's number, which leads to it where it is shown.
+HtmlCell worst_cell(const ReportGroup& group, const ReportRun& run, int shown) {
+  const std::vector<WorstFrame> worst = worst_frames_of(run, 1);
+  if (worst.empty()) return {"–", true};
+  HtmlCell cell{fmt::format("{}", worst.front().index), true};
+  if (shown > 0) cell.link = frame_anchor(group, run, worst.front().index);
+  return cell;
+}
+
 }  // namespace
 
 std::string introduction(const std::vector<ReportGroup>& groups) {
@@ -106,7 +116,7 @@ std::string introduction(const std::vector<ReportGroup>& groups) {
   html += "<nav>";
   for (std::size_t i = 0; i < groups.size(); ++i)
     html += fmt::format("<a href=\"#sequence{}\">{}</a>", i + 1, escaped(groups[i].sequence));
-  html += "<a href=\"#configuration\">Configuration</a></nav>\n";
+  html += "<a href=\"#configuration\">Configuration</a><a href=\"#made\">What this is of</a></nav>\n";
   html +=
       "<p>RPE is the error of relative motion over one second, or from one frame to the next; ATE that of "
       "positions after the best rigid alignment. Both are RMSE, and less is better. Gain is the share of the "
@@ -118,7 +128,7 @@ std::string introduction(const std::vector<ReportGroup>& groups) {
   return html;
 }
 
-std::string summary_table(const ReportGroup& group) {
+std::string summary_table(const ReportGroup& group, int worst) {
   const auto best_rpe = least(group, &RunFigures::rpe_m), best_deg = least(group, &RunFigures::rpe_deg),
              best_ate = least(group, &RunFigures::ate_m), best_frame = least(group, &RunFigures::rpe_frame_m),
              best_ms = least(group, &RunFigures::median_ms);
@@ -147,12 +157,14 @@ std::string summary_table(const ReportGroup& group) {
                                    r.scores.removal.removed_wrongly)
                      : "–"),
          cell(f.median_ms, 1.0, 1, best_ms),
-         plain(fmt::format("{:.1f}", r.speed.p99_ms))});
+         plain(fmt::format("{:.1f}", r.speed.p99_ms)),
+         worst_cell(group, run, worst)});
   }
-  std::string html = table_html(
-      {"Run", "Tracked", "RPE 1 s, mm", "Gain", "RPE 1 s, °", "ATE, mm", "RPE frame, mm",
-       "Mask precision / recall, %", "Features removed rightly / wrongly", "Median, ms", "99th, ms"},
-      rows);
+  std::string html =
+      table_html({"Run", "Tracked", "RPE 1 s, mm", "Gain", "RPE 1 s, °", "ATE, mm", "RPE frame, mm",
+                  "Mask precision / recall, %", "Features removed rightly / wrongly", "Median, ms",
+                  "99th, ms", "Worst frame"},
+                 rows);
   for (const ReportRun& run : group.runs)
     if (run.result().interrupted)
       html += fmt::format("<p class=\"warning\">{} was stopped after {} of {} frames.</p>\n",

@@ -13,7 +13,7 @@ namespace stillpoint {
 [[nodiscard]] std::string introduction(const std::vector<ReportGroup>& groups);
 
 /// All runs of a sequence side by side.
-[[nodiscard]] std::string summary_table(const ReportGroup& group);
+[[nodiscard]] std::string summary_table(const ReportGroup& group, int worst);
 
 /// What each stage takes, as bars and in figures.
 [[nodiscard]] std::string stage_timings(const ReportGroup& group);

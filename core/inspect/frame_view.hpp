@@ -29,6 +29,7 @@ struct FrameView {
   cv::Mat mask;                              ///< CV_8UC1: what the method removed; empty = nothing
   FrameTruth truth;                          ///< for display and evaluation only
   const FrameRecord* record = nullptr;       ///< null while the frame has not been processed
+  bool image_alone = false;                  ///< the rest is being worked out: mask, stages and record follow
   /// Records of the frames right before, newest first, with their features where these are kept.
   std::vector<std::shared_ptr<const FrameRecord>> history;
   /// The frame before, to be compared with; null where none was asked for or is known. Has none of its own.

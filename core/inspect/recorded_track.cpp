@@ -15,12 +15,11 @@ ReplayableRun::ReplayableRun(const FrameSource& source, std::shared_ptr<const Re
       motion_state_every_(odometry_.motion().info().needs.checkpoint_every) {
   scores_ = recorded_->run.scores;
   scores_.resize(recorded_->run.records.size());
-  for (const FrameRecord& record : recorded_->run.records) {
-    hash_.add(record);
-    keep_features(record.features);
-    records_.push_back(record);
-    records_.back().features = {};
-  }
+  records_ = recorded_->run.records;
+  for (const FrameRecord& record : records_) hash_.add(record);
+  features_.resize(records_.size());
+  if (options_.keep_features) recorded_features_ = recorded_->details;
+  recorded_frames_ = processed();
   if (!recorded_->outside.empty()) seen_ = processed();
 }
 
@@ -53,7 +52,7 @@ std::vector<SavedPoint> ReplayableRun::points() const {
 
 cv::Mat ReplayableRun::recorded_mask(int index) const {
   const auto at = static_cast<std::size_t>(index);
-  return recorded_ && at < recorded_->masks.size() ? unpack_mask(recorded_->masks[at]) : cv::Mat();
+  return recorded_ && at < recorded_->run.records.size() ? recorded_->mask(at) : cv::Mat();
 }
 
 }  // namespace stillpoint

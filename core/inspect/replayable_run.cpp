@@ -106,8 +106,13 @@ FrameResult ReplayableRun::process_next(const ReadFrame& read) {
 }
 
 FrameRecord ReplayableRun::record(int index) const {
-  FrameRecord record = records_[static_cast<std::size_t>(index)];
-  const StoredBytes& features = features_[static_cast<std::size_t>(index)];
+  const auto row = static_cast<std::size_t>(index);
+  FrameRecord record = records_[row];
+  if (recorded_features_ && index < recorded_frames_) {
+    record.features = recorded_features_->of(row).features;
+    return record;
+  }
+  const StoredBytes& features = features_[row];
   record.features.resize(features.size() / sizeof(FeatureRecord));
   features.read(record.features.data());
   return record;
@@ -187,6 +192,8 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
   other.seen_ = from;
   other.records_.assign(records_.begin(), records_.begin() + from);
   other.features_.assign(features_.begin(), features_.begin() + from);
+  other.recorded_features_ = recorded_features_;
+  other.recorded_frames_ = std::min(recorded_frames_, from);
   other.scores_.assign(scores_.begin(), scores_.begin() + from);
   for (const FrameRecord& record : other.records_) other.hash_.add(record);
   return other;

@@ -137,11 +137,13 @@ class ReplayableRun {
   int begins_at_ = 0;
   std::vector<FrameRecord> records_;  // without features
   std::shared_ptr<ByteStore> store_ = ByteStore::make();
-  std::vector<StoredBytes> features_;         // … which are here; empty where they are not kept
-  std::vector<FrameScores> scores_;           // one a record
-  std::map<int, Odometry> checkpoints_;       // by the frame they process next
-  std::map<int, MotionStage> motion_states_;  // without images, by the frame they judge next
-  int motion_state_every_;                    // frames between them; doubled when there are too many
+  std::vector<StoredBytes> features_;  // … which are here; empty where they are not kept, …
+  std::shared_ptr<const FrameDetails> recorded_features_;  // … or here, of the first …
+  int recorded_frames_ = 0;                                // … records
+  std::vector<FrameScores> scores_;                        // one a record
+  std::map<int, Odometry> checkpoints_;                    // by the frame they process next
+  std::map<int, MotionStage> motion_states_;               // without images, by the frame they judge next
+  int motion_state_every_;  // frames between them; doubled when there are too many
   RunHash hash_;
 };
 

@@ -6,10 +6,11 @@
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory.hpp"
 #include "core/odometry/frame_record.hpp"
-#include "core/run/frame_figures.hpp"
-#include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
+
+struct FrameScores;
+struct MeasuredFrames;
 
 /// A run as far as it has come.
 struct RunView {
@@ -20,7 +21,7 @@ struct RunView {
   TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
 
   /// Its frames, as frame figures are asked of them; refers to this run.
-  [[nodiscard]] MeasuredFrames measured() const { return {records, &evaluation, &scores}; }
+  [[nodiscard]] MeasuredFrames measured() const;
 };
 
 }  // namespace stillpoint

@@ -245,6 +245,18 @@ std::shared_ptr<const FrameView> ShownRun::record_view(int index) {
   return hold(std::move(view), track_.record(index));
 }
 
+std::shared_ptr<const FrameView> ShownRun::image_view(int index) {
+  FrameView view;
+  view.index = index;
+  view.frame = frames_->read(index);
+  view.image_alone = true;
+  return hold(std::move(view), std::nullopt);
+}
+
+bool ShownRun::has_at_hand(int index) const {
+  return std::any_of(extras_.begin(), extras_.end(), [&](const Extras& e) { return e.index == index; });
+}
+
 std::shared_ptr<const RunView> ShownRun::run_view() {
   if (!view_) view_ = std::make_shared<const RunView>(track_.view());
   return view_;

@@ -36,6 +36,11 @@ class ShownRun {
   /// The images and the record of a frame that was processed, without stages: quick to have.
   [[nodiscard]] std::shared_ptr<const FrameView> record_view(int index);
 
+  /// The image of any frame, nothing else of it: FrameView::image_alone.
+  [[nodiscard]] std::shared_ptr<const FrameView> image_view(int index);
+  /// Whether frame_view() has little to do: what the frame's motion stage made is kept.
+  [[nodiscard]] bool has_at_hand(int index) const;
+
   /// The run for panels; the same object until another frame was processed.
   [[nodiscard]] std::shared_ptr<const RunView> run_view();
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
@@ -301,7 +302,7 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
   for (const FrameRecord& record : run.records)
     if (record.estimated) run.live.push_back({record.timestamp, record.world_from_camera});
   run.scores.resize(run.records.size());
-  recorded.masks.resize(run.records.size());
+  std::vector<FrameDetails::Detail> details(run.records.size());
   bool has_features = false;
   std::optional<MaskFiles> masks;
   if (folder) {
@@ -327,12 +328,14 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
       if (!result.mask.empty())
         result.record.mask_share =
             static_cast<double>(cv::countNonZero(result.mask)) / static_cast<double>(result.mask.total());
-      recorded.masks[i] = pack_mask(result.mask);
+      details[i].mask = pack_mask(result.mask);
     }
     if (scored && (!masks || !result.mask.empty()))
       run.scores[i] = score_frame(result, source.truth(static_cast<int>(i)).moving, !masks);
+    details[i].features = std::exchange(result.record.features, {});
     run.records[i] = std::move(result.record);
   }
+  recorded.details = details_at_hand(std::move(details));
   recorded.hash = run_hash(run.records);
   return recorded;
 }
@@ -341,8 +344,8 @@ void write_outside_run(const std::string& folder, const RecordedRun& run, const 
   RecordsWriter records(folder, run.origin, run.run.config, run.outside);
   for (std::size_t i = 0; i < run.run.records.size(); ++i) {
     FrameResult frame;
-    frame.record = run.run.records[i];
-    frame.mask = unpack_mask(run.masks[i]);
+    frame.record = run.record(i);
+    frame.mask = run.mask(i);
     records.add(frame);
   }
   RunReport report = report_on(run.run, source);

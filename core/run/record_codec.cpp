@@ -244,22 +244,30 @@ cv::Mat unpack_mask(const PackedMask& pack) {
   return mask;
 }
 
+void write_record_figures(ByteStreamWriter& to, const FrameRecord& record) { transfer_fields(to, record); }
+
+FrameRecord read_record_figures(ByteStreamReader& from) {
+  FrameRecord record;
+  transfer_fields(from, record);
+  // What names a kind is looked up by it later.
+  if (record.status > FrameStatus::unreadable || record.pose_start > PoseStart::direct)
+    throw ByteStreamReader::Exhausted();
+  return record;
+}
+
 void write_record(ByteStreamWriter& to, const FrameRecord& record) {
-  transfer_fields(to, record);
+  write_record_figures(to, record);
   to(static_cast<std::uint32_t>(record.features.size()));
   transfer_features(to, record.features);
 }
 
 FrameRecord read_record(ByteStreamReader& from) {
-  FrameRecord record;
-  transfer_fields(from, record);
+  FrameRecord record = read_record_figures(from);
   record.features.resize(from.count(kFeatureBytes));
   transfer_features(from, record.features);
-  // What names a kind is looked up by it later.
-  const bool is_known = record.status <= FrameStatus::unreadable && record.pose_start <= PoseStart::direct &&
-                        std::all_of(record.features.begin(), record.features.end(),
-                                    [](const FeatureRecord& f) { return f.fate <= FeatureFate::removed; });
-  if (!is_known) throw ByteStreamReader::Exhausted();
+  if (!std::all_of(record.features.begin(), record.features.end(),
+                   [](const FeatureRecord& f) { return f.fate <= FeatureFate::removed; }))
+    throw ByteStreamReader::Exhausted();
   return record;
 }
 

@@ -33,6 +33,11 @@ void write_record(ByteStreamWriter& to, const FrameRecord& record);
 /// @throws ByteStreamReader::Exhausted, for what is of no known kind as well
 [[nodiscard]] FrameRecord read_record(ByteStreamReader& from);
 
+/// A record without its features.
+void write_record_figures(ByteStreamWriter& to, const FrameRecord& record);
+/// @throws as read_record does
+[[nodiscard]] FrameRecord read_record_figures(ByteStreamReader& from);
+
 /// What is known once a run has ended.
 struct RunEnd {
   std::vector<FrameScores> scores;  ///< one a record

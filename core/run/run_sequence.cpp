@@ -193,7 +193,8 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     }
     colours.see(frame, processed.record.features);
     if (options.on_frame) options.on_frame(processed);
-    if (!options.keep_features) processed.record.features = {};
+    // Assigning nothing would keep the memory.
+    if (!options.keep_features) processed.record.features = std::vector<FeatureRecord>();
     result.records.push_back(std::move(processed.record));
   }
   result.orb_unit_ms = median_of(units);

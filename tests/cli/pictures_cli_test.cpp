@@ -80,7 +80,7 @@ TEST(ReportPictures, ShowTheRunsAndTheirWorstFrames) {
       run_cli({"report", sequence.path("none"), sequence.path("stillpoint"), "--out", page, "--worst", "5"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
 
-  int plots = 0, trajectories = 0, panels = 0, by_colour = 0;
+  int plots = 0, compared = 0, trajectories = 0, panels = 0, by_colour = 0;
   for (const PagePicture& picture : pictures_of(sequence.folder.read("report.html"))) {
     SCOPED_TRACE(picture.caption);
     ASSERT_FALSE(picture.image.empty());
@@ -96,6 +96,10 @@ TEST(ReportPictures, ShowTheRunsAndTheirWorstFrames) {
       ++trajectories;
       EXPECT_GT(count_of(picture.image, kEstimate), 100);
       EXPECT_GT(count_of(picture.image, kTruth), 20);
+    } else if (picture.caption.starts_with("All runs in one scale") ||
+               picture.caption.ends_with("over time, all runs")) {
+      ++compared;
+      EXPECT_GT(picture.told.width, 1000);
     } else {
       ++panels;
       EXPECT_EQ(picture.told, cv::Size(640, 540));
@@ -104,6 +108,7 @@ TEST(ReportPictures, ShowTheRunsAndTheirWorstFrames) {
   }
   EXPECT_GE(plots, 1);
   EXPECT_EQ(trajectories, 2);
+  EXPECT_EQ(compared, 7);  // paths; x, y, z; roll, pitch, yaw
   EXPECT_GE(panels, 6);
   EXPECT_GE(by_colour, 1);
 }

@@ -118,9 +118,34 @@ TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const std::string html = out_.read("report.html");
   // Both runs, their worst frames, figures of the trajectory and what differs from the defaults.
-  for (const char* part : {">none<", ">stillpoint<", "Worst frames of none", "Worst frames of stillpoint",
-                           "Error over time", "Trajectories", "Stage timings", "run.method"})
+  for (const char* part : {">none<",
+                           ">stillpoint<",
+                           "Worst frames of none",
+                           "Worst frames of stillpoint",
+                           "Error over time",
+                           "Trajectories",
+                           "Stage timings",
+                           "run.method",
+                           "All runs in one scale",
+                           "Position x over time",
+                           "The angle yaw over time",
+                           "by every run",
+                           "none: frame",
+                           "stillpoint: frame",
+                           "What this is of",
+                           "Page made on",
+                           "stillpoint report",
+                           "Did removal help?",
+                           "not checked (run.check_removal)",
+                           "Camera"})
     EXPECT_THAT(html, HasSubstr(part));
+  // The table leads to the frames, and each link leads somewhere.
+  const std::string summary = html.substr(html.find("Worst frame<"));
+  EXPECT_THAT(summary, HasSubstr("<a href=\"#frame"));
+  for (std::size_t at = html.find("href=\"#"); at != std::string::npos; at = html.find("href=\"#", at + 1)) {
+    const std::size_t begin = at + 7, end = html.find('"', begin);
+    EXPECT_THAT(html, HasSubstr("id=\"" + html.substr(begin, end - begin) + "\""));
+  }
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find("http://"), std::string::npos);
   EXPECT_EQ(html.find("https://"), std::string::npos);

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/odometry/frame_result.hpp"
 #include "core/run/records_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -49,11 +50,16 @@ std::string example_file() {
   return written(kRecordsName, [](const std::string&) { write_example(work_folder()); });
 }
 
-constexpr std::size_t kFileHead = 12;  // bytes before the first chunk: the magic and the version
-
-void read_file(std::string_view bytes) {
+RecordedRun run_of_file(std::string_view bytes) {
   (void)file_of(bytes, kRecordsName);
-  (void)read_records(work_folder());
+  return read_records(work_folder());
+}
+
+/// With all that is read only when somebody looks.
+void read_file(std::string_view bytes) {
+  const RecordedRun recorded = run_of_file(bytes);
+  for (std::size_t i = 0; i < recorded.run.records.size(); ++i)
+    (void)recorded.record(i), (void)recorded.mask(i);
 }
 Seeds file_seeds() { return {example_file()}; }
 
@@ -71,10 +77,13 @@ void put(std::string& bytes, T value) {
 
 /// Packs chunks that lie there unpacked, each a kind, a size and bytes: nothing that is changed in these is
 /// kept from the reader by a checksum.
-void read_chunks(std::string_view chunks) {
-  static const std::string head = example_file().substr(0, kFileHead);
+/// @param tables where the first table comes to lie
+std::string packed_file(std::string_view chunks, std::uint64_t& tables) {
+  static const std::string head = example_file().substr(0, kRecordsHeadBytes);
   std::string file = head;
+  tables = 0;
   while (!chunks.empty()) {
+    if (tables == 0 && chunks.front() == static_cast<char>(ChunkKind::table)) tables = file.size();
     const auto kind = taken<char>(chunks);
     const std::string_view content = chunks.substr(0, taken<std::uint16_t>(chunks));
     chunks.remove_prefix(content.size());
@@ -90,11 +99,28 @@ void read_chunks(std::string_view chunks) {
                   ::crc32_z(0, reinterpret_cast<const Bytef*>(packed.data()), packed.size())));
     file += packed;
   }
-  read_file(file);
+  return file;
 }
+
+/// A whole file, which is opened by its tables. Where these say that frames lie, others do here.
+void read_chunks(std::string_view chunks) {
+  std::uint64_t tables = 0;
+  std::string file = packed_file(chunks, tables);
+  const std::vector<std::uint8_t> foot = records_foot(tables);
+  file.append(foot.begin(), foot.end());
+  (void)run_of_file(file);
+}
+
+/// One that lacks what stands behind its chunks, and is read frame by frame.
+void read_chunks_of_a_cut_file(std::string_view chunks) {
+  std::uint64_t tables = 0;
+  read_file(packed_file(chunks, tables));
+}
+
 Seeds chunk_seeds() {
   const std::string whole = example_file();
-  std::string_view file = std::string_view(whole).substr(kFileHead);
+  std::string_view file =
+      std::string_view(whole).substr(0, whole.size() - kRecordsFootBytes).substr(kRecordsHeadBytes);
   std::string chunks;
   while (!file.empty()) {
     chunks += taken<char>(file);
@@ -122,7 +148,8 @@ std::vector<Target> record_targets() {
   // Deflate packs 1032 bytes into one at most; what a chunk holds takes some times as much once it is read.
   constexpr std::size_t kContent = 40;
   return {{"records", {1 << 20, 1032 * kContent}, read_file, file_seeds},
-          {"record_chunks", {1 << 20, kContent}, read_chunks, chunk_seeds}};
+          {"record_chunks", {1 << 20, kContent}, read_chunks, chunk_seeds},
+          {"record_frames", {1 << 20, kContent}, read_chunks_of_a_cut_file, chunk_seeds}};
 }
 
 }  // namespace stillpoint::fuzz

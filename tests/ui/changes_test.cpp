@@ -95,6 +95,33 @@ TEST(ChangesTest, TilesTakeToAnotherFrameInTurnAndEndLevel) {
   EXPECT_EQ(differing_pixels(offscreen.image(), drawn_afresh(*views()[4])), 0);
 }
 
+TEST(ChangesTest, AnImageIsShownBeforeItsOverlaysByTilesThatAreWorthIt) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  const auto draw = [&](const std::shared_ptr<const SessionView>& view) {
+    for (int i = 0; i < 12; ++i) offscreen.draw([&](UiFrame& frame) { workbench.draw_in_turn(frame, view); });
+    return offscreen.image();
+  };
+  const cv::Mat before = draw(views()[3]).clone();
+  auto alone = std::make_shared<SessionView>(*views()[4]);
+  auto image = std::make_shared<FrameView>();
+  image->index = 4, image->frame = views()[4]->current->frame, image->image_alone = true;
+  alone->current = image;
+  const cv::Mat meanwhile = draw(alone).clone();
+  EXPECT_TRUE(workbench.is_level()) << "there is nothing to wait for but the session";
+  const auto changed = [&](const cv::Mat& a, const cv::Mat& b, const char* panel) {
+    const LayoutRect tile = workbench.tile_of(panel).value();
+    const cv::Rect area(static_cast<int>(tile.x) + 4, static_cast<int>(tile.y) + 32,
+                        static_cast<int>(tile.width) - 8, static_cast<int>(tile.height) - 36);
+    return cv::norm(a(area), b(area), cv::NORM_INF) > 0.0;
+  };
+  EXPECT_TRUE(changed(before, meanwhile, "features_before"));
+  EXPECT_FALSE(changed(before, meanwhile, "motion")) << "stages stay until there are others";
+  const cv::Mat after = draw(views()[4]).clone();
+  EXPECT_TRUE(changed(meanwhile, after, "motion"));
+  EXPECT_EQ(differing_pixels(after, drawn_afresh(*views()[4])), 0);
+}
+
 /// Draw lists of rectangles, without a context that draws.
 class DrawnRectangles {
  public:

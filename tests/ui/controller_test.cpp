@@ -250,13 +250,18 @@ TEST(AppController, ASequenceComesBackAsItWasLeft) {
     other.run.method = "none";
     controller.request(request::AddGhost{other, "without removal", 0});
     ASSERT_TRUE(until_idle(controller));
+    controller.request(request::AddGhost{other, "from the third on", 2});
+    ASSERT_TRUE(until_idle(controller));
+    // The frame shown last lies before the one the ghost began at: the run goes there all the same.
+    controller.session()->request_frame(1);
+    ASSERT_TRUE(until_idle(controller));
     controller.open("second");
     ASSERT_TRUE(until_idle(controller));
     left = controller.settings();
     ASSERT_EQ(left.recent.size(), 2U);
     EXPECT_EQ(left.recent[1].where, "first");
     EXPECT_EQ(left.recent[1].reading, std::vector<std::string>{"camera=freiburg2"});
-    EXPECT_EQ(left.recent[1].frame, 2);
+    EXPECT_EQ(left.recent[1].frame, 1);
     offscreen.make_current();
   }
   {
@@ -266,8 +271,11 @@ TEST(AppController, ASequenceComesBackAsItWasLeft) {
     EXPECT_EQ(read, std::vector<std::string>{"camera=freiburg2"});
     EXPECT_EQ(method, "paper");
     EXPECT_EQ(controller.config().features.count, 777);
-    EXPECT_EQ(controller.view()->current->index, 2);
-    ASSERT_EQ(controller.view()->debug.ghosts.size(), 1U);
+    EXPECT_EQ(controller.view()->current->index, 1);
+    ASSERT_EQ(controller.view()->debug.ghosts.size(), 2U);
+    EXPECT_THAT(controller.view()->debug.waiting, ::testing::IsEmpty());
+    EXPECT_EQ(controller.view()->debug.ghosts[1].name, "from the third on");
+    EXPECT_EQ(controller.view()->debug.ghosts[1].from, 2);
     EXPECT_EQ(controller.view()->debug.ghosts[0].name, "without removal");
     EXPECT_EQ(controller.view()->debug.ghosts[0].config.run.method, "none");
     EXPECT_EQ(controller.view()->debug.ghosts[0].config.features.count, 777);
@@ -279,10 +287,10 @@ TEST(Settings, AFullDiskLeavesWhatWasThere) {
   const TemporaryFolder folder;
   const std::string path = folder.path("settings.json");
   Settings settings;
-  settings.window_size = {800, 600};
+  settings.window_size = std::array<int, 2>{800, 600};
   write_settings(path, settings);
   const std::string before = folder.read("settings.json");
-  settings.window_size = {1234, 777};
+  settings.window_size = std::array<int, 2>{1234, 777};
   {
     const FullDisk full;
     EXPECT_THROW(write_settings(path, settings), InputError);

@@ -109,7 +109,7 @@ TEST_F(ControllerInAWindow, PlaysTheDemoTakesKeysMouseAndADrop) {
 
 TEST_F(ControllerInAWindow, ShowsWhatTheOffscreenImageHolds) {
   const Recording recording = parse_recording(
-      "stillpoint recording 1\nidle\nframe 5\npoint union_mask 0.5 0.5\nwheel 0 2\nwait 0.1\nmove -100000 "
+      "stillpoint recording 1\nidle\nframe 5\npoint features_before 0.5 0.5\nwheel 0 2\nwait 0.1\nmove -100000 "
       "-100000\n"
       "screenshot shown.png\n",
       "r.txt");

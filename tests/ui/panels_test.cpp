@@ -10,6 +10,7 @@
 #include "core/inspect/run_view.hpp"
 #include "core/motion/stage_log.hpp"
 #include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/saved_map.hpp"
 #include "core/run/sweep.hpp"

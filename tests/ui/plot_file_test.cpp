@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "core/run/sweep.hpp"
 #include "tests/ui/session_example.hpp"
 #include "tests/unit/temporary_folder.hpp"
+#include "ui/panels/panel.hpp"
 #include "ui/shell/offscreen.hpp"
 #include "ui/workbench/workbench.hpp"
 
@@ -116,6 +118,70 @@ TEST_F(PlotFile, RefusesOtherEndingsAndPlacesThatAreNone) {
   plot_.series.clear();
   EXPECT_GT(written("empty.svg").size(), 200U);  // axes without a curve
 }
+
+/// What a right click somewhere on a panel offers first, and the file it writes.
+class RightClick : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};
+
+TEST_P(RightClick, SavesWhatThePanelShows) {
+  const auto& [name, ending] = GetParam();
+  const TemporaryFolder folder;
+  Offscreen offscreen({.width = 700, .height = 560});
+  const auto panels = make_panels();
+  const auto found =
+      std::find_if(panels.begin(), panels.end(), [&](const auto& p) { return p->name() == name; });
+  ASSERT_NE(found, panels.end());
+  SessionView session = debug_example();
+  session.debug.check.looked = true;
+  session.debug.check.findings = {{"depth", "Depth is missing in places."}};
+  std::optional<FileOffer> offer;
+  const auto draw = [&] {
+    for (int i = 0; i < 3; ++i)
+      offscreen.draw([&](UiFrame& frame) {
+        frame.offer = &offer;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize(frame.size);
+        ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        PanelActions ignored;
+        (*found)->draw(frame, session, ignored);
+        ImGui::End();
+      });
+  };
+  const auto click = [&](float x, float y, int button) {
+    offscreen.send(MouseMoved{x, y});
+    draw();
+    for (const bool down : {true, false}) {
+      offscreen.send(MouseButton{button, down, {}});
+      draw();
+    }
+  };
+  draw();
+  for (const float x : {330.0F, 560.0F})
+    for (float y = 70.0F; y < 540.0F && !offer; y += 35.0F) {
+      click(x, y, 1);
+      click(x + 30.0F, y + 18.0F, 0);
+    }
+  ASSERT_TRUE(offer) << name;
+  EXPECT_TRUE(offer->name.ends_with(ending)) << offer->name;
+  offer->write(folder.path(offer->name));
+  const std::string text = folder.read(offer->name);
+  if (ending == ".csv")
+    EXPECT_GT(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  else
+    EXPECT_THAT(text, HasSubstr("<svg"));
+  EXPECT_THROW(offer->write(folder.path("wrong.txt")), InputError);
+  offscreen.make_current();
+}
+
+INSTANTIATE_TEST_SUITE_P(Panels, RightClick,
+                         ::testing::Values(std::pair("errors", ".svg"), std::pair("timeline", ".svg"),
+                                           std::pair("trajectory", ".svg"), std::pair("figures", ".svg"),
+                                           std::pair("pose", ".svg"), std::pair("removal", ".svg"),
+                                           std::pair("timings", ".svg"), std::pair("inspector", ".csv"),
+                                           std::pair("compare", ".csv"), std::pair("bookmarks", ".csv"),
+                                           std::pair("breakpoints", ".csv"), std::pair("log", ".csv"),
+                                           std::pair("parameters", ".csv"), std::pair("check", ".csv"),
+                                           std::pair("stages", ".csv")),
+                         [](const auto& one) { return one.param.first; });
 
 TEST_F(PlotFile, IsOfferedByARightClick) {
   Offscreen offscreen({.width = 900, .height = 700});

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -163,6 +164,16 @@ std::string complaint() {
     return error.what();
   }
   return "";
+}
+
+TEST(WindowSizes, GrowWithTheDisplaysLettersAndFitTheScreen) {
+  using Size = std::array<int, 2>;
+  EXPECT_EQ(opening_size({}, 1.0F, {0, 0}), (Size{1600, 900}));
+  EXPECT_EQ(opening_size({}, 2.0F, {3840, 2130}), (Size{3200, 1800}));
+  EXPECT_EQ(opening_size({}, 2.0F, {2560, 1400}), (Size{2560, 1400}));
+  // A size that was left by a person is what it was.
+  EXPECT_EQ(opening_size({.width = 1234, .height = 777, .grows_with_display = false}, 2.0F, {3840, 2130}),
+            (Size{1234, 777}));
 }
 
 TEST(WindowWithoutDisplayTest, NamesSnapshot) {

@@ -137,6 +137,63 @@ TEST_F(WorkbenchTest, EachPressIsAStepFromWhereTheLastOneLed) {
   EXPECT_THAT(gone_to, ::testing::IsEmpty());
 }
 
+TEST_F(WorkbenchTest, PlaySaysHowManyFramesWereNotShown) {
+  const auto session = session_at(folder_, 7);
+  Workbench workbench(make_panels(), {.play = [](bool) {}});
+  const auto show = [&](int index, bool playing) {
+    session->go_to(index);
+    SessionView view = *session->view();
+    view.playing = playing;
+    offscreen_.draw([&](UiFrame& frame) { workbench.draw(frame, &view); });
+    return workbench.fact("dropped", &view).value();
+  };
+  EXPECT_EQ(show(0, true), "0");
+  EXPECT_EQ(show(1, true), "0");
+  EXPECT_EQ(show(4, true), "2");
+  EXPECT_EQ(show(5, true), "2");
+  EXPECT_EQ(show(7, true), "3");
+  EXPECT_EQ(show(2, true), "3") << "round again in a range is no drop";
+  EXPECT_EQ(show(2, false), "3");
+  EXPECT_THAT(workbench.message(), HasSubstr("3 frames not shown"));
+  // Where one goes by hand nothing is dropped.
+  EXPECT_EQ(show(6, false), "3");
+  EXPECT_EQ(show(6, true), "0");
+}
+
+TEST_F(WorkbenchTest, ThePaletteFindsMethodsPresetsParametersAndSaysWhatCannotBeDone) {
+  const auto session = session_at(folder_, 5);
+  std::vector<SessionRequest> asked;
+  Workbench workbench(
+      make_panels(),
+      {.go_to_frame = [](int) {}, .request = [&](const SessionRequest& wanted) { asked.push_back(wanted); }});
+  const auto enter = [&](const std::string& query) {
+    strike(offscreen_, Key::kP, {.ctrl = true, .shift = true});
+    render(workbench, *session);
+    for (const char letter : query) offscreen_.send(TextTyped{static_cast<unsigned>(letter)});
+    strike(offscreen_, Key::kEnter);
+    render(workbench, *session);
+    render(workbench, *session);
+    strike(offscreen_, Key::kEscape);
+    render(workbench, *session);
+  };
+  enter("compare epipolar");
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(std::get<request::AddGhost>(asked[0]).config.run.method, "epipolar");
+  enter("run all paper");
+  ASSERT_EQ(asked.size(), 2U);
+  EXPECT_EQ(std::get<request::RunAll>(asked[1]).config.run.method, "paper");
+  enter("preset " + preset_names().front());
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_EQ(std::get<request::AddGhost>(asked[2]).name, preset_names().front());
+  EXPECT_FALSE(contains(workbench.layout(), "parameters"));
+  enter("parameter features.count");
+  EXPECT_TRUE(contains(workbench.layout(), "parameters"));
+  // Nothing was marked, so that cannot be taken back: it is found, and does nothing.
+  const std::size_t before = asked.size();
+  enter("take back the last change of marks");
+  EXPECT_EQ(asked.size(), before);
+}
+
 TEST_F(WorkbenchTest, ThePaletteFindsAndRuns) {
   const auto session = session_at(folder_, 5);
   std::vector<int> gone_to;
@@ -212,7 +269,7 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
   Settings settings;
   settings.look = {ThemeName::kLight, 1.25F};
   settings.layout = default_layout();
-  settings.window_size = {1234, 777};
+  settings.window_size = std::array<int, 2>{1234, 777};
   const RecentSequence a{"a",
                          {"camera=freiburg3", "frames=60"},
                          {"run.method=paper"},

@@ -6,6 +6,7 @@
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/mapping.hpp"
+#include "core/run/saved_map.hpp"
 
 namespace stillpoint {
 namespace {

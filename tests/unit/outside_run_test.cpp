@@ -134,7 +134,7 @@ TEST_F(OutsideRun, AFolderBringsFeaturesAndMasks) {
   folder_.write("run/masks/3.png", mask);
   folder_.write("run/masks/0.png", mask);
   const RecordedRun run = read("theirs=" + folder_.path("run"));
-  const FrameRecord& record = run.run.records[3];
+  const FrameRecord record = run.record(3);
   ASSERT_EQ(record.features.size(), 2U);
   EXPECT_EQ(record.features[0].fate, FeatureFate::inlier);
   EXPECT_EQ(record.features[0].map_point, 77);
@@ -143,7 +143,7 @@ TEST_F(OutsideRun, AFolderBringsFeaturesAndMasks) {
   EXPECT_EQ(record.inliers, 1);
   EXPECT_EQ(run.run.records[4].matches, 1);
   EXPECT_DOUBLE_EQ(record.mask_share, 0.25);
-  EXPECT_EQ(cv::countNonZero(unpack_mask(run.masks[3]) != mask), 0);
+  EXPECT_EQ(cv::countNonZero(run.mask(3) != mask), 0);
   EXPECT_THAT(run.run.records[5].mask_problem, HasSubstr("has no mask for this frame"));
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("features.csv:4: is no feature"),
                                      HasSubstr("1 rows belong to no frame of the sequence")));
@@ -155,7 +155,7 @@ TEST_F(OutsideRun, FeaturesWithoutAPixelOrAnIdAreNone) {
                                                 "{0:.4f},10,20,inlier,nan,nan\n{0:.4f},1e300,20,inlier,4,1\n",
                                                 SmallSequence::stamp(3)));
   const RecordedRun run = read("theirs=" + folder_.path("run"));
-  const std::vector<FeatureRecord>& features = run.run.records[3].features;
+  const std::vector<FeatureRecord> features = run.record(3).features;
   ASSERT_EQ(features.size(), 2U);
   EXPECT_EQ(features[0].map_point, kNone);
   EXPECT_EQ(features[1].map_point, kNone);

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/open_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
@@ -58,6 +59,21 @@ class Records : public ::testing::Test {
     }
   }
 
+  /// … and all its frames looked at.
+  [[nodiscard]] std::string error_when_read() const {
+    return error_when_opened() + input_error_of([&] {
+             const OpenedRun opened = open_run(run_folder());
+             for (std::size_t i = 0; i < opened.recorded->run.records.size(); ++i)
+               (void)opened.recorded->record(i);
+           });
+  }
+  /// Where the first table lies in a whole file.
+  [[nodiscard]] static std::uint64_t tables_of(const std::string& whole) {
+    std::uint64_t tables = 0;
+    std::memcpy(&tables, whole.data() + whole.size() - kRecordsFootBytes, sizeof(tables));
+    return tables;
+  }
+
   SmallSequence sequence_{kRecordedFrames};
   TemporaryFolder out_{"out"};
   Config config_;
@@ -77,7 +93,8 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
   EXPECT_EQ(recorded.hash, run_hash(run_.records));
   ASSERT_EQ(recorded.run.records.size(), run_.records.size());
   for (std::size_t i = 0; i < run_.records.size(); ++i) {
-    const FrameRecord &back = recorded.run.records[i], &record = run_.records[i];
+    const FrameRecord back = recorded.record(i), &record = run_.records[i];
+    EXPECT_TRUE(recorded.run.records[i].features.empty());
     EXPECT_EQ(back.timestamp, record.timestamp);
     EXPECT_EQ(back.note, record.note);
     EXPECT_EQ(back.status, record.status);
@@ -108,7 +125,7 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
       EXPECT_EQ(back.features[f].fate, record.features[f].fate);
       EXPECT_EQ(back.features[f].static_weight, record.features[f].static_weight);
     }
-    const cv::Mat mask = unpack_mask(recorded.masks[i]);
+    const cv::Mat mask = recorded.mask(i);
     ASSERT_EQ(mask.size(), masks_[i].size());
     if (!mask.empty()) {
       EXPECT_EQ(cv::norm(mask, masks_[i], cv::NORM_INF), 0.0);
@@ -224,13 +241,61 @@ TEST_F(Records, OfARunThatWasKilledOpenWithTheFramesTheyHold) {
     EXPECT_THAT(opened.recorded->cut_short,
                 HasSubstr(fmt::format("is cut short after {} frames", run.records.size())));
     EXPECT_EQ(run.scores.size(), run.records.size());
-    EXPECT_EQ(opened.recorded->masks.size(), run.records.size());
+    EXPECT_EQ(opened.recorded->record(run.records.size() - 1).features.size(),
+              run_.records[run.records.size() - 1].features.size());
     EXPECT_TRUE(run.interrupted);
     EXPECT_EQ(opened.recorded->ground_truth.size(), source_->ground_truth().size());
     for (std::size_t i = 0; i < run.records.size(); ++i)
       EXPECT_EQ(run.records[i].inliers, run_.records[i].inliers) << i;
   }
   EXPECT_LT(least, most);
+}
+
+TEST_F(Records, OfAWholeFileAreOpenedWithoutReadingItsFrames) {
+  const std::string whole = out_.read(records());
+  // The last frame's chunk is none any more: that is told when it is looked at, and the others are there.
+  std::string damaged = whole;
+  const std::size_t at = tables_of(whole) - 8;
+  damaged[at] = static_cast<char>(damaged[at] ^ 1);
+  out_.write(records(), damaged);
+  EXPECT_EQ(error_when_opened(), "");
+  const OpenedRun opened = open_run(run_folder());
+  EXPECT_EQ(opened.recorded->run.records.back().inliers, run_.records.back().inliers);
+  EXPECT_EQ(opened.recorded->record(0).features.size(), run_.records[0].features.size());
+  EXPECT_THAT(input_error_of([&] { (void)opened.recorded->record(kRecordedFrames - 1); }),
+              HasSubstr(fmt::format("is damaged after {} frames", kRecordedFrames - 1)));
+  EXPECT_THAT(input_error_of([&] { (void)opened.recorded->mask(kRecordedFrames - 1); }),
+              HasSubstr("is damaged after"));
+}
+
+TEST_F(Records, OfTheVersionBeforeAreRead) {
+  // It had neither tables nor a foot.
+  const std::string whole = out_.read(records());
+  const std::size_t tables = tables_of(whole);
+  std::uint32_t table = 0;
+  ASSERT_EQ(whole[tables], 'T');
+  std::memcpy(&table, whole.data() + tables + 1, sizeof(table));
+  const std::size_t end = tables + 1 + 3 * sizeof(table) + table;
+  std::string old = whole.substr(0, tables) + whole.substr(end, whole.size() - end - kRecordsFootBytes);
+  old[8] = kOldestRecordsVersion;
+  out_.write(records(), old);
+  const OpenedRun opened = open_run(run_folder());
+  EXPECT_EQ(opened.recorded->cut_short, "");
+  EXPECT_EQ(opened.recorded->hash, run_hash(run_.records));
+  EXPECT_EQ(opened.recorded->run.points.size(), run_.points.size());
+  EXPECT_EQ(opened.recorded->record(3).features.size(), run_.records[3].features.size());
+  old[8] = kOldestRecordsVersion - 1;
+  out_.write(records(), old);
+  EXPECT_THAT(error_when_opened(), HasSubstr("is of version 7"));
+}
+
+TEST_F(Records, CutShortAmongWhatTheEndTellsOpenWithAllFrames) {
+  const std::string whole = out_.read(records());
+  for (const std::size_t kept : {std::size_t{tables_of(whole)}, std::size_t{tables_of(whole)} + 9,
+                                 whole.size() - kRecordsFootBytes, whole.size() - 1}) {
+    out_.write(records(), whole.substr(0, kept));
+    EXPECT_THAT(error_when_opened(), HasSubstr(fmt::format("is cut short after {} frames", kRecordedFrames)));
+  }
 }
 
 TEST_F(Records, BadFilesAreToldInOneSentence) {
@@ -247,12 +312,15 @@ TEST_F(Records, BadFilesAreToldInOneSentence) {
   other[8] = 99;
   out_.write(records(), other);
   EXPECT_THAT(error_when_opened(), HasSubstr("is of version 99"));
-  // Whatever byte is changed behind the version, it is noticed.
-  for (std::size_t at = 12; at < whole.size(); at += whole.size() / 60) {
+  // Whatever byte is changed behind the version, it is noticed: those of frames once these are looked at.
+  std::vector<std::size_t> places;
+  for (std::size_t at = 12; at < whole.size(); at += whole.size() / 60) places.push_back(at);
+  for (std::size_t at = whole.size() - kRecordsFootBytes; at < whole.size(); ++at) places.push_back(at);
+  for (const std::size_t at : places) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x55);
     out_.write(records(), damaged);
-    const std::string told = error_when_opened();
+    const std::string told = error_when_read();
     EXPECT_TRUE(told.find("is damaged") != std::string::npos ||
                 told.find("is cut short") != std::string::npos)
         << at << ": " << told;

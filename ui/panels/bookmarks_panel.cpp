@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
@@ -10,6 +11,7 @@
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
@@ -24,6 +26,8 @@ using Field = std::array<char, 256>;
 class BookmarksPanel final : public NamedPanel {
  public:
   explicit BookmarksPanel(Shared shared) : NamedPanel("bookmarks", "Bookmarks", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {290.0F, 160.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& bookmarks = session.debug.bookmarks;
@@ -49,6 +53,7 @@ class BookmarksPanel final : public NamedPanel {
       draw_absent(frame, "No bookmarks yet: B marks the frame shown, and a note says why.");
       return;
     }
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("list");
     if (ImGui::BeginTable("bookmarks", 4, ImGuiTableFlags_BordersInnerH)) {
       ImGui::TableSetupColumn("frame", ImGuiTableColumnFlags_WidthFixed, 58.0F * frame.scale);
@@ -62,6 +67,11 @@ class BookmarksPanel final : public NamedPanel {
       ImGui::EndTable();
     }
     ImGui::EndChild();
+    offer_table(frame, "bookmarks", low, [&] {
+      Table table{{"frame", "note"}, {}};
+      for (const Bookmark& one : bookmarks) table.rows.push_back({fmt::format("{}", one.frame), one.note});
+      return table;
+    });
   }
 
  private:

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstring>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
@@ -42,8 +44,11 @@ class BreakpointsPanel final : public NamedPanel {
  public:
   explicit BreakpointsPanel(Shared shared) : NamedPanel("breakpoints", "Breakpoints", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     draw_new(frame, session, actions);
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("list");
     const auto& all = session.debug.breakpoints;
     fields_.resize(all.size());
@@ -52,6 +57,14 @@ class BreakpointsPanel final : public NamedPanel {
     for (std::size_t i = 0; i < all.size(); ++i) draw_row(frame, session, i, editing, actions);
     if (all.empty()) draw_examples(frame, session, actions);
     ImGui::EndChild();
+    offer_table(frame, "breakpoints", low, [&] {
+      Table table{{"condition", "on", "hits", "frames"}, {}};
+      for (const BreakpointView& one : session.debug.breakpoints)
+        table.rows.push_back({one.breakpoint.expression, one.breakpoint.enabled ? "yes" : "no",
+                              fmt::format("{}", one.hits.size()),
+                              fmt::format("{}", fmt::join(one.hits, " "))});
+      return table;
+    });
   }
 
  private:

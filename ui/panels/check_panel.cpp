@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "core/check/check_sequence.hpp"
+#include "core/evaluation/tables.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_command.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/debug_view.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/ui_frame.hpp"
@@ -40,6 +42,8 @@ class CheckPanel final : public NamedPanel {
                        PanelActions& actions) { actions.requests.emplace_back(request::CheckSequence{}); }}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const CheckView& check = session.debug.check;
     Controls controls(frame);
@@ -49,6 +53,7 @@ class CheckPanel final : public NamedPanel {
       actions.perform.emplace_back("check_input");
     ImGui::EndDisabled();
     // Its bar is always there: one that came with the last line would wrap all others anew under the mouse.
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("findings", {}, false, ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame.theme.text_dim));
@@ -71,6 +76,11 @@ class CheckPanel final : public NamedPanel {
       for (const std::string& line : check.times) text_in_lines(line);
     }
     ImGui::EndChild();
+    offer_table(frame, "findings", low, [&] {
+      Table table{{"about", "finding"}, {}};
+      for (const Finding& finding : check.findings) table.rows.push_back({finding.about, finding.sentence});
+      return table;
+    });
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -12,6 +13,7 @@
 #include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -30,6 +32,10 @@ cv::Mat or_nothing(const cv::Mat& mask, const cv::Size& size) {
 class ComparePanel final : public NamedPanel {
  public:
   explicit ComparePanel(Shared shared) : NamedPanel("compare", "Compare runs", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
+
+  [[nodiscard]] bool shows_image_alone() const override { return false; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
@@ -76,6 +82,7 @@ class ComparePanel final : public NamedPanel {
 
   void draw_table(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (!ImGui::BeginTable("runs", 6, kFlags)) return;
     ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, 2.2F);
     ImGui::TableSetupColumn("Frames", ImGuiTableColumnFlags_WidthStretch, 0.8F);
@@ -91,6 +98,21 @@ class ComparePanel final : public NamedPanel {
     ImGui::TableNextColumn();
     for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) ghost_row(frame, session, i, actions);
     ImGui::EndTable();
+    offer_table(frame, "runs", low, [&] { return runs_table(session); });
+  }
+
+  static Table runs_table(const SessionView& session) {
+    Table table{{"run", "frames", "RPE " + session.run->evaluation.rpe_time.delta, "ATE", "parts at"}, {}};
+    const auto add = [&](const std::string& name, int frames, const RunView& run, const std::string& parts) {
+      table.rows.push_back({name, fmt::format("{}", frames),
+                            error_text(run.evaluation.rpe_time.translation_m),
+                            error_text(run.evaluation.ate.translation_m), parts});
+    };
+    add(session.run->name, session.processed, *session.run, "");
+    for (const GhostView& ghost : session.debug.ghosts)
+      add(ghost.name, static_cast<int>(ghost.run->records.size()), *ghost.run,
+          ghost.diverged ? fmt::format("{}", *ghost.diverged) : std::string());
+    return table;
   }
 
   static void run_row(const UiFrame& frame, const RunLook& look, const std::string& name, const RunView& run,
@@ -142,8 +164,10 @@ class ComparePanel final : public NamedPanel {
   void draw_frame_shown(const UiFrame& frame, const SessionView& session, const GhostView& ghost,
                         PanelActions& actions) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const bool beside = room.x > 1.5F * room.y;
-    const float figures_width = beside ? std::min(0.42F * room.x, 330.0F * frame.scale) : room.x;
+    // Three columns that can be read, or none beside the picture.
+    const float least = 250.0F * frame.scale;
+    const bool beside = room.x > 1.5F * room.y && room.x > 1.8F * least;
+    const float figures_width = beside ? std::clamp(0.42F * room.x, least, 330.0F * frame.scale) : room.x;
     const float row = frame.fonts.small->FontSize + 4.0F * frame.scale;
     const float figures_height = row * static_cast<float>(difference_.figures.size() + 2);
     const bool has_figures = beside || room.y > figures_height + 120.0F * frame.scale;
@@ -210,6 +234,7 @@ class ComparePanel final : public NamedPanel {
                   difference_.rotation_deg);
     ImGui::PopTextWrapPos();
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable("figures", 3, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, 1.2F);
       ImGui::TableSetupColumn(session.run->name.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
@@ -229,6 +254,12 @@ class ComparePanel final : public NamedPanel {
       }
       ImGui::EndTable();
     }
+    offer_table(frame, "compared_frame", low, [&] {
+      Table table{{"figure", session.run->name, ghost.name}, {}};
+      for (const FigurePair& pair : difference_.figures)
+        table.rows.push_back({pair.name, pair.run, pair.ghost});
+      return table;
+    });
     ImGui::PopStyleVar();
     ImGui::PopFont();
   }

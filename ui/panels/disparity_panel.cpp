@@ -31,6 +31,8 @@ class DisparityPanel final : public FramePanel {
   explicit DisparityPanel(Shared shared) : FramePanel("disparity", "Disparity", std::move(shared)) {}
 
   [[nodiscard]] bool is_for(const SessionView& session) const override { return session.camera.is_stereo(); }
+  [[nodiscard]] PanelSize least() const override { return {300.0F, 190.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (!has_stereo(frame, session)) return;
     const FrameView& view = *session.current;

@@ -19,6 +19,8 @@ class ErrorsPanel final : public NamedPanel {
  public:
   explicit ErrorsPanel(Shared shared) : NamedPanel("errors", "Error over time", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {320.0F, 190.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->evaluation.matched.empty()) {
       draw_absent(frame, session.ground_truth.empty()

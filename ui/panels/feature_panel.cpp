@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
 
 namespace stillpoint {
 namespace {
@@ -69,6 +71,8 @@ Facts facts_of(const FeatureExplanation& explanation) {
 class FeaturePanel final : public FramePanel {
  public:
   explicit FeaturePanel(Shared shared) : FramePanel("feature", "Feature", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {280.0F, 240.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
@@ -156,6 +160,7 @@ class FeaturePanel final : public FramePanel {
     for (const std::string& sentence : explanation_.because) text_in_lines(sentence);
     for (const Margin& margin : explanation_.margins) draw_margin(frame, margin);
     ImGui::PushFont(frame.fonts.small);
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable("facts", 2, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed);
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
@@ -168,6 +173,11 @@ class FeaturePanel final : public FramePanel {
       }
       ImGui::EndTable();
     }
+    offer_table(frame, "feature", low, [&] {
+      Table table{{"figure", "value"}, {}};
+      for (const auto& [name, value] : facts_of(explanation_)) table.rows.push_back({name, value});
+      return table;
+    });
     draw_trail(frame);
     if (!chosen)
       ImGui::TextWrapped("No feature is chosen: this is the %s. Click another in a features panel.",
@@ -180,9 +190,11 @@ class FeaturePanel final : public FramePanel {
   /// The last frames, newest first.
   void draw_trail(const UiFrame& frame) const {
     if (explanation_.trail.size() < 2) return;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    Table table{{"Frame", "Pixel", "Depth", "Then", "Found as"}, {}};
     if (!ImGui::BeginTable("trail", 5, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp))
       return;
-    for (const char* name : {"Frame", "Pixel", "Depth", "Then", "Found as"}) ImGui::TableSetupColumn(name);
+    for (const std::string& name : table.header) ImGui::TableSetupColumn(name.c_str());
     ImGui::TableHeadersRow();
     for (const TrailPoint& point : explanation_.trail) {
       ImGui::TableNextRow();
@@ -192,15 +204,17 @@ class FeaturePanel final : public FramePanel {
       const std::string fate = measured && !std::isnan(f.residual_px)
                                    ? fmt::format("{} {:.1f} px", look.name, f.residual_px)
                                    : look.name;
-      const std::string cells[] = {
+      const std::vector<std::string> cells = {
           fmt::format("{}", point.frame), fmt::format("{:.0f}, {:.0f}", f.pixel.x, f.pixel.y),
           f.depth > 0.0F ? fmt::format("{:.2f} m", f.depth) : "–", fate, link_text(point.link)};
       for (const std::string& cell : cells) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(cell.c_str());
       }
+      table.rows.push_back(cells);
     }
     ImGui::EndTable();
+    offer_table(frame, "feature_trail", low, [&] { return table; });
   }
 
   FeatureExplanation explanation_;

@@ -23,8 +23,14 @@ class FeaturesPanel final : public FramePanel {
                    std::move(shared)),
         moment_(moment) {}
 
+  [[nodiscard]] bool shows_image_alone() const override { return true; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
+    if (view.image_alone) {
+      draw_image_alone(frame, session, actions, ground_, *shared_);
+      return;
+    }
     if (view.record == nullptr) {
       draw_absent(frame, fmt::format("Frame {} has not been processed yet.", view.index));
       return;

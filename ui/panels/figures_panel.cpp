@@ -24,6 +24,8 @@ class FiguresPanel final : public NamedPanel {
  public:
   explicit FiguresPanel(Shared shared) : NamedPanel("figures", "Figures", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {360.0F, 260.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty()) {
       draw_absent(frame, "No frame has been processed yet.");

@@ -176,6 +176,24 @@ ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const Image
   return response;
 }
 
+void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                      FrameTexture& texture, PanelsShared& shared) {
+  // A row of controls and a line below stay free, so that the picture does not jump when they come.
+  const float row = ImGui::GetFrameHeightWithSpacing();
+  if (frame.controls) ImGui::Dummy({1.0F, ImGui::GetFrameHeight()});
+  Footer footer;
+  footer.legend.push_back({"mask and features follow", frame.theme.text_dim, Sign::kHollowSquare});
+  footer.caption = fmt::format("{}: being worked out.", frame_text(session, session.current->frame));
+  ImVec2 room = room_above(frame, footer);
+  room.y = std::max(room.y, row);
+  ImageContent content;
+  content.texture =
+      &texture.get(frame, session.current, -2, [&] { return picture_of(session.current->frame); });
+  content.values = &session.current->frame.gray;
+  draw_frame_image(frame, "image alone", content, shared, room, {session, actions});
+  footer.draw(frame);
+}
+
 ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const ImageContent& content,
                                 PanelsShared& shared, ImVec2 size, const FramePlace& place,
                                 const ColourScale& scale) {

@@ -84,6 +84,10 @@ ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const Imag
                                 PanelsShared& shared, ImVec2 size, const FramePlace& place,
                                 const ColourScale& scale);
 
+/// The frame's image while what lies over it is still worked out, in the room that its panel leaves it.
+void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                      FrameTexture& texture, PanelsShared& shared);
+
 /// Writes a heading into a picture's upper left corner, cut where there is no room for it.
 void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading);
 

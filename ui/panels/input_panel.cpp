@@ -19,6 +19,10 @@ class InputPanel final : public FramePanel {
  public:
   explicit InputPanel(Shared shared) : FramePanel("input", "Input", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {300.0F, 190.0F}; }
+
+  [[nodiscard]] bool shows_image_alone() const override { return true; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     Controls controls(frame);

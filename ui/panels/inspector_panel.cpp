@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/point_readings.hpp"
 #include "core/inspect/run_view.hpp"
+#include "core/inspect/scene_point.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/odometry/map_id.hpp"
 #include "core/run/frame_figures.hpp"
@@ -14,6 +16,7 @@
 #include "ui/panels/panel_command.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
 
@@ -100,6 +103,8 @@ class InspectorPanel final : public FramePanel {
                        PanelActions& actions) { actions.requests.emplace_back(request::Pins{}); }}};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {260.0F, 180.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     if (room.x > 760.0F * frame.scale) {
@@ -160,23 +165,43 @@ class InspectorPanel final : public FramePanel {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
     const auto count = static_cast<int>(std::min<std::size_t>(shown.size(), kMostColumns));
-    if (ImGui::BeginTable(
-            "points", 1 + count,
-            ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY)) {
-      ImGui::TableSetupScrollFreeze(0, 1);
-      float widest = 0.0F;
-      for (const ReadingGroup& group : shown.front().groups)
-        for (const Reading& reading : group.readings)
-          widest = std::max(widest, ImGui::CalcTextSize(reading.name.c_str()).x);
-      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
-                              std::min(widest, 0.45F * ImGui::GetContentRegionAvail().x));
+    float widest = 0.0F;
+    for (const ReadingGroup& group : shown.front().groups)
+      for (const Reading& reading : group.readings)
+        widest = std::max(widest, ImGui::CalcTextSize(reading.name.c_str()).x);
+    // Columns that have no room beside each other are scrolled to.
+    const float room = ImGui::GetContentRegionAvail().x,
+                needed =
+                    std::min(widest, 0.45F * room) + static_cast<float>(count) * kLeastColumn * frame.scale;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const bool scrolls = needed > room;
+    if (ImGui::BeginTable("points", 1 + count,
+                          ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp |
+                              ImGuiTableFlags_ScrollY | (scrolls ? ImGuiTableFlags_ScrollX : 0),
+                          {0.0F, 0.0F}, scrolls ? needed : 0.0F)) {
+      ImGui::TableSetupScrollFreeze(scrolls ? 1 : 0, 1);
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, std::min(widest, 0.45F * room));
       for (int i = 0; i < count; ++i) ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
       draw_column_names(shown, count, session, actions);
       for (std::size_t g = 0; g < shown.front().groups.size(); ++g) draw_group(frame, shown, count, g);
       ImGui::EndTable();
     }
+    offer_table(frame, "points", low, [&] { return points_table(shown); });
     ImGui::PopStyleVar();
     ImGui::PopFont();
+  }
+
+  static Table points_table(const std::vector<Column>& shown) {
+    Table table{{"layer", "reading"}, {}};
+    for (const Column& column : shown)
+      table.header.push_back(column.pin < 0 ? column.name : "Pin " + column.name);
+    for (std::size_t g = 0; g < shown.front().groups.size(); ++g)
+      for (std::size_t r = 0; r < shown.front().groups[g].readings.size(); ++r) {
+        std::vector<std::string> row{shown.front().groups[g].title, shown.front().groups[g].readings[r].name};
+        for (const Column& column : shown) row.push_back(column.groups[g].readings[r].value);
+        table.rows.push_back(std::move(row));
+      }
+    return table;
   }
 
   static void draw_column_names(const std::vector<Column>& shown, int count, const SessionView& session,
@@ -242,6 +267,7 @@ class InspectorPanel final : public FramePanel {
   static void table(const UiFrame& frame, const char* id, const Rows& rows, int pairs) {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.5F * frame.scale});
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable(id, 2 * pairs, ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       float widest = 0.0F;
       for (const auto& [name, value] : rows) widest = std::max(widest, ImGui::CalcTextSize(name.c_str()).x);
@@ -264,11 +290,17 @@ class InspectorPanel final : public FramePanel {
       }
       ImGui::EndTable();
     }
+    offer_table(frame, id, low, [&] {
+      Table table{{"figure", "value"}, {}};
+      for (const auto& [name, value] : rows) table.rows.push_back({name, value});
+      return table;
+    });
     ImGui::PopStyleVar();
     ImGui::PopFont();
   }
 
   static constexpr std::size_t kMostColumns = 8;
+  static constexpr float kLeastColumn = 84.0F;  // design px, of the readings at one point
 
   int what_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
@@ -10,6 +11,7 @@
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/shell/ui_frame.hpp"
@@ -68,6 +70,8 @@ class LogPanel final : public NamedPanel {
  public:
   explicit LogPanel(Shared shared) : NamedPanel("log", "Log", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 150.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (run_ != session.run.get() || records_ != session.run->records.size()) {
       run_ = session.run.get();
@@ -80,11 +84,19 @@ class LogPanel final : public NamedPanel {
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", fmt::format("{} of {} frames without a pose", lost, records_).c_str());
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("lines");
     draw_lines(frame, "Of this run", of_run_, session, actions);
     if (frame.log != nullptr)
       draw_lines(frame, "Of the interface, newest first", said(*frame.log), session, actions);
     ImGui::EndChild();
+    offer_table(frame, "log", low, [&] {
+      Table table{{"of", "when", "text"}, {}};
+      for (const Line& line : of_run_) table.rows.push_back({"run", line.when, line.text});
+      if (frame.log != nullptr)
+        for (const Line& line : said(*frame.log)) table.rows.push_back({"interface", line.when, line.text});
+      return table;
+    });
   }
 
  private:

@@ -26,8 +26,14 @@ class MaskPanel final : public FramePanel {
   MaskPanel(MaskPanelInfo info, Shared shared)
       : FramePanel(info.name, info.title, std::move(shared)), info_(std::move(info)) {}
 
+  [[nodiscard]] bool shows_image_alone() const override { return true; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
+    if (view.image_alone) {
+      draw_image_alone(frame, session, actions, ground_, *shared_);
+      return;
+    }
     if (is_the_runs()) {
       if (!view.frame.readable() || view.record == nullptr) {
         draw_absent(frame, missing_motion(session));

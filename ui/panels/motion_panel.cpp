@@ -16,6 +16,8 @@ class MotionPanel final : public FramePanel {
  public:
   explicit MotionPanel(Shared shared) : FramePanel("motion", "Motion stages", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {320.0F, 190.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog& log = *session.current->motion;
     std::vector<const Stage*> stages = overview_of(log);

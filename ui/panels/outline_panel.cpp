@@ -101,6 +101,8 @@ class OutlinePanel final : public FramePanel {
             })};
   }
 
+  [[nodiscard]] PanelSize least() const override { return {420.0F, 280.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     if (const std::string& now = session.debug.sequence_hash; !now.empty() && now != sequence_) {

@@ -24,6 +24,11 @@ struct PanelActions {
   std::vector<std::string> perform;  ///< named actions to run, in order
 };
 
+/// Design px, of a panel's tile with its heading.
+struct PanelSize {
+  float width = 0.0F, height = 0.0F;
+};
+
 /// One view of the session. What it draws is the same in a window and in an image file.
 ///
 /// It draws its controls, captions, legends and scales; its title is left to whoever gives it a place. It
@@ -42,13 +47,20 @@ class Panel {
   [[nodiscard]] virtual const std::string& title() const = 0;
   /// Draws into the current ImGui window or child, filling what is left of it.
   virtual void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) = 0;
+  /// In a smaller tile it cannot be read: it shares one with its neighbour then.
+  [[nodiscard]] virtual PanelSize least() const { return {270.0F, 180.0F}; }
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
+  /// Whether it shows a frame of which the image alone is there (FrameView::image_alone); else it goes on
+  /// showing the one before until the rest has come.
+  [[nodiscard]] virtual bool shows_image_alone() const { return !previews(); }
   /// Whether there may be anything to show of this sequence: where not, the panel is none of all.
   [[nodiscard]] virtual bool is_for(const SessionView& session) const {
     (void)session;
     return true;
   }
+  /// Brings up what has these words in its name, where there is a list to be searched.
+  virtual void find(const std::string& words) { (void)words; }
   /// Valid as long as the panel.
   [[nodiscard]] virtual std::vector<PanelCommand> commands();
 };

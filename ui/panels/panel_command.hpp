@@ -21,6 +21,7 @@ struct PanelCommand {
   bool repeats = false;                               ///< while its key is held
   bool shows = false;                                 ///< brings its panel up where it is not shown
   std::function<bool(const SessionView&)> enabled{};  ///< always, when empty
+  std::string off{};                                  ///< why it is not, for people
   std::function<void(const SessionView&, PanelActions&)> run;
 };
 

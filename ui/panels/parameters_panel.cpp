@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/odometry/engines.hpp"
 #include "ui/panels/all_panels.hpp"
@@ -12,6 +13,7 @@
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/parameter_rows.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/debug_view.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/ui_frame.hpp"
@@ -28,6 +30,14 @@ class ParametersPanel final : public NamedPanel {
  public:
   explicit ParametersPanel(Shared shared) : NamedPanel("parameters", "Parameters", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {330.0F, 240.0F}; }
+
+  void find(const std::string& words) override {
+    filter_ = {};
+    words.copy(filter_.data(), filter_.size() - 1);
+    only_changed_ = false;
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     follow(session);
     Config defaults, run = session.config;
@@ -35,6 +45,7 @@ class ParametersPanel final : public NamedPanel {
     draw_head(frame, session, actions);
     // The head's buttons may have discarded or reset what the sliders say, so it is read after them.
     Config wanted = wanted_;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("list");
     const std::vector<Parameter> shown = parameters(wanted);
     std::string section;
@@ -51,6 +62,13 @@ class ParametersPanel final : public NamedPanel {
     }
     if (open) ImGui::EndTable();
     ImGui::EndChild();
+    offer_table(frame, "parameters", low, [&] {
+      Table table{{"parameter", "value", "this run's", "default", "unit"}, {}};
+      for (std::size_t i = 0; i < shown.size(); ++i)
+        table.rows.push_back(
+            {shown[i].key, value_text(shown[i]), value_text(now[i]), value_text(usual[i]), shown[i].unit});
+      return table;
+    });
     // The rows have changed the copy: the frame shown is worked out anew with it.
     if (!changes(wanted, wanted_).empty()) want(wanted, session, actions);
   }

@@ -20,6 +20,8 @@ class PosePanel final : public NamedPanel {
  public:
   explicit PosePanel(Shared shared) : NamedPanel("pose", "Pose over time", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {340.0F, 240.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->trajectory.size() < 2) {
       draw_absent(frame, "No two frames have poses yet.");

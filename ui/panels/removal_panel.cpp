@@ -25,6 +25,8 @@ class RemovalPanel final : public NamedPanel {
  public:
   explicit RemovalPanel(Shared shared) : NamedPanel("removal", "Did removal help?", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {300.0F, 230.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.debug.removal.empty()) {
       draw_unchecked(frame, session, actions);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_stages.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/stage_change.hpp"
@@ -11,6 +12,7 @@
 #include "ui/panels/panel_command.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/stage_drawing.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
 
@@ -50,6 +52,8 @@ class StagesPanel final : public FramePanel {
              .shows = true,
              .run = step(-1)}};
   }
+
+  [[nodiscard]] PanelSize least() const override { return {420.0F, 280.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     actions.compare_frames = true;
@@ -256,6 +260,7 @@ class StagesPanel final : public FramePanel {
                                     [](const StageFigure& f) { return f.round_before.has_value(); });
     const bool frames = std::any_of(stage.figures.begin(), stage.figures.end(),
                                     [](const StageFigure& f) { return f.frame_before.has_value(); });
+    const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable("figures", 2 + (rounds ? 1 : 0) + (frames ? 1 : 0),
                           ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
       ImGui::TableSetupColumn("Figure");
@@ -277,6 +282,15 @@ class StagesPanel final : public FramePanel {
       }
       ImGui::EndTable();
     }
+    offer_table(frame, "stage_figures", low, [&] {
+      Table table{{"stage", "figure", "now", "since the round before", "since the frame before"}, {}};
+      for (const StageFigure& figure : stage.figures)
+        table.rows.push_back(
+            {stage.name, figure.name, figure_text(figure),
+             figure.round_before ? change_text(figure, *figure.round_before) : std::string(),
+             figure.frame_before ? change_text(figure, *figure.frame_before) : std::string()});
+      return table;
+    });
     ImGui::PopStyleVar();
     ImGui::PopFont();
   }

@@ -26,6 +26,8 @@ class SweepPanel final : public NamedPanel {
  public:
   explicit SweepPanel(Shared shared) : NamedPanel("sweep", "Parameter sweep", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {400.0F, 280.0F}; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (frame.controls) draw_question(frame, session, actions);
     const std::optional<SweepView>& sweep = session.debug.sweep;

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 
@@ -17,11 +20,36 @@ namespace stillpoint {
 namespace {
 
 constexpr double kWheelFactor = 1.2;
-constexpr double kLeastFrames = 4.0;        // in sight when zoomed in furthest
-constexpr float kRoomForControls = 150.0F;  // design px, height of the panel
-constexpr float kLeastLane = 20.0F;         // design px
-constexpr float kGrip = 5.0F;               // design px about an end of the range
+constexpr double kLeastFrames = 4.0;       // in sight when zoomed in furthest
+constexpr float kRoomForControls = 95.0F;  // design px, height of the panel
+constexpr float kBar = 7.0F;               // design px, of the bar that scrolls rows
+constexpr float kLeastLane = 20.0F;        // design px
+constexpr float kGrip = 5.0F;              // design px about an end of the range
 constexpr std::size_t kWorstShown = 5;
+
+/// The rows that are seen where there is no room for all.
+struct RowWindow {
+  std::size_t first = 0, count = 0;
+  float height = 0.0F;  // px, of all rows together
+};
+
+/// @param wanted the first row to be seen; fewer than fit are never shown at the end
+template <typename HeightOf>
+RowWindow row_window(std::size_t rows, const HeightOf& height_of, float room, std::size_t wanted) {
+  RowWindow window;
+  for (std::size_t i = 0; i < rows; ++i) window.height += height_of(i);
+  if (window.height <= room) return {0, rows, window.height};
+  // From the end back as many as fit: nothing later is worth being the first.
+  std::size_t latest = rows;
+  for (float used = 0.0F; latest > 0 && used + height_of(latest - 1) <= room; --latest)
+    used += height_of(latest - 1);
+  window.first = std::min(wanted, std::min(latest, rows - std::min<std::size_t>(rows, 1)));
+  for (float used = 0.0F; window.first + window.count < rows; ++window.count) {
+    used += height_of(window.first + window.count);
+    if (used > room) break;
+  }
+  return window;
+}
 
 std::string earlier(const char* what) { return std::string(icons::kChevronLeft) + "  " + what; }
 std::string later(const char* what) { return std::string(what) + "  " + icons::kChevronRight; }
@@ -30,6 +58,8 @@ std::string later(const char* what) { return std::string(what) + "  " + icons::k
 class TimelinePanel final : public NamedPanel {
  public:
   explicit TimelinePanel(Shared shared) : NamedPanel("timeline", "Timeline", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {440.0F, 185.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.frame_count <= 0 || session.run->records.empty()) {
@@ -52,6 +82,7 @@ class TimelinePanel final : public NamedPanel {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
     handle_mouse(frame, session, before, low.y + ruler_height(frame), actions);
+    offer_by_right_click(frame, "timeline", ImGui::IsItemHovered(), [&] { return offers(frame, session); });
     // What the mouse changed shows in this frame, not the next.
     const TimelinePaint paint(frame, low, high, range_.value_or(everything(session)));
     draw_rows(frame, session, paint, low, high, actions);
@@ -62,6 +93,47 @@ class TimelinePanel final : public NamedPanel {
   }
 
  private:
+  /// Each lane as a plot, and all of them as a table.
+  [[nodiscard]] std::vector<SaveOffer> offers(const UiFrame& frame, const SessionView& session) const {
+    std::vector<SaveOffer> offers;
+    const std::vector<double> frames(model_.frames.begin(), model_.frames.end());
+    std::vector<std::vector<double>> ghosts;
+    for (const auto& of_ghost : model_.ghost_frames) ghosts.emplace_back(of_ghost.begin(), of_ghost.end());
+    for (const TimelineLane& lane : model_.lanes) {
+      const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
+      Plot plot{
+          .x_label = "frame", .y_label = shown_name(info), .y_unit = std::string(shown_unit(info.unit).unit)};
+      plot.series.push_back({session.run->name, frames, lane.values, lane_colour(info, frame.theme.name)});
+      for (std::size_t g = 0; g < lane.ghosts.size() && g < ghosts.size(); ++g) {
+        const RunLook look = ghost_look(g, frame.theme.name);
+        plot.series.push_back(
+            {session.debug.ghosts[g].name, ghosts[g], lane.ghosts[g], look.colour, look.line});
+      }
+      if (range_) plot.x_limits = range_;
+      SaveOffer offer = offer_of(std::string(info.name), plot);
+      offer.what = fmt::format("{} as a plot", shown_name(info));
+      offer.values = {};
+      offers.push_back(std::move(offer));
+    }
+    Table table{{"frame", "status"}, {}};
+    for (const TimelineLane& lane : model_.lanes) {
+      const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
+      const std::string unit(shown_unit(info.unit).unit);
+      table.header.push_back(unit.empty() ? shown_name(info)
+                                          : fmt::format("{} ({})", shown_name(info), unit));
+    }
+    for (std::size_t i = 0; i < model_.frames.size(); ++i) {
+      std::vector<std::string> row{fmt::format("{}", model_.frames[i]),
+                                   std::string(to_string(session.run->records[i].status))};
+      for (const TimelineLane& lane : model_.lanes)
+        row.push_back(std::isfinite(lane.values[i]) ? fmt::format("{}", lane.values[i]) : std::string());
+      table.rows.push_back(std::move(row));
+    }
+    offers.push_back(offer_of("timeline", std::move(table)));
+    offers.back().what = "all lanes as a table";
+    return offers;
+  }
+
   [[nodiscard]] static float ruler_height(const UiFrame& frame) {
     return frame.fonts.small->FontSize + 4.0F * frame.scale;
   }
@@ -178,7 +250,11 @@ class TimelinePanel final : public NamedPanel {
     hovered_.reset();
     if (ImGui::IsItemHovered()) {
       hovered_ = pointed;
-      if (io.MouseWheel != 0.0F) zoom(session, zoomed(map, mouse, std::pow(kWheelFactor, -io.MouseWheel)));
+      if (io.MouseWheel != 0.0F && io.KeyShift)
+        first_row_ -= std::min(first_row_, static_cast<std::size_t>(io.MouseWheel > 0.0F ? 1 : 0)),
+            first_row_ += io.MouseWheel < 0.0F ? 1 : 0;
+      else if (io.MouseWheel != 0.0F)
+        zoom(session, zoomed(map, mouse, std::pow(kWheelFactor, -io.MouseWheel)));
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) range_.reset();
     }
     if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
@@ -230,20 +306,52 @@ class TimelinePanel final : public NamedPanel {
     const TimelineRows rows(frame, session, model_, paint);
     row([&](float top, float bottom) { rows.status(top, bottom); });
     row([&](float top, float bottom) { rows.marks(top, bottom); });
-    for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i)
-      row([&](float top, float bottom) { rows.ghost(i, top, bottom); });
-    // In a low panel the last lanes give way.
-    const int fitting = std::max(0, static_cast<int>((high.y - y + gap) / (kLeastLane * frame.scale + gap)));
-    const std::size_t shown = std::min(model_.lanes.size(), static_cast<std::size_t>(fitting));
-    const float height = shown == 0 ? 0.0F : (high.y - y + gap) / static_cast<float>(shown) - gap;
-    for (std::size_t i = 0; i < shown; ++i) {
-      draw_lane(frame, session, paint, model_.lanes[i], y, y + height, actions);
-      y += height + gap;
+    const std::size_t ghosts = session.debug.ghosts.size(), all = ghosts + model_.lanes.size();
+    const auto least = [&](std::size_t i) { return (i < ghosts ? thin : kLeastLane * frame.scale) + gap; };
+    const RowWindow window = row_window(all, least, high.y - y + gap, first_row_);
+    first_row_ = window.first;
+    // Where all fit, lanes share what is left.
+    const float spare = window.count == all ? high.y - y + gap - window.height : 0.0F;
+    const float more = model_.lanes.empty() ? 0.0F : spare / static_cast<float>(model_.lanes.size());
+    const float rows_top = y;
+    for (std::size_t i = window.first; i < window.first + window.count; ++i) {
+      const float bottom = y + least(i) - gap + (i < ghosts ? 0.0F : more);
+      if (i < ghosts)
+        rows.ghost(i, y, bottom);
+      else
+        draw_lane(frame, session, paint, model_.lanes[i - ghosts], y, bottom, actions);
+      y = bottom + gap;
     }
+    if (window.count < all) draw_scrollbar(frame, window, all, {high.x - kBar * frame.scale, rows_top}, high);
     if (const auto span = drag_.active() ? drag_.span(session.frame_count) : session.debug.span)
       paint.span(*span, low.y, ruler_bottom, y);
     if (hovered_) paint.upright(*hovered_, frame.theme.text_dim, 0.7F, 1.0F, low.y, y);
     paint.upright(session.current->index, role_colour(Role::kCursor, frame.theme.name), 1.0F, 1.5F, low.y, y);
+  }
+
+  /// The rows seen of those that have no room together, as a bar that can be dragged.
+  void draw_scrollbar(const UiFrame& frame, const RowWindow& window, std::size_t all, ImVec2 low,
+                      ImVec2 high) {
+    const float whole = std::max(high.y - low.y, 1.0F), count = static_cast<float>(all);
+    ImGui::SetCursorScreenPos(low);
+    ImGui::InvisibleButton("more rows", {high.x - low.x, whole});
+    const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+    if (active) {
+      const float at =
+          (ImGui::GetIO().MousePos.y - low.y) / whole * count - 0.5F * static_cast<float>(window.count);
+      first_row_ =
+          static_cast<std::size_t>(std::clamp(at + 0.5F, 0.0F, count - static_cast<float>(window.count)));
+    }
+    if (hovered)
+      ImGui::SetTooltip("%d of %d rows; drag, or Shift and the wheel, for the others",
+                        static_cast<int>(window.count), static_cast<int>(all));
+    const float top = low.y + whole * static_cast<float>(window.first) / count,
+                bottom = top + whole * static_cast<float>(window.count) / count;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float inset = 2.0F * frame.scale;
+    list.AddRectFilled({low.x + inset, low.y}, {high.x, high.y}, to_u32(frame.theme.raised), inset);
+    list.AddRectFilled({low.x + inset, top}, {high.x, bottom},
+                       to_u32(hovered || active ? frame.theme.text : frame.theme.text_dim), inset);
   }
 
   void draw_lane(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
@@ -292,6 +400,7 @@ class TimelinePanel final : public NamedPanel {
   }
 
   TimelineModel model_;
+  std::size_t first_row_ = 0;  // the first seen of ghosts and lanes
   std::vector<int> lanes_{frame_figure("rpe"), frame_figure("mask"), frame_figure("kept"),
                           frame_figure("inliers"), frame_figure("ms.total")};
   std::optional<int> worst_by_;

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <functional>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
+#include "core/motion/stage_log.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/shell/ui_pace.hpp"
 
 namespace stillpoint {
@@ -77,6 +80,8 @@ GhostTimes times_of(const GhostView& ghost) {
 class TimingsPanel final : public NamedPanel {
  public:
   explicit TimingsPanel(Shared shared) : NamedPanel("timings", "Timings", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {440.0F, 220.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty()) {
@@ -177,10 +182,31 @@ class TimingsPanel final : public NamedPanel {
       actions.go_to_frame = static_cast<int>(std::floor(std::clamp(*response.clicked_x, first, last)));
   }
 
+  [[nodiscard]] Table table_of(const SessionView& session) const {
+    const FrameRecord* record = session.current->record;
+    Table table{{"stage (ms)", "this frame", "mean", "median", "p99"}, {}};
+    for (const GhostView& ghost : session.debug.ghosts) table.header.push_back("mean, " + ghost.name);
+    const auto add = [&](const char* name, double now, const Figures& figures, const auto& of_ghost) {
+      std::vector<std::string> row{name};
+      for (const double value : {now, figures.mean, figures.median, figures.p99})
+        row.push_back(fmt::format("{:.4f}", value));
+      for (const GhostTimes& ghost : ghosts_) row.push_back(fmt::format("{:.4f}", of_ghost(ghost).mean));
+      table.rows.push_back(std::move(row));
+    };
+    for (std::size_t i = 0; i < kStages.size(); ++i)
+      add(kStages[i].name, record == nullptr ? 0.0 : record->ms.*kStages[i].value, figures_[i],
+          [i](const GhostTimes& ghost) { return ghost.figures[i]; });
+    add("whole frame", record == nullptr ? 0.0 : record->ms.total, whole_,
+        [](const GhostTimes& ghost) { return ghost.whole; });
+    return table;
+  }
+
   void draw_table(const UiFrame& frame, const SessionView& session) const {
     const FrameRecord* record = session.current->record;
     // Beside each mean stands that of every ghost.
     const int columns = 5 + static_cast<int>(ghosts_.size());
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const auto as_table = [&] { return table_of(session); };
     if (!ImGui::BeginTable("figures", columns,
                            ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchSame))
       return;
@@ -223,6 +249,7 @@ class TimingsPanel final : public NamedPanel {
     row("Whole frame", frame.theme.text, Sign::kLine, record != nullptr ? record->ms.total : std::nan(""),
         whole_, [](const GhostTimes& ghost) -> const Figures& { return ghost.whole; });
     ImGui::EndTable();
+    offer_table(frame, "timings", low, as_table);
   }
 
   std::vector<double> index_, total_;

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/scene/scene_widget.hpp"
 
 namespace stillpoint {
@@ -18,6 +21,8 @@ namespace {
 class TrajectoryPanel final : public NamedPanel {
  public:
   explicit TrajectoryPanel(Shared shared) : NamedPanel("trajectory", "Trajectory", std::move(shared)) {}
+
+  [[nodiscard]] PanelSize least() const override { return {330.0F, 190.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty() || session.run->trajectory.empty()) {
@@ -36,6 +41,8 @@ class TrajectoryPanel final : public NamedPanel {
     look(room);
     const SceneView before = view_;
     const SceneResponse response = widget_->draw(frame, "scene", scene_.data, view_, room);
+    offer_by_right_click(frame, "trajectory", ImGui::IsItemHovered(),
+                         [&] { return offers(frame.theme.name); });
     // Once a person has taken hold of the view it is theirs; until then it keeps everything in sight.
     if (!before.target.isApprox(view_.target) || before.distance != view_.distance ||
         !before.world_from_view.isApprox(view_.world_from_view))
@@ -68,6 +75,51 @@ class TrajectoryPanel final : public NamedPanel {
     run_ = session.run.get();
     layers_drawn_ = layers_;
     if (scene_.data.current) follow(view_, *scene_.data.current);
+  }
+
+  /// The paths as they are laid out here: seen along the axis in which they reach least, and as numbers.
+  [[nodiscard]] std::vector<SaveOffer> offers(ThemeName theme) const {
+    std::vector<std::array<std::vector<double>, 3>> paths(scene_.data.paths.size());
+    std::array<std::vector<double>, 3> all;
+    Table table{{"path", "frame", "time (s)", "x (m)", "y (m)", "z (m)"}, {}};
+    for (std::size_t p = 0; p < paths.size(); ++p)
+      for (std::size_t i = 0; i < scene_.data.paths[p].positions.size(); ++i) {
+        const Eigen::Vector3d at = scene_.data.paths[p].positions[i].cast<double>();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          paths[p][axis].push_back(at[static_cast<Eigen::Index>(axis)]);
+          all[axis].push_back(paths[p][axis].back());
+        }
+        const bool known = i < scene_.frames_of_path[p].size();
+        table.rows.push_back({scene_.data.paths[p].name,
+                              known ? fmt::format("{}", scene_.frames_of_path[p][i].index) : std::string(),
+                              known ? fmt::format("{}", scene_.frames_of_path[p][i].seconds) : std::string(),
+                              fmt::format("{}", at.x()), fmt::format("{}", at.y()),
+                              fmt::format("{}", at.z())});
+      }
+    std::array<AxisRange, 3> extents;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      extents[axis] = range_of(all[axis], 0.05, AxisScale::kLinear);
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    std::stable_sort(axes.begin(), axes.end(),
+                     [&](std::size_t a, std::size_t b) { return extents[a].span() > extents[b].span(); });
+    const std::size_t across = std::min(axes[0], axes[1]), up = std::max(axes[0], axes[1]);
+    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+    Plot plot{.x_label = kNames[across], .x_unit = "m", .y_label = kNames[up], .y_unit = "m"};
+    plot.y_from_zero = false;
+    plot.equal_scale = true;
+    plot.x_limits = extents[across];
+    for (std::size_t p = 0; p < paths.size(); ++p) {
+      const auto ghost = std::find(scene_.ghost_paths.begin(), scene_.ghost_paths.end(), p);
+      const SeriesStyle style =
+          ghost == scene_.ghost_paths.end()
+              ? (scene_.data.paths[p].dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
+              : ghost_look(static_cast<std::size_t>(ghost - scene_.ghost_paths.begin()), theme).line;
+      plot.series.push_back({scene_.data.paths[p].name, paths[p][across], paths[p][up],
+                             path_colour(scene_.data.paths[p], theme), style});
+    }
+    SaveOffer poses = offer_of("poses", std::move(table));
+    poses.what = "its poses";
+    return {offer_of("trajectory", plot), std::move(poses)};
   }
 
   void draw_controls(const UiFrame& frame, const SessionView& session) {

@@ -22,6 +22,10 @@ class TwoFramesPanel final : public NamedPanel {
  public:
   explicit TwoFramesPanel(Shared shared) : NamedPanel("two_frames", "Two frames", std::move(shared)) {}
 
+  [[nodiscard]] PanelSize least() const override { return {420.0F, 240.0F}; }
+
+  [[nodiscard]] bool shows_image_alone() const override { return false; }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     choose_frame(frame, session, actions);
     const auto& other = session.debug.other;

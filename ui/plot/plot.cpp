@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "ui/plot/plot_file.hpp"
 #include "ui/plot/plot_paint.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
 
@@ -82,24 +82,6 @@ void handle_mouse(const PlotPaint& paint, PlotView& view, PlotResponse& response
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) response.clicked_x = paint.x.to_value(mouse_x);
 }
 
-/// A right click in place offers the plot as a file.
-void offer_file(const UiFrame& frame, const char* id, const Plot& plot, const PlotView& view) {
-  if (frame.offer == nullptr) return;
-  constexpr const char* kMenu = "##plot menu";
-  constexpr float kInPlace = 16.0F;  // px², as far as a hand trembles
-  if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
-      ImGui::GetIO().MouseDragMaxDistanceSqr[ImGuiMouseButton_Right] < kInPlace)
-    ImGui::OpenPopup(kMenu);
-  if (!ImGui::BeginPopup(kMenu)) return;
-  if (ImGui::MenuItem("Save this plot…"))
-    *frame.offer = FileOffer{std::string(id) + ".svg", kPlotEndings,
-                             [figure = std::make_shared<const PlotFigure>(plot, view)](
-                                 const std::string& path) { write_plot(*figure, path); }};
-  if (ImGui::MenuItem("Copy its values"))
-    ImGui::SetClipboardText(plot_values(PlotFigure(plot, view)).c_str());
-  ImGui::EndPopup();
-}
-
 /// Leaves room beside the area for ticks and labels; y ticks decide how much.
 void lay_out(const UiFrame& frame, const Plot& plot, ImVec2 low, ImVec2 high, PlotPaint& paint) {
   const float scale = frame.scale;
@@ -152,7 +134,8 @@ PlotResponse draw_plot(const UiFrame& frame, const char* id, const Plot& plot, P
       ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
           ImGuiButtonFlags_MouseButtonMiddle);
   handle_mouse(paint, view, response);
-  offer_file(frame, id, plot, view);
+  offer_by_right_click(frame, "plot", ImGui::IsItemHovered(),
+                       [&] { return std::vector{offer_of(id, plot, view)}; });
   // What the mouse changed shows in this frame, not the next.
   set_ranges(plot, view, paint);
   lay_out(frame, plot, low, high, paint);

@@ -60,6 +60,7 @@ struct Plot {
   std::optional<AxisRange> x_limits{};  ///< what "everything" means in x; else the series' extent
   bool y_from_zero = true;              ///< the y axis begins at zero when nothing is negative
   bool legend = true;
+  bool equal_scale = false;  ///< in files: a unit of x is as long as one of y, and x may go back: paths
 };
 
 /// What the mouse did to a plot.

@@ -79,14 +79,9 @@ class FigurePaint {
     top_ = 8.0 + kLine * (legend_rows + (plot_.y_label.empty() ? 0.0 : 1.0));
     bottom_ = kHeight - 8.0 - kLine * (plot_.x_label.empty() ? 1.0 : 2.2);
     y_.pixel_low = bottom_, y_.pixel_high = top_;
-    constexpr int kMostTicksY = 6, kMostTicksX = 9;
-    y_ticks_ =
-        y_.scale == AxisScale::kLog ? log_ticks(y_.range, kMostTicksY) : linear_ticks(y_.range, kMostTicksY);
-    double widest = 0.0;
-    for (const AxisTick& tick : y_ticks_) widest = std::max(widest, width_of(tick.label));
-    left_ = 8.0 + widest + 5.0, right_ = kWidth - 12.0;
-    x_.pixel_low = left_, x_.pixel_high = right_;
-    x_ticks_ = linear_ticks(x_.range, kMostTicksX);
+    set_ticks();
+    // The room that ticks take depends on the ranges, and these on the room: twice is close enough.
+    for (int pass = 0; plot_.equal_scale && pass < 2; ++pass) equalise(), set_ticks();
   }
 
   void draw() {
@@ -105,6 +100,30 @@ class FigurePaint {
   }
 
  private:
+  void set_ticks() {
+    constexpr int kMostTicksY = 6, kMostTicksX = 9;
+    y_ticks_ =
+        y_.scale == AxisScale::kLog ? log_ticks(y_.range, kMostTicksY) : linear_ticks(y_.range, kMostTicksY);
+    double widest = 0.0;
+    for (const AxisTick& tick : y_ticks_) widest = std::max(widest, width_of(tick.label));
+    left_ = 8.0 + widest + 5.0, right_ = kWidth - 12.0;
+    x_.pixel_low = left_, x_.pixel_high = right_;
+    x_ticks_ = linear_ticks(x_.range, kMostTicksX);
+  }
+
+  /// Widens the axis that has more room than its range needs.
+  void equalise() {
+    const double x_unit = (right_ - left_) / x_.range.span(), y_unit = (bottom_ - top_) / y_.range.span();
+    const auto widened = [](const AxisRange& range, double factor) {
+      const double middle = 0.5 * (range.low + range.high), half = 0.5 * factor * range.span();
+      return AxisRange{middle - half, middle + half};
+    };
+    if (x_unit > y_unit)
+      x_.range = widened(x_.range, x_unit / y_unit);
+    else
+      y_.range = widened(y_.range, y_unit / x_unit);
+  }
+
   void colour(Rgb c, double opacity = 1.0) const {
     cairo_set_source_rgba(&cairo_, c.r / 255.0, c.g / 255.0, c.b / 255.0, opacity);
   }
@@ -259,7 +278,9 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
   return CAIRO_STATUS_SUCCESS;
 }
 
-std::string drawn(const PlotFigure& figure, const std::string& ending) {
+}  // namespace
+
+std::string plot_drawn(const PlotFigure& figure, const std::string& ending) {
   std::string bytes;
   const bool png = ending == ".png";
   const Surface surface(
@@ -285,8 +306,6 @@ std::string drawn(const PlotFigure& figure, const std::string& ending) {
   return ending == ".svg" ? std::regex_replace(bytes, std::regex("id=\"surface[0-9]+\""), "id=\"plot\"")
                           : bytes;
 }
-
-}  // namespace
 
 PlotFigure::PlotFigure(const Plot& plot, const PlotView& view) : plot_(plot), axes_(axes_of(plot, view)) {
   values_.reserve(2 * plot.series.size());
@@ -315,7 +334,7 @@ void write_plot(const PlotFigure& figure, const std::string& path) {
   if (ending == ".csv")
     write_text_file(path, plot_values(figure));
   else if (ending == ".svg" || ending == ".pdf" || ending == ".png")
-    write_text_file(path, drawn(figure, ending));
+    write_text_file(path, plot_drawn(figure, ending));
   else
     throw InputError(fmt::format("{}: a plot is written as {}", path, kPlotEndings));
 }

@@ -35,6 +35,9 @@ inline constexpr const char* kPlotEndings = ".svg, .pdf, .png or .csv";
 /// All values of a plot as CSV, a row each of series, x and y; values that are not known are empty.
 [[nodiscard]] std::string plot_values(const PlotFigure& figure);
 
+/// The bytes of a plot as a file of an ending holds it: ".svg", ".pdf" or ".png", for print, on white.
+[[nodiscard]] std::string plot_drawn(const PlotFigure& figure, const std::string& ending);
+
 /// Writes a plot by its file's ending: .svg, .pdf and .png for print, on white, at the ranges it is looked
 /// at; .csv its plot_values(). The same plot gives the same bytes.
 /// @throws InputError for another ending, and where it cannot be written

@@ -80,21 +80,6 @@ void Actions::run_pressed_keys(bool typing) {
   }
 }
 
-std::vector<const Action*> Actions::matching(std::string_view query) const {
-  std::vector<std::pair<int, const Action*>> scored;
-  for (const Action& action : actions_) {
-    if (!is_enabled(action)) continue;
-    // Nothing asked for yet: the order of the menus.
-    const std::optional<int> score = query.empty() ? 0 : match_score(action.title, query);
-    if (score) scored.emplace_back(*score, &action);
-  }
-  std::stable_sort(scored.begin(), scored.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<const Action*> actions;
-  for (const auto& [score, action] : scored) actions.push_back(action);
-  return actions;
-}
-
 bool is_enabled(const Action& action) { return !action.enabled || action.enabled(); }
 
 std::string key_text(const Action& action) {

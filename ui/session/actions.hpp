@@ -20,6 +20,7 @@ struct Action {
   std::vector<KeyChord> keys{};     ///< the first is printed
   bool repeats = false;             ///< while its key is held
   std::function<bool()> enabled{};  ///< always, when empty
+  std::string off{};                ///< why it is not, for people: "No frame after this one is lost."
   std::function<bool()> checked{};  ///< whether it is on, for what is switched
   std::function<void()> run;
 };
@@ -45,9 +46,6 @@ class Actions {
   void run_pressed_keys(bool typing);
   /// Whether what runs now does so for a key that was pressed before and is held.
   [[nodiscard]] bool key_is_held() const { return held_; }
-
-  /// Enabled actions whose title holds the letters of `query` in order, best match first.
-  [[nodiscard]] std::vector<const Action*> matching(std::string_view query) const;
 
  private:
   std::vector<Action> actions_;

@@ -34,6 +34,13 @@ struct GhostView {
   bool outside = false;         ///< another program's, in a world of its own
 };
 
+/// A ghost that begins at a frame the session's run has not come to yet.
+struct WaitingGhost {
+  std::string name;
+  Config config;
+  int from = 0;
+};
+
 /// Something being written.
 struct ExportView {
   std::string folder;
@@ -74,6 +81,7 @@ struct DebugView {
   std::optional<FrameSpan> span;  ///< the frames selected
   bool loop = false;              ///< play goes round in the span
   std::vector<GhostView> ghosts;
+  std::vector<WaitingGhost> waiting;         ///< ghosts to come, once the run is where they begin
   std::vector<RemovalError> removal;         ///< by frame; empty where there is no truth
   std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
   std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
@@ -129,11 +137,14 @@ struct Preview {
 struct RunAll {
   Config config;
 };  ///< the session's own run begins anew with it
-/// A ghost with this config: from frame `from` on, which has been processed, or from the first.
+/// A ghost with this config: from frame `from` on, or from the first.
 struct AddGhost {
   Config config;
   std::string name;
   int from = 0;
+  /// Where that frame has not been processed: the run goes there, and the ghost begins then. Otherwise it
+  /// begins at the last that has.
+  bool waits = false;
 };
 struct RemoveGhost {
   int index = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <future>
+#include <iterator>
+#include <utility>
 
 #include "core/check/findings.hpp"
 #include "core/inspect/frame_neighbours.hpp"
@@ -70,15 +72,38 @@ void Session::process_one() {
                         [&] { return baseline_->process_next([&frame](int) { return frame; }); });
   run_->process(frame);
   if (beside.valid()) beside.get();
+  begin_waiting_ghosts();
   // Of ghosts that are ahead of a run begun anew, this frame can be compared only now.
   for (Ghost& ghost : ghosts_) compare(ghost);
   breakpoints_due_ = true;
 }
 
+void Session::begin_waiting_ghosts() {
+  const auto is_due = [this](const WaitingGhost& ghost) { return ghost.from < run_->track().processed(); };
+  std::vector<WaitingGhost> due;
+  std::copy_if(debug_.waiting.begin(), debug_.waiting.end(), std::back_inserter(due), is_due);
+  std::erase_if(debug_.waiting, is_due);
+  for (const WaitingGhost& ghost : due)
+    attempt([&] { carry_out(request::AddGhost{ghost.config, ghost.name, ghost.from}); });
+}
+
+void Session::show_image_first() {
+  if (playing_ || target_ == current_->index || run_->has_at_hand(target_)) return;
+  auto image = run_->image_view(target_);
+  if (!image->frame.readable()) return;
+  if (!current_->image_alone) whole_ = current_;
+  current_ = std::move(image);
+  for (Ghost& ghost : ghosts_) ghost.current.reset();
+  debug_.other.reset();
+  debug_.preview.reset();
+  publish();
+}
+
 void Session::show(int frame) {
   // Going forward, the frame before is the one shown until now.
-  const bool follows = current_ && current_->index + 1 == frame && current_->record != nullptr;
-  current_ = run_->frame_view(frame, follows ? alone(*current_) : nullptr);
+  const auto last = whole_ ? std::exchange(whole_, nullptr) : current_;
+  const bool follows = last && last->index + 1 == frame && last->record != nullptr;
+  current_ = run_->frame_view(frame, follows ? alone(*last) : nullptr);
   for (Ghost& ghost : ghosts_) {
     const ReplayableRun& track = ghost.run->track();
     if (frame >= track.processed())
@@ -155,7 +180,7 @@ void Session::publish() {
   view->frame_count = source_->size();
   view->processed = run_->track().processed();
   view->playing = playing_;
-  view->busy = playing_ || current_->index != target_ || has_background();
+  view->busy = playing_ || current_->index != target_ || current_->image_alone || has_background();
   view->message = message_;
   view->current = current_;
   view->run = run_view_;

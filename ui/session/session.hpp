@@ -102,6 +102,7 @@ class Session {
   void refuse_without_images(const char* what) const;
   void process_one();
   void show(int frame);
+  void show_image_first();
   void choose_other();
   void publish();
   [[nodiscard]] DebugView debug_view();
@@ -152,6 +153,7 @@ class Session {
   void preview_step();
   void advance(Ghost& ghost);
   void compare(Ghost& ghost);
+  void begin_waiting_ghosts();
   void open_beside();
   void update_breakpoints();
   void open_sidecar();
@@ -167,6 +169,7 @@ class Session {
   std::unique_ptr<ReplayableRun> baseline_;
   std::vector<Ghost> ghosts_;
   std::shared_ptr<const FrameView> current_;
+  std::shared_ptr<const FrameView> whole_;  // shown before the image of the one that is worked out; else null
   std::shared_ptr<const RunView> run_view_, baseline_view_;
   std::uint64_t revision_ = 0;
   int target_ = 0;  // the frame wanted

@@ -189,6 +189,11 @@ void Session::carry_out(const request::RunAll& wanted) {
 void Session::carry_out(const request::AddGhost& wanted) {
   refuse_without_images(kNoOthers);
   refuse_out_of_range(wanted.config);
+  if (wanted.waits && wanted.from >= run_->track().processed() && wanted.from < source_->size()) {
+    debug_.waiting.push_back({wanted.name, wanted.config, wanted.from});
+    wanted_ = std::max(wanted_, wanted.from + 1);
+    return;
+  }
   const int from = std::clamp(wanted.from, 0, std::max(0, run_->track().processed() - 1));
   Ghost ghost{.name = wanted.name,
               .run = std::make_unique<ShownRun>(*source_, frames_,

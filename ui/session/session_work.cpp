@@ -38,6 +38,8 @@ void Session::stop_playing_where_wanted() {
 
 void Session::work_step() {
   if (playing_ && at_rest()) target_ = next_while_playing();
+  // What takes its time is not waited for to see the frame: its image stands there first.
+  if (worker_.joinable() && !playing_) show_image_first();
   const auto begin = Clock::now();
   // Frames on the way to one far ahead are not shown one by one; how far it is, is.
   while (run_->track().processed() <= target_ && Clock::now() - begin < kProgressInterval) process_one();
@@ -263,6 +265,7 @@ void Session::work(const std::stop_token& stop) {
       playing_ = false;
       preview_due_ = false;
       wanted_ = 0;
+      if (whole_) current_ = std::exchange(whole_, nullptr);
       target_ = current_->index;
       publish();
       // Without a frame to rest at, trying again at once would fail again at once.

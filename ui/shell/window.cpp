@@ -43,8 +43,10 @@ GLFWwindow* create_window(const WindowOptions& options) {
   if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
     int x = 0, y = 0, available_width = 0, available_height = 0;
     glfwGetMonitorWorkarea(monitor, &x, &y, &available_width, &available_height);
-    if (available_width > 0) width = std::min(width, available_width);
-    if (available_height > 0) height = std::min(height, available_height);
+    float scale_x = 1.0F, scale_y = 1.0F;
+    glfwGetMonitorContentScale(monitor, &scale_x, &scale_y);
+    const auto size = opening_size(options, scale_x, {available_width, available_height});
+    width = size[0], height = size[1];
   }
   return glfwCreateWindow(width, height, options.title.c_str(), nullptr, nullptr);
 }
@@ -111,6 +113,16 @@ class GlfwContext : public GraphicsContext {
 };
 
 }  // namespace
+
+std::array<int, 2> opening_size(const WindowOptions& options, float scale, std::array<int, 2> available) {
+  const float factor = options.grows_with_display ? std::max(scale, 1.0F) : 1.0F;
+  std::array<int, 2> size{options.width, options.height};
+  for (std::size_t side = 0; side < size.size(); ++side) {
+    size[side] = static_cast<int>(factor * static_cast<float>(size[side]));
+    if (available[side] > 0) size[side] = std::min(size[side], available[side]);
+  }
+  return size;
+}
 
 Window::Window(const WindowOptions& options) {
   start_glfw();

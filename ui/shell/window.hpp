@@ -14,9 +14,14 @@ struct WindowOptions {
   int width = 1600, height = 900;  ///< screen coordinates; brought down to what the screen offers
   std::string title = "Stillpoint";
   Look look{};
+  bool grows_with_display = true;  ///< a display whose letters are twice as large has a window twice as large
   bool maximised = false;
   bool gl_debug = false;  ///< a context that tells every error as it happens; slower
 };
+
+/// The size a window is opened with. @param scale of the display's letters @param available px, 0 = not known
+[[nodiscard]] std::array<int, 2> opening_size(const WindowOptions& options, float scale,
+                                              std::array<int, 2> available);
 
 /// The shell with a display: a GLFW window with an OpenGL 3.3 core context, drawn when something changes.
 class Window {

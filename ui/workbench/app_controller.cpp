@@ -175,11 +175,13 @@ Config AppController::config_as_left(const std::string& where, const std::vector
 
 void AppController::bring_back(const std::vector<KeptGhost>& ghosts) {
   for (const KeptGhost& ghost : ghosts) {
+    session_->request(request::AddGhost{.config = config_as_left(ghost.name, ghost.settings),
+                                        .name = ghost.name,
+                                        .from = ghost.from,
+                                        .waits = true});
     if (ghost.from > 0)
-      workbench_.say(fmt::format("{} is not brought back: it began at frame {} of a run that is made anew",
+      workbench_.say(fmt::format("{} comes back once the run has come to frame {}, where it begins",
                                  ghost.name, ghost.from));
-    else
-      session_->request(request::AddGhost{config_as_left(ghost.name, ghost.settings), ghost.name, 0});
   }
 }
 
@@ -322,6 +324,9 @@ RecentSequence AppController::as_left() const {
   left.ghosts.clear();
   for (const GhostView& ghost : view->debug.ghosts)
     if (!ghost.outside) left.ghosts.push_back({ghost.name, changed_settings(ghost.config), ghost.from});
+  // One that had no time to come back is not lost for it.
+  for (const WaitingGhost& ghost : view->debug.waiting)
+    left.ghosts.push_back({ghost.name, changed_settings(ghost.config), ghost.from});
   return left;
 }
 

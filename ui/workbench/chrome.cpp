@@ -259,8 +259,8 @@ void Workbench::draw_status_bar(float height) {
                       record->inliers),
           theme.text_dim);
     put(fmt::format("{} of {} frames processed", session_->processed, session_->frame_count), theme.text_dim);
-    if (session_->playing && shown_interval_s_ > 0.0)
-      put(fmt::format("{:.1f} fps", 1.0 / shown_interval_s_), theme.text_dim);
+    if (pace_ && pace_->shown > 0)
+      put(pace_text(), pace_->dropped > 0 ? role_colour(Role::kWarning, theme.name) : theme.text_dim);
     if (session_->busy && !session_->playing) put("working…", theme.accent);
   }
   const std::string trouble = session_ == nullptr ? "" : trouble_of(*session_);

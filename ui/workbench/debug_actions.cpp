@@ -32,25 +32,27 @@ void Workbench::ask(SessionRequest request) {
 
 void Workbench::add_debug_actions() {
   const auto add = [this](const char* name, const char* title, const char* icon, KeyChord key,
-                          std::function<Target()> target) {
+                          const char* off, std::function<Target()> target) {
     actions_.add({.name = name,
                   .title = title,
                   .group = "Debug",
                   .icon = icon,
                   .keys = key.key == Key::kNone ? std::vector<KeyChord>{} : std::vector{key},
                   .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .off = off,
                   .run = [this, target] { go_to(*target()); }});
   };
   const auto here = [this] { return session_->current->index; };
   // Where the list of worst frames led is kept: it is gone through from there.
   const auto add_worst = [this](const char* name, const char* title, const char* icon, KeyChord key,
-                                std::function<Target()> target) {
+                                const char* off, std::function<Target()> target) {
     actions_.add({.name = name,
                   .title = title,
                   .group = "Debug",
                   .icon = icon,
                   .keys = {key},
                   .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .off = off,
                   .run =
                       [this, target] {
                         worst_gone_to_ = target();
@@ -58,22 +60,29 @@ void Workbench::add_debug_actions() {
                       }});
   };
   add_worst("next_worst", "Next worst frame", icons::kWarning, {Key::kN, {}},
+            "No frame is worse than those gone through.",
             [this, here] { return stillpoint::next_worst(worst(), here(), worst_gone_to_); });
   add_worst("previous_worst", "Previous worst frame", icons::kChevronUp, {Key::kN, kShift},
+            "The worst frames have not been gone through yet.",
             [this, here] { return stillpoint::previous_worst(worst(), here(), worst_gone_to_); });
-  add("next_hit", "Next breakpoint hit", icons::kBug, {Key::kF8, {}},
+  add("next_hit", "Next breakpoint hit", icons::kBug, {Key::kF8, {}}, "No breakpoint holds after this frame.",
       [this, here] { return next_in(hit_frames(session_->debug), here()); });
   add("previous_hit", "Previous breakpoint hit", icons::kBug, {Key::kF8, kShift},
+      "No breakpoint holds before this frame.",
       [this, here] { return previous_in(hit_frames(session_->debug), here()); });
   add("next_hurt", "Next frame that removal hurt", icons::kBolt, {Key::kJ, {}},
+      "Removal hurt no frame after this one, or was not checked (run.check_removal).",
       [this, here] { return next_in(hurt_frames(session_->debug), here()); });
   add("previous_hurt", "Previous frame that removal hurt", icons::kBolt, {Key::kJ, kShift},
+      "Removal hurt no frame before this one, or was not checked (run.check_removal).",
       [this, here] { return previous_in(hurt_frames(session_->debug), here()); });
-  add("next_bookmark", "Next bookmark", icons::kBookmark, {Key::kPeriod, {}},
+  add("next_bookmark", "Next bookmark", icons::kBookmark, {Key::kPeriod, {}}, "No bookmark after this frame.",
       [this, here] { return next_in(bookmarked_frames(session_->debug), here()); });
   add("previous_bookmark", "Previous bookmark", icons::kBookmark, {Key::kComma, {}},
+      "No bookmark before this frame.",
       [this, here] { return previous_in(bookmarked_frames(session_->debug), here()); });
   add("first_divergence", "Where the first ghost run parts", icons::kRandom, {Key::kD, {}},
+      "No run stands beside this one, or none parts from it.",
       [this] { return first_divergence(session_->debug); });
   add_mark_actions();
 }
@@ -93,12 +102,14 @@ void Workbench::add_mark_actions() {
                 .icon = icons::kUndo,
                 .keys = {{Key::kZ, kCtrl}},
                 .enabled = [this, can_ask] { return can_ask() && session_->debug.undo_steps > 0; },
+                .off = "No mark was changed since the sequence was opened.",
                 .run = [this] { ask(request::Undo{}); }});
   actions_.add({.name = "redo",
                 .title = "Make that change of marks again",
                 .group = "Debug",
                 .keys = {{Key::kZ, {.ctrl = true, .shift = true}}},
                 .enabled = [this, can_ask] { return can_ask() && session_->debug.redo_steps > 0; },
+                .off = "Nothing was taken back.",
                 .run = [this] { ask(request::Redo{}); }});
   const auto add_span = [this, can_ask](const char* name, const char* title, Key key, bool begins) {
     actions_.add({.name = name,
@@ -125,6 +136,7 @@ void Workbench::add_mark_actions() {
                 .icon = icons::kRefresh,
                 .keys = {{Key::kL, kCtrl}},
                 .enabled = has_span,
+                .off = "No range of frames is selected.",
                 .checked = [this] { return session_ != nullptr && session_->debug.loop; },
                 .run =
                     [this] {
@@ -135,6 +147,7 @@ void Workbench::add_mark_actions() {
                 .group = "Debug",
                 .icon = icons::kClose,
                 .enabled = has_span,
+                .off = "No range of frames is selected.",
                 .run = [this] { ask(request::Span{}); }});
 }
 
@@ -165,6 +178,7 @@ void Workbench::add_layout_actions() {
                 .icon = icons::kUndo,
                 .keys = {{Key::kZ, {.ctrl = true, .alt = true}}},
                 .enabled = [this] { return !layouts_before_.empty(); },
+                .off = "The tiles are as they were.",
                 .run =
                     [this] {
                       after_frame_ = [this] {

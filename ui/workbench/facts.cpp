@@ -14,9 +14,9 @@ namespace {
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
 
-constexpr std::array<const char*, 15> kFacts{"frame", "frames",    "processed", "playing",    "status",
-                                             "title", "method",    "message",   "panels",     "maximised",
-                                             "theme", "shortcuts", "palette",   "log.errors", "choices"};
+constexpr std::array<const char*, 16> kFacts{
+    "frame",   "frames", "processed", "playing",   "dropped",   "status",  "title",      "method",
+    "message", "panels", "maximised", "theme",     "shortcuts", "palette", "log.errors", "choices"};
 
 }  // namespace
 
@@ -51,6 +51,7 @@ std::optional<std::string> Workbench::fact(const std::string& what, const Sessio
         text += fmt::format("{}{}: {}={}", text.empty() ? "" : ", ", panel, control, value);
     return text.empty() ? none : text;
   }
+  if (what == "dropped") return std::to_string(pace_ ? pace_->dropped : last_dropped_);
   if (what == "log.errors") return std::to_string(log_.errors());
   return std::nullopt;
 }

@@ -1,42 +1,12 @@
 #include "ui/workbench/layout.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace stillpoint {
 namespace {
 
 using Division = LayoutNode::Division;
-
-void place(const LayoutNode& node, const LayoutRect& area, float gap, std::vector<std::size_t>& path,
-           PlacedLayout& placed) {
-  if (node.is_panel()) {
-    placed.panels.push_back({node.panel, area});
-    return;
-  }
-  const bool columns = node.division == Division::kColumns;
-  const float gaps = gap * static_cast<float>(node.children.size() - 1);
-  const float extent = std::max(0.0F, (columns ? area.width : area.height) - gaps);
-  double before = 0.0;
-  for (std::size_t i = 0; i < node.children.size(); ++i) {
-    const double after = i + 1 == node.children.size() ? 1.0 : before + node.children[i].share;
-    // Edges are rounded, not sizes: so errors do not add up.
-    const float low = std::round(static_cast<float>(before) * extent) + gap * static_cast<float>(i);
-    const float high = std::round(static_cast<float>(after) * extent) + gap * static_cast<float>(i);
-    const LayoutRect rect = columns ? LayoutRect{area.x + low, area.y, high - low, area.height}
-                                    : LayoutRect{area.x, area.y + low, area.width, high - low};
-    path.push_back(i);
-    place(node.children[i], rect, gap, path, placed);
-    path.pop_back();
-    if (i + 1 < node.children.size()) {
-      const LayoutRect between = columns ? LayoutRect{area.x + high, area.y, gap, area.height}
-                                         : LayoutRect{area.x, area.y + high, area.width, gap};
-      placed.splitters.push_back({path, i, columns, between, extent});
-    }
-    before = after;
-  }
-}
 
 LayoutNode* find(LayoutNode& node, std::string_view panel) {
   if (node.is_panel()) return node.panel == panel ? &node : nullptr;
@@ -88,26 +58,6 @@ LayoutNode divide(double share, Division division, std::vector<LayoutNode> child
 }
 
 }  // namespace
-
-PlacedLayout arrange(const LayoutNode& root, const LayoutRect& area, float gap) {
-  PlacedLayout placed;
-  std::vector<std::size_t> path;
-  place(root, area, gap, path, placed);
-  return placed;
-}
-
-void drag(LayoutNode& root, const PlacedSplitter& splitter, float delta, float least) {
-  LayoutNode* parent = &root;
-  for (const std::size_t index : splitter.path) parent = &parent->children.at(index);
-  LayoutNode& first = parent->children.at(splitter.before);
-  LayoutNode& second = parent->children.at(splitter.before + 1);
-  if (splitter.extent <= 0.0F) return;
-  const double both = first.share + second.share;
-  const double minimum = std::min(static_cast<double>(least) / splitter.extent, both / 2.0);
-  first.share =
-      std::clamp(first.share + static_cast<double>(delta) / splitter.extent, minimum, both - minimum);
-  second.share = both - first.share;
-}
 
 std::vector<std::string> panels_of(const LayoutNode& root) {
   if (root.is_panel()) return {root.panel};
@@ -192,9 +142,9 @@ LayoutNode motion_layout(std::string_view method) {
         divide(0.5, kColumns, {tile(0.33, stages[i]), tile(0.33, stages[i + 1]), tile(0.34, stages[i + 2])}));
   if (rows.empty())
     rows = {tile(0.58, stages.front()), divide(0.42, kColumns, {tile(0.4, "mask"), tile(0.6, "stages")})};
-  return divide(
-      1.0, kColumns,
-      {divide(0.74, kRows, rows), divide(0.26, kRows, {tile(0.7, "parameters"), tile(0.3, "timeline")})});
+  return divide(1.0, kRows,
+                {divide(0.78, kColumns, {divide(0.74, kRows, rows), tile(0.26, "parameters")}),
+                 tile(0.22, "timeline")});
 }
 
 /// Runs beside each other: where they went, how far off, what each took out.
@@ -219,10 +169,12 @@ LayoutNode failures_layout(std::string_view) {
 
 /// One frame from within: its stages, and what pixels and features there say.
 LayoutNode stages_layout(std::string_view) {
-  return divide(
-      1.0, kColumns,
-      {tile(0.48, "stages"), divide(0.28, kRows, {tile(0.46, "features_before"), tile(0.54, "feature")}),
-       divide(0.24, kRows, {tile(0.72, "inspector"), tile(0.28, "timeline")})});
+  return divide(1.0, kRows,
+                {divide(0.78, kColumns,
+                        {tile(0.48, "stages"),
+                         divide(0.28, kRows, {tile(0.46, "features_before"), tile(0.54, "feature")}),
+                         tile(0.24, "inspector")}),
+                 tile(0.22, "timeline")});
 }
 
 /// What a stereo pair's depth is made of, and what becomes of it.

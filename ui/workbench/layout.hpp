@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -31,10 +32,19 @@ struct LayoutRect {
   bool operator==(const LayoutRect&) const = default;
 };
 
+/// px.
+struct TileSize {
+  float width = 0.0F, height = 0.0F;
+};
+
+/// The least tile in which a panel can be read.
+using LeastOf = std::function<TileSize(const std::string& panel)>;
+
 /// Where a panel lies.
 struct PlacedPanel {
-  std::string panel;
+  std::string panel;  ///< what is seen there: of several, the one with the largest share
   LayoutRect rect;
+  std::vector<std::string> tabs{};  ///< all that share the place, in reading order; one alone has none
 };
 
 /// The gap between two siblings, by which their shares are changed.
@@ -44,6 +54,10 @@ struct PlacedSplitter {
   bool upright = false;           ///< between columns: dragged sideways
   LayoutRect rect;                ///< px, the gap itself
   float extent = 0.0F;            ///< px that the parent's children share
+  std::size_t first = 0,
+              last = 0;  ///< children that share a place: first … before lie before the gap, up to last after
+  std::vector<double> shares{};                   ///< of all the parent's children, as they were laid out
+  float least_before = 0.0F, least_after = 0.0F;  ///< px that either side needs
 };
 
 struct PlacedLayout {
@@ -52,9 +66,17 @@ struct PlacedLayout {
 };
 
 /// Lays a tree out in an area, `gap` px between tiles. Positions are whole pixels and leave no px unused.
-[[nodiscard]] PlacedLayout arrange(const LayoutNode& root, const LayoutRect& area, float gap);
+///
+/// A tile whose share is less than its panel needs takes from its siblings. Where all of them have no room
+/// beside one another, neighbours become tabs of one tile, until what is left fits: no tile is smaller than
+/// `least` says, unless the whole area is. What becomes a tab depends on the area alone, not on shares, so
+/// that nothing changes places while a splitter is dragged.
+/// @param least empty: nothing needs any room
+[[nodiscard]] PlacedLayout arrange(const LayoutNode& root, const LayoutRect& area, float gap,
+                                   const LeastOf& least = {});
 
-/// Moves a splitter by `delta` px; no tile gets smaller than `least` px unless there is no room anyway.
+/// Moves a splitter by `delta` px; no tile gets smaller than `least` px, or than it can be read in, unless
+/// there is no room anyway.
 void drag(LayoutNode& root, const PlacedSplitter& splitter, float delta, float least);
 
 /// Whether a panel is shown, and the panels shown in reading order.
@@ -67,7 +89,7 @@ void remove_panel(LayoutNode& root, std::string_view panel);
 /// Puts `wanted` where `panel` is; where both are shown they change places.
 void replace_panel(LayoutNode& root, std::string_view panel, const std::string& wanted);
 
-/// Adds a panel that is not shown yet: in one half of the largest tile, divided across its longer side.
+/// Adds a panel that is not there yet: in one half of the largest tile, divided across its longer side.
 void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& area);
 
 /// What a newcomer sees of a run by this method.

@@ -44,18 +44,46 @@ bool begin_notice(const UiFrame& frame, const char* name, ImVec2 at, ImVec2 pivo
 
 }  // namespace
 
+std::string Workbench::pace_text() const {
+  std::string text =
+      fmt::format("{:.1f} of {:.0f} fps", pace_->shown / std::max(pace_->seconds, 1e-3), speed_);
+  if (pace_->dropped > 0)
+    text += fmt::format(", {} frame{} not shown", pace_->dropped, pace_->dropped == 1 ? "" : "s");
+  return text;
+}
+
+/// Counts what is shown while playing, and the frames that went by between two pictures.
+void Workbench::follow_play() {
+  constexpr int kWorthTelling = 10;  // frames shown
+  if (session_ == nullptr || !session_->playing) {
+    if (!pace_) return;
+    last_dropped_ = pace_->dropped;
+    // Frames that nobody saw are told even where that was soon over.
+    if (session_ != nullptr && (pace_->dropped > 0 || (pace_->shown >= kWorthTelling &&
+                                                       pace_->shown < 0.9 * speed_ * pace_->seconds)))
+      say(fmt::format("played frames {} to {}: {}", pace_->begun_at, session_->current->index, pace_text()));
+    pace_.reset();
+    return;
+  }
+  const int here = session_->current->index;
+  if (!pace_) pace_ = Pace{.begun_at = here, .begun_s = time_s_};
+  // Back is no drop: play goes round in a range.
+  if (last_shown_ >= 0 && here > last_shown_) {
+    ++pace_->shown;
+    pace_->dropped += here - last_shown_ - 1;
+  } else if (here != last_shown_) {
+    ++pace_->shown;
+  }
+  pace_->seconds = time_s_ - pace_->begun_s;
+}
+
 void Workbench::follow_session() {
+  follow_play();
   if (session_ == nullptr) {
     last_shown_ = -1;
     return;
   }
-  if (session_->current->index != last_shown_) {
-    const double interval = time_s_ - last_shown_s_;
-    shown_interval_s_ =
-        shown_interval_s_ > 0.0 && interval < 2.0 ? 0.9 * shown_interval_s_ + 0.1 * interval : interval;
-    last_shown_ = session_->current->index;
-    last_shown_s_ = time_s_;
-  }
+  last_shown_ = session_->current->index;
   if (session_->message == last_trouble_) return;
   last_trouble_ = session_->message;
   if (!last_trouble_.empty()) say(last_trouble_, true);
@@ -167,7 +195,8 @@ void Workbench::draw_error() {
     ImGui::TextUnformatted(message_.c_str());
     ImGui::PopTextWrapPos();
     if (ImGui::Button("Put away")) error_open_ = false;
-    if (session_ != nullptr && find_panel("log") != nullptr && !contains(layout_, "log")) {
+    if (session_ != nullptr && find_panel("log") != nullptr &&
+        (!contains(layout_, "log") || is_behind("log"))) {
       ImGui::SameLine();
       if (ImGui::Button("Show the log")) {
         error_open_ = false;

@@ -48,8 +48,10 @@ Settings from_json(const Json& json, const fs::path& path, const std::vector<std
                                                ghost.value("settings", std::vector<std::string>{}),
                                                std::max(ghost.value("from", 0), 0)});
   }
-  settings.window_size = json.value("window", settings.window_size);
-  for (int& side : settings.window_size) side = std::clamp(side, 320, 16384);
+  if (json.contains("window")) {
+    settings.window_size = json["window"].get<std::array<int, 2>>();
+    for (int& side : *settings.window_size) side = std::clamp(side, 320, 16384);
+  }
   if (json.contains("layout")) settings.layout = parse_layout(json["layout"].dump(), path.string(), known);
   return settings;
 }
@@ -87,7 +89,7 @@ void write_settings(const fs::path& path, const Settings& settings) {
   Json json;
   json["theme"] = settings.look.theme == ThemeName::kDark ? "dark" : "light";
   json["scale"] = settings.look.scale;
-  json["window"] = settings.window_size;
+  if (settings.window_size) json["window"] = *settings.window_size;
   json["recent"] = Json::array();
   for (const RecentSequence& one : settings.recent) {
     Json kept{

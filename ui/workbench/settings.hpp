@@ -34,8 +34,9 @@ struct RecentSequence {
 struct Settings {
   Look look{};
   std::optional<LayoutNode> layout;
-  std::vector<RecentSequence> recent;         ///< newest first
-  std::array<int, 2> window_size{1600, 900};  ///< screen coordinates
+  std::vector<RecentSequence> recent;  ///< newest first
+  std::optional<std::array<int, 2>>
+      window_size{};  ///< screen coordinates; nothing before the first window closed
 };
 
 inline constexpr std::size_t kRecentKept = 8;

@@ -19,7 +19,7 @@ namespace stillpoint {
 namespace {
 
 // Design px.
-constexpr float kGap = 5.0F, kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
+constexpr float kHeading = 27.0F, kLeastTile = 90.0F, kStatusHeight = 25.0F;
 // In smaller tiles than these, controls are small too: the picture matters more.
 constexpr float kCompactWidth = 380.0F, kCompactHeight = 330.0F;
 
@@ -156,7 +156,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
   draw_menu_bar();
-  const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kGap * frame.scale);
+  const float status = std::round(kStatusHeight * frame.scale), gap = std::round(kTileGap * frame.scale);
   if (session != nullptr) {
     draw_toolbar();
     draw_verdict();
@@ -239,14 +239,16 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
 void Workbench::draw_tiles(const LayoutRect& area) {
   tiles_.clear();
   if (!maximised_.empty()) {
-    take_turns({{maximised_, area}});
-    draw_tile(maximised_, area);
+    places_ = {{maximised_, area}};
+    take_turns(places_);
+    draw_tile(places_.front());
     return;
   }
-  const PlacedLayout placed = arrange(layout_, area, std::round(kGap * frame_->scale));
+  const PlacedLayout placed = placed_tiles(area);
+  places_ = placed.panels;
   take_turns(placed.panels);
   hovered_panel_.clear();
-  for (const PlacedPanel& panel : placed.panels) draw_tile(panel.panel, panel.rect);
+  for (const PlacedPanel& panel : placed.panels) draw_tile(panel);
   draw_splitters(placed);
 }
 
@@ -277,7 +279,9 @@ void Workbench::draw_splitters(const PlacedLayout& placed) {
   }
 }
 
-void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
+void Workbench::draw_tile(const PlacedPanel& tile) {
+  const std::string& name = tile.panel;
+  const LayoutRect& rect = tile.rect;
   Panel* panel = find_panel(name);
   if (panel == nullptr) return;
   const float heading = std::round(kHeading * frame_->scale);
@@ -288,7 +292,7 @@ void Workbench::draw_tile(const std::string& name, const LayoutRect& rect) {
   tiles_[name] = rect;
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
-  draw_tile_heading(*panel, rect, heading);
+  draw_tile_heading(*panel, tile, heading);
   PanelActions wanted;
   frame_->choices = &choices_[name];
   const SessionView& session = view_of(name);
@@ -304,49 +308,6 @@ const SessionView& Workbench::previewed(const SessionView& session) {
   if (!previewed_ || previewed_->current != session.debug.preview)
     previewed_ = std::make_unique<const SessionView>(with_preview(session));
   return *previewed_;
-}
-
-void Workbench::draw_tile_heading(Panel& panel, const LayoutRect& rect, float height) {
-  const float button = height - 4.0F * frame_->scale, margin = 9.0F * frame_->scale;
-  const float buttons = 2.0F * button + 6.0F * frame_->scale;
-  if (panel.previews() && shows_preview(view_of(panel.name())))
-    draw_preview_badge(*frame_,
-                       {rect.x + rect.width - buttons - 4.0F * frame_->scale, rect.y + 4.0F * frame_->scale});
-  ImGui::PushFont(frame_->fonts.strong);
-  draw_clipped_text({rect.x + margin, rect.y + 0.5F * (height - ImGui::GetFontSize())}, panel.title(),
-                    rect.width - margin - buttons, to_u32(frame_->theme.text));
-  ImGui::PopFont();
-  ImGui::PushStyleColor(ImGuiCol_Button, ImVec4{0, 0, 0, 0});
-  ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(frame_->theme.text_dim));
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
-  ImGui::SetCursorScreenPos({rect.x + rect.width - buttons, rect.y + 2.0F * frame_->scale});
-  const bool maximised = maximised_ == panel.name();
-  if (ImGui::Button(maximised ? icons::kRestore : icons::kMaximise, {button, button}))
-    after_frame_ = [this, name = maximised ? std::string() : panel.name()] { maximised_ = name; };
-  ImGui::SetCursorScreenPos(
-      {rect.x + rect.width - buttons + button + 2.0F * frame_->scale, rect.y + 2.0F * frame_->scale});
-  if (ImGui::Button(icons::kBars, {button, button})) ImGui::OpenPopup("tile menu");
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor(2);
-  draw_tile_menu(panel.name());
-}
-
-void Workbench::draw_tile_menu(const std::string& name) {
-  if (!ImGui::BeginPopup("tile menu")) return;
-  const bool maximised = maximised_ == name;
-  if (ImGui::MenuItem(maximised ? "Restore" : "Maximise", "M"))
-    after_frame_ = [this, wanted = maximised ? std::string() : name] { maximised_ = wanted; };
-  if (ImGui::MenuItem("Hide", nullptr, false, maximised_.empty() && !layout_.is_panel()))
-    after_frame_ = [this, name] { remove_panel(layout_, name); };
-  ImGui::Separator();
-  if (ImGui::BeginMenu("Show here", maximised_.empty())) {
-    for (const auto& panel : panels_)
-      if (ImGui::MenuItem(panel->title().c_str(), contains(layout_, panel->name()) ? "swap" : "",
-                          panel->name() == name))
-        after_frame_ = [this, name, wanted = panel->name()] { replace_panel(layout_, name, wanted); };
-    ImGui::EndMenu();
-  }
-  ImGui::EndPopup();
 }
 
 void Workbench::carry_out(const PanelActions& wanted) {

@@ -9,14 +9,19 @@
 
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_choices.hpp"
+#include "ui/panels/panel_command.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/workbench/layout.hpp"
 #include "ui/workbench/open_dialog.hpp"
+#include "ui/workbench/palette.hpp"
 
 namespace stillpoint {
+
+/// Design px, between tiles.
+inline constexpr float kTileGap = 5.0F;
 
 /// What the workbench has done by whoever runs it. Functions left empty are not offered, as in images.
 struct WorkbenchHost {
@@ -67,8 +72,11 @@ class Workbench {
   /// A sequence that is being opened, as a notice over what is shown; empty ends it.
   void set_opening(std::string where) { opening_ = std::move(where); }
 
-  /// Where a panel was drawn last, px; nothing where it is not shown.
+  /// Where a panel was drawn last, px; nothing where it is not seen, as behind another's tab.
   [[nodiscard]] std::optional<LayoutRect> tile_of(const std::string& panel) const;
+
+  /// The tiles drawn last, with those that share a place.
+  [[nodiscard]] const std::vector<PlacedPanel>& places() const { return places_; }
 
   /// A fact about what is shown, by name, for recordings that expect one: "frame", "panels", "theme", …;
   /// nothing for a name there is not.
@@ -128,12 +136,21 @@ class Workbench {
   void draw_splitters(const PlacedLayout& placed);
   void take_turns(const std::vector<PlacedPanel>& placed);
   [[nodiscard]] const SessionView& view_of(const std::string& tile) const;
-  void draw_tile(const std::string& name, const LayoutRect& rect);
+  void draw_tile(const PlacedPanel& tile);
+  [[nodiscard]] PlacedLayout placed_tiles(const LayoutRect& area) const;
+  void bring_to_front(const std::string& panel);
+  void next_tab();
+  [[nodiscard]] bool is_behind(const std::string& panel) const;
   [[nodiscard]] const SessionView& previewed(const SessionView& session);
-  void draw_tile_heading(Panel& panel, const LayoutRect& rect, float height);
+  void draw_tile_heading(Panel& panel, const PlacedPanel& tile, float height);
+  void draw_tabs(const PlacedPanel& tile, float height, float width);
   void draw_tile_menu(const std::string& name);
   void draw_palette();
   void draw_palette_list();
+  [[nodiscard]] std::vector<PaletteRow> palette_rows();
+  void add_run_rows(std::vector<PaletteRow>& rows);
+  void add_parameter_rows(std::vector<PaletteRow>& rows);
+  void show_parameter(const std::string& key);
   void draw_shortcuts();
   void draw_shortcut_list(int columns) const;
   [[nodiscard]] bool ask_for_path(PathDialog& dialog, const char* title, const char* what,
@@ -164,6 +181,8 @@ class Workbench {
   std::string opening_, last_trouble_;
   std::map<std::string, PanelChoices> choices_;
   std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
+  std::vector<PlacedPanel> places_;          ///< … with the tabs that share them
+  std::vector<std::string> fronts_;          ///< tabs that were brought to the front, the last at the end
   Look look_;
   double time_s_ = 0.0, said_s_ = 0.0;
   std::vector<std::string> recent_;
@@ -206,9 +225,19 @@ class Workbench {
   bool level_ = true;
 
   // How fast frames go by while playing.
+  struct Pace {
+    int begun_at = 0, shown = 0, dropped = 0;  // frames
+    double begun_s = 0.0, seconds = 0.0;
+  };
+  void follow_play();
+  [[nodiscard]] std::string pace_text() const;
+  std::optional<Pace> pace_;  // of what is played; nothing while nothing is
+  int last_dropped_ = 0;      // when it was played last
   int last_shown_ = -1;
-  double last_shown_s_ = 0.0, shown_interval_s_ = 0.0;
 };
+
+/// Begins an overlay centred in x, its top at a share of the height; ImGui::End() ends it.
+bool begin_overlay(const UiFrame& frame, const char* name, ImVec2 size, float top_share);
 
 /// Draws `text` in small type at most `width` px wide, cut with an ellipsis.
 void draw_clipped_text(ImVec2 at, const std::string& text, float width, ImU32 colour);

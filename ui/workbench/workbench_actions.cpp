@@ -41,6 +41,7 @@ void Workbench::add_actions() {
                 .group = "File",
                 .icon = icons::kFolderOpen,
                 .enabled = [this] { return session_ != nullptr && session_->processed > 0 && host_.request; },
+                .off = "No frame has been processed yet.",
                 .run = [this] { hand_on_dialog_ = {.open = true, .opened_now = true}; }});
   actions_.add({.name = "quit", .title = "Quit", .group = "File", .keys = {{Key::kQ, kCtrl}}, .run = [this] {
                   if (frame_ != nullptr) frame_->quit = true;
@@ -66,7 +67,7 @@ void Workbench::add_actions() {
 
 void Workbench::add_playback_actions() {
   const auto add = [this](const char* name, const char* title, const char* icon, KeyChord key, bool repeats,
-                          std::function<std::optional<int>()> target) {
+                          const char* off, std::function<std::optional<int>()> target) {
     actions_.add({.name = name,
                   .title = title,
                   .group = "Playback",
@@ -74,6 +75,7 @@ void Workbench::add_playback_actions() {
                   .keys = {key},
                   .repeats = repeats,
                   .enabled = [this, target] { return can_go() && target().has_value(); },
+                  .off = off,
                   .run = [this, target] { go_to(*target()); }});
   };
   using Target = std::optional<int>;
@@ -97,21 +99,22 @@ void Workbench::add_playback_actions() {
                         const int frame = can_go() ? session_->current->index + by : -1;
                         return frame >= 0 && frame < session_->frame_count;
                       },
+                  .off = by > 0 ? "This is the last frame." : "This is the first frame.",
                   .run = [this, by] { step(by); }});
   };
   add_step("step", "Step forward", icons::kStepForward, Key::kRight, 1);
   add_step("step_back", "Step back", icons::kStepBack, Key::kLeft, -1);
-  add("first", "First frame", icons::kFastBack, {Key::kHome, {}}, false, []() -> Target { return 0; });
-  add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false,
+  add("first", "First frame", icons::kFastBack, {Key::kHome, {}}, false, "", []() -> Target { return 0; });
+  add("last_processed", "Last processed frame", icons::kFastForward, {Key::kEnd, {}}, false, "",
       [this]() -> Target { return std::max(0, session_->processed - 1); });
-  add("last", "Last frame of the sequence", icons::kFlag, {Key::kEnd, kCtrl}, false,
+  add("last", "Last frame of the sequence", icons::kFlag, {Key::kEnd, kCtrl}, false, "",
       [this]() -> Target { return session_->frame_count - 1; });
   add("next_keyframe", "Next keyframe", icons::kChevronRight, {Key::kRightBracket, {}}, true,
-      [this] { return next_keyframe(*session_); });
+      "No keyframe after this frame is known yet.", [this] { return next_keyframe(*session_); });
   add("previous_keyframe", "Previous keyframe", icons::kChevronLeft, {Key::kLeftBracket, {}}, true,
-      [this] { return previous_keyframe(*session_); });
+      "There is no keyframe before this frame.", [this] { return previous_keyframe(*session_); });
   add("next_lost", "Next lost frame", icons::kWarning, {Key::kL, {}}, true,
-      [this] { return next_lost_frame(*session_); });
+      "No frame after this one is lost.", [this] { return next_lost_frame(*session_); });
 }
 
 void Workbench::add_view_actions() {
@@ -148,7 +151,20 @@ void Workbench::add_view_actions() {
        .icon = icons::kMaximise,
        .keys = {{Key::kM, {}}},
        .enabled = [this] { return session_ != nullptr && (!maximised_.empty() || !hovered_panel_.empty()); },
+       .off = "The mouse is on no panel.",
        .run = [this] { maximised_ = maximised_.empty() ? hovered_panel_ : ""; }});
+  actions_.add({.name = "next_tab",
+                .title = "Next tab of the tile under the mouse",
+                .group = "View",
+                .keys = {{Key::kTab, kCtrl}},
+                .enabled =
+                    [this] {
+                      return std::any_of(places_.begin(), places_.end(), [this](const PlacedPanel& place) {
+                        return place.panel == hovered_panel_ && !place.tabs.empty();
+                      });
+                    },
+                .off = "The tile under the mouse has one panel.",
+                .run = [this] { after_frame_ = [this] { next_tab(); }; }});
   actions_.add({.name = "reset_layout",
                 .title = "Reset layout",
                 .group = "View",
@@ -167,7 +183,7 @@ void Workbench::add_panel_actions() {
     actions_.add({.name = "panel." + name,
                   .title = "Show or hide: " + panel->title(),
                   .group = "Panels",
-                  .checked = [this, name] { return contains(layout_, name); },
+                  .checked = [this, name] { return contains(layout_, name) && !is_behind(name); },
                   .run = [this, name] { after_frame_ = [this, name] { toggle_panel(name); }; }});
   }
   for (const auto& panel : panels_)
@@ -185,12 +201,13 @@ void Workbench::add_panel_command(const std::string& panel, PanelCommand command
        .repeats = shared->repeats,
        .enabled =
            [this, shared] { return session_ != nullptr && (!shared->enabled || shared->enabled(*session_)); },
+       .off = shared->off,
        .run =
            [this, shared, panel] {
              PanelActions wanted;
              shared->run(*session_, wanted);
              carry_out(wanted);
-             if (!shared->shows || contains(layout_, panel)) return;
+             if (!shared->shows || (contains(layout_, panel) && !is_behind(panel))) return;
              after_frame_ = [this, panel] { toggle_panel(panel); };
            }});
 }
@@ -210,10 +227,10 @@ void Workbench::step(int by) {
 
 void Workbench::toggle_panel(const std::string& name) {
   maximised_.clear();
-  if (contains(layout_, name))
-    remove_panel(layout_, name);
-  else
-    add_panel(layout_, name, tiles_area_);
+  if (is_behind(name)) return bring_to_front(name);
+  if (contains(layout_, name)) return remove_panel(layout_, name);
+  add_panel(layout_, name, tiles_area_);
+  bring_to_front(name);
 }
 
 void Workbench::scale_by(float factor) {

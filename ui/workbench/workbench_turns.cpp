@@ -33,6 +33,11 @@ void Workbench::take_turns(const std::vector<PlacedPanel>& placed) {
   float all = 0.0F, taken = 0.0F;
   for (const PlacedPanel& panel : placed) {
     TileView& tile = tile_views_[panel.panel];
+    // An image whose overlays follow is shown by panels that are worth looking at without them.
+    const Panel* shown = find_panel(panel.panel);
+    if (turning_to_->current->image_alone && tile.view != nullptr && shown != nullptr &&
+        !shown->shows_image_alone() && tile.view->title == turning_to_->title)
+      continue;
     // Only another frame of the same sequence is worth waiting for: all else is little work.
     if (tile.view == nullptr || tile.view->title != turning_to_->title ||
         tile.view->current->index == turning_to_->current->index)

@@ -7,20 +7,16 @@
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/saved_map.hpp"
 #include "core/run/sweep.hpp"
+#include "ui/workbench/palette.hpp"
 
 namespace stillpoint {
 namespace {
 
 using ::testing::ElementsAre;
-
-std::vector<std::string> titles(const std::vector<const Action*>& actions) {
-  std::vector<std::string> titles;
-  for (const Action* action : actions) titles.push_back(action->title);
-  return titles;
-}
 
 TEST(Actions, RunByNameAndKeyWhileEnabled) {
   Actions actions;
@@ -51,24 +47,42 @@ TEST(Actions, NamesAndKeysAreTakenOnce) {
                std::logic_error);
 }
 
-TEST(Actions, AreFoundByTheirLettersInOrder) {
-  Actions actions;
-  const auto add = [&](const char* title, bool enabled = true) {
-    actions.add({.name = title,
-                 .title = title,
-                 .group = "G",
-                 .enabled = [enabled] { return enabled; },
-                 .run = [] {}});
-  };
-  add("Next lost frame");
-  add("Next keyframe");
-  add("Reset layout");
-  add("Next never", false);
-  EXPECT_THAT(titles(actions.matching("nk")), ElementsAre("Next keyframe"));
-  EXPECT_THAT(titles(actions.matching("NEXT")), ElementsAre("Next keyframe", "Next lost frame"));
-  EXPECT_THAT(titles(actions.matching("l")), ElementsAre("Reset layout", "Next lost frame"));
-  EXPECT_THAT(actions.matching("zebra"), ElementsAre());
-  EXPECT_THAT(titles(actions.matching("")), ElementsAre("Next lost frame", "Next keyframe", "Reset layout"));
+PaletteRow palette_row(const std::string& title, const std::string& words = "", const std::string& off = "") {
+  return {.icon = "", .title = title, .words = words, .off = off};
+}
+
+std::vector<std::string> found(const std::vector<PaletteRow>& rows, const std::string& query) {
+  std::vector<std::string> titles;
+  for (const PaletteRow& row : found_rows(rows, query)) titles.push_back(row.title);
+  return titles;
+}
+
+TEST(PaletteRows, AreFoundByLettersInOrder) {
+  const std::vector<PaletteRow> rows{palette_row("Next lost frame"), palette_row("Next keyframe"),
+                                     palette_row("Reset layout")};
+  EXPECT_THAT(found(rows, "nk"), ElementsAre("Next keyframe"));
+  EXPECT_THAT(found(rows, "NEXT"), ElementsAre("Next keyframe", "Next lost frame"));
+  EXPECT_THAT(found(rows, "zebra"), ElementsAre());
+  EXPECT_THAT(found(rows, ""), ElementsAre("Next lost frame", "Next keyframe", "Reset layout"));
+}
+
+TEST(PaletteRows, WordsBeatLettersAndWhatCannotBeDoneStandsLast) {
+  const std::vector<PaletteRow> rows{palette_row("The rest hold off"),  // letters of "threshold" in order
+                                     palette_row("Difference limit", "the threshold of grey levels"),
+                                     palette_row("Threshold of residuals"),
+                                     palette_row("Threshold again", "", "No sequence is open.")};
+  EXPECT_THAT(found(rows, "threshold"), ElementsAre("Threshold of residuals", "Difference limit",
+                                                    "The rest hold off", "Threshold again"));
+  EXPECT_THAT(found(rows, "levels grey"), ElementsAre("Difference limit"));
+}
+
+TEST(PaletteRows, AFrameIsAskedForByItsNumber) {
+  EXPECT_EQ(frame_asked_for("417"), 417);
+  EXPECT_EQ(frame_asked_for(" Frame 417 "), 417);
+  EXPECT_EQ(frame_asked_for("frame"), std::nullopt);
+  EXPECT_EQ(frame_asked_for("4 17"), std::nullopt);
+  EXPECT_EQ(frame_asked_for("-3"), std::nullopt);
+  EXPECT_EQ(frame_asked_for("41x"), std::nullopt);
 }
 
 SessionView session_at(int index, const std::vector<int>& keyframes, const std::vector<int>& lost,

@@ -78,6 +78,64 @@ TEST(Layout, ASplitterStopsBeforeATileVanishes) {
   EXPECT_EQ(arrange(root, {0, 0, 1004, 504}, 4).panels[1].rect.width, 90);
 }
 
+const LeastOf kHundred = [](const std::string&) { return TileSize{100, 100}; };
+
+TEST(Layout, ATileThatNeedsMoreTakesItFromItsSiblings) {
+  const LayoutNode root =
+      from(R"({"columns": [{"share": 0.1, "panel": "a"}, {"share": 0.9, "panel": "b"}]})");
+  const PlacedLayout placed = arrange(root, {0, 0, 504, 200}, 4, kHundred);
+  EXPECT_EQ(placed.panels[0].rect, (LayoutRect{0, 0, 100, 200}));
+  EXPECT_EQ(placed.panels[1].rect, (LayoutRect{104, 0, 400, 200}));
+  EXPECT_TRUE(placed.panels[0].tabs.empty());
+}
+
+TEST(Layout, NeighboursWithoutRoomShareATile) {
+  // Three of 100 px and two gaps need 308: in 300 the last two are one.
+  const LayoutNode root = from(
+      R"({"columns": [{"share": 1, "panel": "a"}, {"share": 1, "panel": "b"}, {"share": 2, "panel": "c"}]})");
+  const PlacedLayout placed = arrange(root, {0, 0, 300, 100}, 4, kHundred);
+  ASSERT_EQ(placed.panels.size(), 2U);
+  EXPECT_EQ(placed.panels[0].rect, (LayoutRect{0, 0, 100, 100}));
+  EXPECT_EQ(placed.panels[1].panel, "c") << "what had the most room is seen";
+  EXPECT_THAT(placed.panels[1].tabs, ElementsAre("b", "c"));
+  EXPECT_EQ(arrange(root, {0, 0, 308, 100}, 4, kHundred).panels.size(), 3U);
+}
+
+TEST(Layout, DivisionsThatShareAPlacePairTheirParts) {
+  const LayoutNode root = from(R"({"columns": [{"share": 1, "rows": [{"panel": "a"}, {"panel": "b"}]},
+                                               {"share": 1, "rows": [{"panel": "c"}, {"panel": "d"}]}]})");
+  const PlacedLayout wide = arrange(root, {0, 0, 204, 204}, 4, kHundred);
+  EXPECT_EQ(wide.panels.size(), 4U);
+  const PlacedLayout narrow = arrange(root, {0, 0, 150, 204}, 4, kHundred);
+  ASSERT_EQ(narrow.panels.size(), 2U);
+  EXPECT_THAT(narrow.panels[0].tabs, ElementsAre("a", "c"));
+  EXPECT_THAT(narrow.panels[1].tabs, ElementsAre("b", "d"));
+  const PlacedLayout tiny = arrange(root, {0, 0, 50, 50}, 4, kHundred);
+  ASSERT_EQ(tiny.panels.size(), 1U);
+  EXPECT_THAT(tiny.panels[0].tabs, ElementsAre("a", "c", "b", "d"));
+  EXPECT_EQ(tiny.panels[0].rect, (LayoutRect{0, 0, 50, 50}));
+}
+
+TEST(Layout, NothingChangesPlacesWhileASplitterIsDragged) {
+  LayoutNode root = from(R"({"columns": [{"share": 0.4, "panel": "a"}, {"share": 0.3, "panel": "b"},
+                                         {"share": 0.2, "panel": "c"}, {"share": 0.1, "panel": "d"}]})");
+  const LayoutRect area{0, 0, 320, 100};
+  PlacedLayout placed = arrange(root, area, 4, kHundred);
+  ASSERT_EQ(placed.panels.size(), 3U);
+  for (const float delta : {3.0F, 3.0F, -5.0F, 40.0F, -90.0F}) {
+    const float before = placed.panels[0].rect.width;
+    drag(root, placed.splitters[0], delta, 10);
+    const PlacedLayout next = arrange(root, area, 4, kHundred);
+    ASSERT_EQ(next.panels.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(next.panels[i].tabs, placed.panels[i].tabs);
+      EXPECT_GE(next.panels[i].rect.width, 99.0F);
+    }
+    EXPECT_NEAR(next.panels[0].rect.width, std::clamp(before + delta, 100.0F, 112.0F), 1.0F);
+    placed = next;
+  }
+}
+
 TEST(Layout, NeighboursTakeTheRoomOfWhatIsHidden) {
   LayoutNode root = from(kThree);
   remove_panel(root, "b");

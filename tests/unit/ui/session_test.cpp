@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <mutex>
 #include <random>
+#include <thread>
 
 #include "core/run/run_report.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -98,6 +100,51 @@ TEST_P(SessionTest, ShowsTheMaskTheMethodUsedAfterManyOtherFrames) {
   expect_same_stages(*before->motion, *after->motion);
 }
 
+TEST_P(SessionTest, TheImageIsShownBeforeWhatLiesOverIt) {
+  Session session(source_, config_);
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const FrameView>> seen;
+  session.start([&] {
+    const auto view = session.view();
+    const std::lock_guard lock(mutex);
+    if (seen.empty() || seen.back() != view->current) seen.push_back(view->current);
+    if (view->current->image_alone) {
+      EXPECT_TRUE(view->busy);
+    }
+  });
+  const auto until = [&](int index) {
+    for (int tries = 0; tries < 12000; ++tries) {
+      {
+        const std::lock_guard lock(mutex);
+        if (!seen.empty() && seen.back()->index == index && seen.back()->record != nullptr) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  session.request_frame(5);
+  ASSERT_TRUE(until(5));
+  {
+    const std::lock_guard lock(mutex);
+    ASSERT_GE(seen.size(), 2U);
+    const FrameView &image = *seen[seen.size() - 2], &whole = *seen.back();
+    EXPECT_TRUE(image.image_alone);
+    EXPECT_EQ(image.index, 5);
+    EXPECT_EQ(image.record, nullptr);
+    EXPECT_FALSE(whole.image_alone);
+    EXPECT_EQ(cv::norm(image.frame.gray, whole.frame.gray, cv::NORM_INF), 0.0);
+  }
+  // What is at hand has no image first, and a step forward still knows the frame before it.
+  session.request_frame(4);
+  ASSERT_TRUE(until(4));
+  session.request_frame(5);
+  ASSERT_TRUE(until(5));
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(seen[seen.size() - 2]->index, 4);
+  ASSERT_NE(seen.back()->before, nullptr);
+  EXPECT_EQ(seen.back()->before->index, 4);
+}
+
 TEST_P(SessionTest, TheWorkerComesToTheSame) {
   Session session(source_, config_);
   std::mutex mutex;
@@ -117,8 +164,8 @@ TEST_P(SessionTest, TheWorkerComesToTheSame) {
   EXPECT_TRUE(wait_for([](const SessionView& view) { return view.current->index == 2; }));
   session.request_speed(1000);
   session.request_play(true);
-  EXPECT_TRUE(
-      wait_for([](const SessionView& view) { return view.current->index == kSessionFrames - 1 && !view.playing; }));
+  EXPECT_TRUE(wait_for(
+      [](const SessionView& view) { return view.current->index == kSessionFrames - 1 && !view.playing; }));
   const RunResult expected = batch();
   ASSERT_EQ(session.view()->run->records.size(), expected.records.size());
   for (std::size_t i = 0; i < expected.records.size(); ++i) {
