@@ -7,6 +7,7 @@
 
 #include "ui/gl/texture.hpp"
 #include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/theme.hpp"
 
