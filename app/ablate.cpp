@@ -18,9 +18,12 @@
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/ablation.hpp"
 #include "core/run/cell_plan.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,6 +8,7 @@
 #include "app/jobs.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
+#include "core/motion/methods.hpp"
 
 namespace stillpoint {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory_file.hpp"
 #include "core/inspect/openable.hpp"
 

@@ -8,6 +8,7 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/export/mcap_export.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/open_run.hpp"
 #include "core/sequence/prefetch.hpp"

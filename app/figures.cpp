@@ -10,10 +10,13 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "ui/panels/figure_sheet.hpp"
 #include "ui/session/session.hpp"
+#include "ui/shell/event_log.hpp"
+#include "ui/theme/theme.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {

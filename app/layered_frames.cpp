@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
+#include "core/inspect/run_view.hpp"
 
 namespace stillpoint {
 

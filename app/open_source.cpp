@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/run/open_run.hpp"
 #include "core/run/outside_run.hpp"
 #include "core/sequence/fingerprint.hpp"

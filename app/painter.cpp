@@ -8,6 +8,10 @@
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/media/image_codec.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {

@@ -4,8 +4,11 @@
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
 #include "core/error.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/shell/warm_up.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

@@ -16,11 +16,14 @@
 #include "app/video_file.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/median.hpp"
 #include "core/motion/methods.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
 #include "ui/session/session.hpp"
+#include "ui/shell/event_log.hpp"
+#include "ui/theme/theme.hpp"
 #include "ui/workbench/settings.hpp"
 
 namespace stillpoint {

@@ -10,6 +10,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
 
 namespace stillpoint {

@@ -10,6 +10,7 @@
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/run/frame_figures.hpp"
 #include "core/sequence/association.hpp"
+#include "ui/shell/event_log.hpp"
 
 namespace stillpoint {
 namespace {

@@ -11,6 +11,7 @@
 #include "app/layered_frames.hpp"
 #include "app/report/html.hpp"
 #include "core/media/image_codec.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/palette.hpp"
 
 namespace stillpoint {

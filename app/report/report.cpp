@@ -17,7 +17,9 @@
 #include "app/report/report_run.hpp"
 #include "app/report/report_sections.hpp"
 #include "core/error.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
+#include "ui/shell/event_log.hpp"
 
 namespace stillpoint {
 namespace {

@@ -10,6 +10,7 @@
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/session/session.hpp"
+#include "ui/shell/event_log.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
 
 namespace stillpoint {

@@ -10,6 +10,7 @@
 #include "app/report/html.hpp"
 #include "app/report/report_pictures.hpp"
 #include "core/config.hpp"
+#include "core/motion/methods.hpp"
 #include "ui/theme/palette.hpp"
 
 namespace stillpoint {

@@ -5,6 +5,7 @@
 #include <future>
 
 #include "core/check/findings.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/with_camera.hpp"
 

@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "core/check/findings.hpp"
+#include "core/geometry/camera.hpp"
 #include "core/median.hpp"
+#include "core/sequence/frame.hpp"
+#include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {

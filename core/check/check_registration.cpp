@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/check/findings.hpp"
+#include "core/sequence/frame.hpp"
+#include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {

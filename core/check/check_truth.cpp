@@ -8,6 +8,7 @@
 #include "core/check/findings.hpp"
 #include "core/evaluation/suspicion.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/sequence/source.hpp"
 
 namespace stillpoint {
+
+class FrameSource;
 
 /// Something about an input that cannot be right, or that was mended on opening.
 struct Finding {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"

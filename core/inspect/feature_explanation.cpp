@@ -7,7 +7,12 @@
 #include <limits>
 
 #include "core/inspect/feature_trail.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/inspect/scene_point.hpp"
 #include "core/motion/regions.hpp"
+#include "core/motion/stage_log.hpp"
+#include "core/run/saved_map.hpp"
 
 namespace stillpoint {
 namespace {

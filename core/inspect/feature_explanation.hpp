@@ -6,10 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/frame_view.hpp"
-#include "core/inspect/scene_point.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
+
+struct Camera;
+struct FrameView;
+struct RunView;
+struct SavedPoint;
 
 // Why a feature was removed, or was not: what its frame's stages say of it, and where it came from. Plain
 // data from plain data, without GL or ImGui.
@@ -62,24 +66,6 @@ struct FeatureExplanation {
 [[nodiscard]] FeatureExplanation explain_feature(const FrameView& view, const RunView& run,
                                                  const Camera& camera,
                                                  const std::vector<SavedPoint>& map_points, int index);
-
-/// The feature of a record nearest to a pixel, within `radius` px; nothing where there is none.
-[[nodiscard]] std::optional<int> feature_near(const FrameRecord& record, const Eigen::Vector2d& pixel,
-                                              double radius);
-
-/// The feature to tell of when none was chosen: the removed one nearest to the middle of the image, else the
-/// one with the largest residual. Nothing where there are no features.
-[[nodiscard]] std::optional<int> telling_feature(const FrameRecord& record, const cv::Size& image);
-
-/// A feature a person has chosen, to be found again in the frames about it.
-struct FeatureSelection {
-  int frame = 0, index = 0;
-  FeatureRecord feature;
-};
-
-/// The chosen feature in the frame shown: itself, its map point, or where the flow or its trail leads.
-/// Nothing where it cannot be told.
-[[nodiscard]] std::optional<int> find_selected(const FrameView& view, const FeatureSelection& selected);
 
 /// px from a pixel to the edge of a mask: above 0 inside it, below 0 outside, up to `reach`; nothing when
 /// there is no edge within reach.

@@ -5,6 +5,10 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/inspect/feature_selection.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/motion/stage_log.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/inspect/run_view.hpp"
 #include "core/inspect/shown_run.hpp"
 
 namespace stillpoint {

@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/inspect/frame_view.hpp"
-
 namespace stillpoint {
+
+struct FrameRecord;
+struct FrameView;
 
 // What a frame's view holds of the frames before it.
 

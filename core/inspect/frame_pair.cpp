@@ -6,6 +6,8 @@
 #include <unordered_map>
 
 #include "core/inspect/frame_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/map_id.hpp"
 
 namespace stillpoint {
 namespace {

@@ -7,6 +7,11 @@
 #include <limits>
 #include <set>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/odometry/engine_trace.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/map_id.hpp"
+
 namespace stillpoint {
 namespace {
 

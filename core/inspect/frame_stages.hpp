@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "core/inspect/frame_view.hpp"
+#include "core/motion/stage_log.hpp"
 
 namespace stillpoint {
+
+struct FrameView;
 
 // A frame's whole way, stage by stage: its motion method's stages, then the odometry's, which all methods
 // share.

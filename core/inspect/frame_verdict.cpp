@@ -6,7 +6,10 @@
 #include <cmath>
 #include <optional>
 
+#include "core/inspect/run_view.hpp"
 #include "core/median.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/worst_frames.hpp"
 
 namespace stillpoint {

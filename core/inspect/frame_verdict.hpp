@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/frame_view.hpp"
-
 namespace stillpoint {
+
+struct RunView;
 
 /// How a part of a verdict reads.
 enum class Tone { neutral, good, bad };

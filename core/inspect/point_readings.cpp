@@ -6,6 +6,10 @@
 #include <cmath>
 
 #include "core/inspect/feature_explanation.hpp"
+#include "core/inspect/feature_selection.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/scene_point.hpp"
+#include "core/motion/stage_log.hpp"
 
 namespace stillpoint {
 namespace {

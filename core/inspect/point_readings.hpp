@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/inspect/frame_view.hpp"
-#include "core/inspect/scene_point.hpp"
-
 namespace stillpoint {
+
+struct FrameView;
+struct PairGeometry;
 
 // What every layer of a frame says at one point of the scene: the inspector's table, without GL or ImGui.
 

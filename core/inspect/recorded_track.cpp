@@ -1,6 +1,7 @@
 // The part of ReplayableRun that has a finished run: all that its records hold at once, and what they do not
 // hold once odometry has seen the frames again.
 #include "core/inspect/replayable_run.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
 
 namespace stillpoint {

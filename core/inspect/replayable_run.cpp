@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/sequence/prefetch.hpp"
 

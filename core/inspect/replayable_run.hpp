@@ -10,6 +10,7 @@
 #include "core/byte_store.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/motion_replay.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/odometry.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_hash.hpp"

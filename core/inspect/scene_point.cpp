@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/inspect/frame_neighbours.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
 
 namespace stillpoint {

@@ -9,7 +9,10 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "core/inspect/frame_stages.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/scene_point.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,10 +4,12 @@
 #include <optional>
 #include <string>
 
-#include "core/geometry/camera.hpp"
-#include "core/inspect/frame_stages.hpp"
+#include "core/motion/stage_log.hpp"
 
 namespace stillpoint {
+
+struct Camera;
+struct FrameView;
 
 // What changed in a stage against the stage, the round or the frame before.
 

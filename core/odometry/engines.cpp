@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include "core/error.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/motion/methods.hpp"
+#include "core/odometry/odometry_engine.hpp"
 
 // One line an engine: NAME is defined as `EngineInfo NAME_engine()` in the engine's own file.
 #define STILLPOINT_ENGINES(ENGINE) \

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "core/config.hpp"
-#include "core/motion/methods.hpp"
-#include "core/odometry/odometry_engine.hpp"
+#include "core/motion/figure_info.hpp"
 
 namespace stillpoint {
+
+class OdometryEngine;
+struct Camera;
 
 /// What an odometry engine says of itself. Nothing outside core/odometry knows an engine by name.
 struct EngineInfo {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/se3.hpp"
-#include "core/odometry/local_map.hpp"
+#include "core/odometry/map_id.hpp"
 
 namespace stillpoint {
 

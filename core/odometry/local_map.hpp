@@ -9,10 +9,9 @@
 #include "core/config.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/odometry/feature_set.hpp"
+#include "core/odometry/map_id.hpp"
 
 namespace stillpoint {
-
-inline constexpr int kNone = -1;  ///< no keyframe, no map point
 
 /// A keyframe's sight of a map point.
 struct Observation {

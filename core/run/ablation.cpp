@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/run/run_report.hpp"
 #include "core/text_file.hpp"
 
 namespace stillpoint {

@@ -9,9 +9,10 @@
 #include "core/evaluation/benchmark_results.hpp"
 #include "core/evaluation/tables.hpp"
 #include "core/motion/methods.hpp"
-#include "core/run/run_report.hpp"
 
 namespace stillpoint {
+
+struct RunReport;
 
 // What each ingredient of a method, and of the odometry behind it, is worth: the whole, and the method with
 // one ingredient left out at a time, over the same sequences.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/odometry/frame_record.hpp"
+
 namespace stillpoint {
 namespace {
 

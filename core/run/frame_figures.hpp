@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/evaluation/trajectory_metrics.hpp"
-#include "core/motion/methods.hpp"
-#include "core/odometry/frame_record.hpp"
-#include "core/run/frame_scores.hpp"
+#include "core/motion/figure_info.hpp"
 
 namespace stillpoint {
+
+struct FrameRecord;
+struct FrameScores;
+struct TrajectoryEvaluation;
 
 // What is known of a frame in numbers: one table, from which conditions, the timeline's lanes, "worst", the
 // comparison of runs and frames.csv all come.

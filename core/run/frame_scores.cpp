@@ -1,5 +1,8 @@
 #include "core/run/frame_scores.hpp"
 
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/frame_result.hpp"
+
 namespace stillpoint {
 
 FrameScores& FrameScores::operator+=(const FrameScores& other) {

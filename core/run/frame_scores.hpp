@@ -1,9 +1,12 @@
 #pragma once
 
+#include <opencv2/core.hpp>
+
 #include "core/evaluation/mask_scores.hpp"
-#include "core/odometry/odometry.hpp"
 
 namespace stillpoint {
+
+struct FrameResult;
 
 /// A frame's masks and removals against what is truly dynamic.
 struct FrameScores {

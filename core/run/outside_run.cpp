@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/motion/methods.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/estimate_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 

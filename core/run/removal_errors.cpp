@@ -6,8 +6,10 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/normal_equations.hpp"
 #include "core/median.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "core/evaluation/trajectory_metrics.hpp"
-#include "core/odometry/frame_record.hpp"
-
 namespace stillpoint {
+
+struct FrameRecord;
+struct TrajectoryEvaluation;
 
 /// Errors of one frame's step from the pose before, against the truth: translational, m. Solved with three
 /// masks from the same map by the run's own solver, weights included, so that they tell what the mask did and

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/tables.hpp"
+#include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/frame_figures.hpp"

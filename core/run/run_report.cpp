@@ -8,7 +8,10 @@
 
 #include "core/evaluation/evaluation_json.hpp"
 #include "core/evaluation/suspicion.hpp"
+#include "core/motion/methods.hpp"
 #include "core/run/run_hash.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,11 +3,16 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
-#include "core/run/run_sequence.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
+
+class FrameSource;
+struct RunResult;
 
 /// Wall time a frame over a run.
 struct SpeedFigures {

@@ -8,6 +8,11 @@
 #include <unordered_map>
 
 #include "core/median.hpp"
+#include "core/motion/methods.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/odometry/local_map.hpp"
+#include "core/odometry/odometry.hpp"
+#include "core/odometry/smoother.hpp"
 #include "core/sequence/prefetch.hpp"
 #include "core/stopwatch.hpp"
 

@@ -7,35 +7,13 @@
 #include "core/config.hpp"
 #include "core/geometry/trajectory.hpp"
 #include "core/odometry/frame_record.hpp"
-#include "core/odometry/odometry.hpp"
 #include "core/run/frame_scores.hpp"
-#include "core/sequence/source.hpp"
+#include "core/run/saved_map.hpp"
 
 namespace stillpoint {
 
-/// A map point as a run leaves it.
-struct SavedPoint {
-  int id = kNone;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, world
-  int observations = 0;                                ///< keyframes that see it
-  bool moved = false;                                  ///< it left the map because it was found to move
-  cv::Vec3b colour{128, 128, 128};  ///< BGR, as it was last seen as an inlier; grey where that is not known
-};
-
-/// A keyframe as a run leaves it.
-struct SavedKeyframe {
-  int id = kNone, frame_index = 0;
-  StampedPose pose;
-};
-
-/// All keyframes of a map, those that left it included, in order of time.
-[[nodiscard]] std::vector<SavedKeyframe> saved_keyframes(const LocalMap& map);
-
-/// All points of a map, by id.
-[[nodiscard]] std::vector<SavedPoint> saved_points(const LocalMap& map);
-
-/// The points that left a map because they moved, oldest first.
-[[nodiscard]] std::vector<SavedPoint> moved_points(const LocalMap& map);
+class FrameSource;
+class Odometry;
 
 /// The estimated poses among `records`, revised where odometry has looked back at them, hung on their
 /// reference keyframes as these stand in the map now.

@@ -8,6 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,19 +8,14 @@
 #include <vector>
 
 #include "core/run/ablation.hpp"
-#include "core/run/run_sequence.hpp"
+#include "core/run/sweep_range.hpp"
 
 namespace stillpoint {
 
-// What one parameter does to a run: the same frames, once for each of several of its values.
+class FrameSource;
+struct FrameResult;
 
-/// A numeric parameter and the values it is given.
-struct SweepRange {
-  std::string parameter;  ///< `section.name`
-  double low = 0.0, high = 0.0;
-  int steps = 7;  ///< values from low to high, both among them
-  bool operator==(const SweepRange&) const = default;
-};
+// What one parameter does to a run: the same frames, once for each of several of its values.
 
 /// The number a parameter stands at, 0 or 1 where it is off or on; nothing for one of words.
 [[nodiscard]] std::optional<double> number_of(const Parameter& parameter);

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/odometry/frame_record.hpp"
+
 namespace stillpoint {
 namespace {
 

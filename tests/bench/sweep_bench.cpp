@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/motion/methods.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"
 #include "tests/support/allocations.hpp"

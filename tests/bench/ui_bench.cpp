@@ -1,6 +1,9 @@
 #include <benchmark/benchmark.h>
 
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/ui/gallery.hpp"
+#include "ui/scene/scene_renderer.hpp"
 #include "ui/session/session.hpp"
 #include "ui/shell/offscreen.hpp"
 #include "ui/workbench/workbench.hpp"

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/odometry/frame_result.hpp"
 #include "core/run/records_file.hpp"
 #include "tests/fuzz/targets.hpp"
 

@@ -11,6 +11,8 @@
 #include "core/geometry/camera_yaml.hpp"
 #include "core/geometry/trajectory_file.hpp"
 #include "core/inspect/sidecar.hpp"
+#include "core/motion/methods.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/cell_plan.hpp"
 #include "core/run/condition.hpp"
 #include "core/sequence/list_file.hpp"

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/gl/changed_regions.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/session/session.hpp"

@@ -1,7 +1,12 @@
 // The panels of debugging: what they show of a session put together by hand, and what they ask of it.
 #include <set>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/motion/paper/paper_config.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "core/run/worst_frames.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"

@@ -5,7 +5,11 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "ui/gl/texture.hpp"
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint::testing {
 namespace {

@@ -3,8 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "ui/gl/texture.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/scene/scene_widget.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint::testing {

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/ui/session_example.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/shell/offscreen.hpp"

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "core/inspect/drawn_truth.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"

@@ -5,6 +5,15 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/motion/stage_log.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
@@ -12,6 +21,7 @@
 #include "ui/panels/scene_of_session.hpp"
 #include "ui/scene/scene_view.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint::testing {
 namespace {

@@ -10,6 +10,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/error.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/ui/session_example.hpp"
 #include "tests/unit/temporary_folder.hpp"
 #include "ui/panels/panel.hpp"

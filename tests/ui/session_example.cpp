@@ -4,11 +4,19 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/check/findings.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/motion_replay.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/motion/paper/paper_config.hpp"
 #include "core/motion/paper/paper_stages.hpp"
 #include "core/motion/stillpoint/stillpoint_stages.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/run/ablation.hpp"
+#include "core/run/removal_errors.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/panels/panel.hpp"
 
 namespace stillpoint::testing {
@@ -314,8 +322,11 @@ SessionView handmade_example() {
   other->record = &run->records[22];
   view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
   view.debug.other = std::move(other);
-  SweepView sweep{
-      .range = {"paper.border_px", 1, 9, 5}, .values = {1, 3, 5, 7, 9}, .frames = 60, .base = view.config};
+  SweepView sweep{.range = {"paper.border_px", 1, 9, 5},
+                  .values = {1, 3, 5, 7, 9},
+                  .points = {},
+                  .frames = 60,
+                  .base = view.config};
   for (int i = 0; i < 4; ++i) {
     AblationCell cell;
     cell.rpe_m = 0.004 + 0.001 * std::abs(i - 2), cell.mask_iou = 0.5 + 0.1 * i, cell.coverage = 1.0;

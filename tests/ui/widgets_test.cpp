@@ -5,6 +5,7 @@
 
 #include "tests/support/golden.hpp"
 #include "tests/ui/gallery.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/shell/offscreen.hpp"
 
 namespace stillpoint::testing {

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/cli/small_sequence.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/xvfb.hpp"

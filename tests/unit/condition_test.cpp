@@ -6,6 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/odometry/frame_record.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/odometry/odometry.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_report.hpp"
 #include "core/run/run_sequence.hpp"

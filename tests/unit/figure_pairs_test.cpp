@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/odometry/frame_record.hpp"
+
 namespace stillpoint {
 namespace {
 

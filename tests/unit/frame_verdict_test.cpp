@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -7,6 +7,7 @@
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/mapping.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/saved_map.hpp"
 
 namespace stillpoint {
 namespace {

@@ -17,6 +17,7 @@
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"
 #include "tests/cli/small_sequence.hpp"
+#include "core/odometry/frame_result.hpp"
 
 namespace stillpoint {
 namespace {

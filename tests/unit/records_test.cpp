@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
 #include "core/run/open_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"

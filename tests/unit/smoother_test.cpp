@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/odometry/odometry.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"

@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 #include "tests/support/rendered.hpp"
 
 namespace stillpoint {

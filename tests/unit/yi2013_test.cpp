@@ -4,6 +4,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/config.hpp"
+#include "core/motion/methods.hpp"
+#include "core/motion/motion_method.hpp"
+#include "core/motion/stage_log.hpp"
 #include "core/motion/yi2013/block_model.hpp"
 #include "core/run/frame_figures.hpp"
 #include "core/run/run_report.hpp"

@@ -1,8 +1,14 @@
 #pragma once
 
-#include "ui/panels/panel_kit.hpp"
+#include <memory>
+#include <string>
+
+#include "ui/theme/palette.hpp"
 
 namespace stillpoint {
+
+class Panel;
+struct PanelsShared;
 
 // Each panel's factory, defined in the panel's file.
 

@@ -4,10 +4,18 @@
 #include <array>
 #include <cstring>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,8 +3,18 @@
 #include <algorithm>
 
 #include "core/check/check_sequence.hpp"
+#include "core/evaluation/tables.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/session/debug_view.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/layer_values.hpp"
+#include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/shell/input.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/layer_values.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"

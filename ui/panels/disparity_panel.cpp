@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/inspect/frame_view.hpp"
 #include "core/sequence/stereo/stereo_matcher.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"

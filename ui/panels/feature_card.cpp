@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/view/image_widget.hpp"
+
 namespace stillpoint {
 namespace {
 

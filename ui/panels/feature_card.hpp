@@ -4,9 +4,10 @@
 
 #include "core/inspect/feature_explanation.hpp"
 #include "ui/panels/panel_kit.hpp"
-#include "ui/view/image_widget.hpp"
 
 namespace stillpoint {
+
+struct ImageResponse;
 
 // A feature's explanation as panels draw it.
 

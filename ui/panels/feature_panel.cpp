@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/feature_selection.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panels_shared.hpp"
+#include "ui/plot/right_click.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/feature_selection.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panels_shared.hpp"
 
 namespace stillpoint {
 namespace {

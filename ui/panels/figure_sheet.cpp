@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
 #include "ui/panels/frame_pictures.hpp"
 
 namespace stillpoint {

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "ui/gl/texture.hpp"
-#include "ui/session/session_view.hpp"
-#include "ui/shell/canvas.hpp"
 
 namespace stillpoint {
+
+struct SessionView;
+struct UiFrame;
 
 /// A picture of a figure, and what stands below it.
 struct FigureCell {

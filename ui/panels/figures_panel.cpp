@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/figure_pairs.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/sequence/frame.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 

@@ -4,7 +4,21 @@
 
 #include <cmath>
 
+#include "core/inspect/feature_selection.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/pins.hpp"
+#include "core/inspect/scene_point.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
+#include "ui/session/debug_view.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/palette.hpp"
+#include "ui/theme/theme.hpp"
+#include "ui/view/image_view.hpp"
+#include "ui/view/image_widget.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,9 +1,16 @@
 #pragma once
 
-#include "ui/panels/panel_kit.hpp"
-#include "ui/view/image_widget.hpp"
+#include <optional>
+
+#include "core/motion/stage_log.hpp"
 
 namespace stillpoint {
+
+struct ImageResponse;
+struct PanelActions;
+struct PanelsShared;
+struct SessionView;
+struct UiFrame;
 
 // What is marked in every image of a frame: the scene point under the mouse, pins, the chosen feature.
 

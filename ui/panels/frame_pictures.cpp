@@ -7,7 +7,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/inspect/frame_view.hpp"
 #include "core/motion/methods.hpp"
+#include "ui/gl/texture.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
 
 namespace stillpoint {
@@ -21,10 +24,16 @@ cv::Vec4b to_bgra(Rgb colour, int alpha) {
 
 }  // namespace
 
+FrameTexture::FrameTexture() : FrameTexture(Sampling::kPixels) {}
+FrameTexture::FrameTexture(Sampling sampling) : sampling_(sampling) {}
+FrameTexture::~FrameTexture() = default;
+FrameTexture::FrameTexture(FrameTexture&&) noexcept = default;
+FrameTexture& FrameTexture::operator=(FrameTexture&&) noexcept = default;
+
 const Texture& FrameTexture::get(const UiFrame& frame, const std::shared_ptr<const FrameView>& view,
                                  int variant, const std::function<cv::Mat()>& make) {
   const bool same = !view_.owner_before(view) && !view.owner_before(view_);
-  if (!texture_) texture_.emplace(frame.gl, sampling_);
+  if (!texture_) texture_ = std::make_unique<Texture>(frame.gl, sampling_);
   if (same && variant_ == variant && theme_ == frame.theme.name) return *texture_;
   image_ = make();
   texture_->upload(image_);

@@ -2,23 +2,30 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "ui/gl/texture.hpp"
 #include "ui/panels/frame_marks.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint {
 
+struct Frame;
+struct FrameView;
+struct StageLog;
+enum class Sampling;
+
 // Pictures made of a frame's images, and textures that hold them as long as the frame stays.
 
 /// A picture on the graphics card, made anew only when the frame, the theme or the variant changes.
 class FrameTexture {
  public:
-  explicit FrameTexture(Sampling sampling = Sampling::kPixels) : sampling_(sampling) {}
+  FrameTexture();  ///< sharp when enlarged, smooth when reduced
+  explicit FrameTexture(Sampling sampling);
+  ~FrameTexture();
+  FrameTexture(FrameTexture&&) noexcept;
+  FrameTexture& operator=(FrameTexture&&) noexcept;
 
   const Texture& get(const UiFrame& frame, const std::shared_ptr<const FrameView>& view, int variant,
                      const std::function<cv::Mat()>& make);
@@ -27,7 +34,7 @@ class FrameTexture {
 
  private:
   Sampling sampling_;
-  std::optional<Texture> texture_;
+  std::unique_ptr<Texture> texture_;
   cv::Mat image_;
   std::weak_ptr<const FrameView> view_;
   int variant_ = -1;

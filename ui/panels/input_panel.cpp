@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/layer_values.hpp"
+#include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/plot/plot.hpp"

@@ -3,11 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/point_readings.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/inspect/scene_point.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/map_id.hpp"
 #include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -3,9 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/event_log.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,6 +1,11 @@
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panels_shared.hpp"
 
 namespace stillpoint {
+
+std::vector<PanelCommand> Panel::commands() { return {}; }
 
 std::vector<std::unique_ptr<Panel>> make_panels() {
   const auto shared = std::make_shared<PanelsShared>();

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "core/evaluation/mask_scores.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/motion/regions.hpp"
+#include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 

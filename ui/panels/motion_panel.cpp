@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/stage_drawing.hpp"
 

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/theme.hpp"
+#include "ui/view/image_widget.hpp"
+
 namespace stillpoint {
 
 ImVec2 corner_on(const ImageResponse& response, const Corner& corner) {

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <imgui.h>
+
 #include <vector>
 
 #include "core/inspect/marks.hpp"
-#include "ui/view/image_widget.hpp"
+#include "ui/theme/palette.hpp"
 
 namespace stillpoint {
+
+struct ImageResponse;
+struct UiFrame;
 
 // Outlines on a picture: where they are on the display, how near the mouse is, and how they are drawn.
 

@@ -5,10 +5,14 @@
 #include <map>
 
 #include "core/inspect/drawn_truth.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/outline_drawing.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panels_shared.hpp"
+#include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

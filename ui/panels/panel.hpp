@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,9 +7,11 @@
 #include <vector>
 
 #include "ui/session/session_view.hpp"
-#include "ui/shell/canvas.hpp"
 
 namespace stillpoint {
+
+struct PanelCommand;
+struct UiFrame;
 
 /// What a person asks for in a panel; the session carries it out.
 struct PanelActions {
@@ -18,22 +19,9 @@ struct PanelActions {
   std::vector<SessionRequest> requests;  ///< in order
   bool compare_frames = false;           ///< FrameView::before is wanted
   std::optional<int> worst_by;  ///< the figure (frame_figure_infos()) that "worst" is to go by from now on
-  std::string reopen_with;  ///< the sequence anew, with a switch in place of how it was read: "camera=freiburg1"
+  std::string
+      reopen_with;  ///< the sequence anew, with a switch in place of how it was read: "camera=freiburg1"
   std::vector<std::string> perform;  ///< named actions to run, in order
-};
-
-/// Something a panel can have done, by menu, key and palette, whether or not it is drawn.
-struct PanelCommand {
-  std::string name;   ///< "stage_next"
-  std::string title;  ///< "Next stage of the frame"
-  std::string group;  ///< the menu it stands in
-  std::string icon;
-  std::vector<KeyChord> keys{};
-  bool repeats = false;                               ///< while its key is held
-  bool shows = false;                                 ///< brings its panel up where it is not shown
-  std::function<bool(const SessionView&)> enabled{};  ///< always, when empty
-  std::string off{};                                  ///< why it is not, for people
-  std::function<void(const SessionView&, PanelActions&)> run;
 };
 
 /// Design px, of a panel's tile with its heading.
@@ -74,7 +62,7 @@ class Panel {
   /// Brings up what has these words in its name, where there is a list to be searched.
   virtual void find(const std::string& words) { (void)words; }
   /// Valid as long as the panel.
-  [[nodiscard]] virtual std::vector<PanelCommand> commands() { return {}; }
+  [[nodiscard]] virtual std::vector<PanelCommand> commands();
 };
 
 /// All of them, in the order one reads them. Image panels among them zoom and pan together, and tell the

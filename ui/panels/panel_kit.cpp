@@ -50,17 +50,6 @@ void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb co
 
 }  // namespace
 
-const PairGeometry& PanelsShared::geometry(const SessionView& session) {
-  const auto same = [](const auto& weak, const auto& strong) {
-    return !weak.owner_before(strong) && !strong.owner_before(weak);
-  };
-  if (same(geometry_of_, session.current) && same(geometry_run_, session.run)) return geometry_;
-  geometry_ = pair_geometry(*session.current, *session.run, session.camera);
-  geometry_of_ = session.current;
-  geometry_run_ = session.run;
-  return geometry_;
-}
-
 // Legends and captions
 // --------------------------------------------------------------------------------------------
 

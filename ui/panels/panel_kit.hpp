@@ -5,46 +5,21 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
-#include "core/inspect/feature_explanation.hpp"
-#include "core/inspect/frame_stages.hpp"
-#include "core/inspect/scene_point.hpp"
 #include "ui/panels/panel.hpp"
-#include "ui/plot/right_click.hpp"
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/theme.hpp"
-#include "ui/view/image_view.hpp"
 
 namespace stillpoint {
 
+struct PanelsShared;
+
 // What panels draw with: rows of controls, legends, captions, scales. Lengths in design px are times
 // frame.scale.
-
-/// What the mouse was on last in any image of a frame.
-struct ImageCursor {
-  FrameSpace space = FrameSpace::kTarget;           ///< of the image it was on
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< px there, the middle of pixel (i, j) is (i, j)
-  std::optional<Eigen::Vector2d> target;            ///< px: the same scene point in frame t, where known
-  bool operator==(const ImageCursor&) const = default;
-};
-
-/// What the panels of one set share.
-struct PanelsShared {
-  LinkedViews views;                        ///< zoom and pan by name; all images of frames use "frame"
-  std::optional<Eigen::Vector2i> pixel;     ///< of frame t: the scene point the mouse was on last
-  std::optional<ImageCursor> cursor;        ///< the same, where it was
-  std::optional<FeatureSelection> feature;  ///< the feature chosen
-  std::optional<Stage> stage;               ///< the stage chosen: its place
-
-  /// The geometry of the pair shown, worked out once a frame.
-  const PairGeometry& geometry(const SessionView& session);
-
- private:
-  PairGeometry geometry_;
-  std::weak_ptr<const FrameView> geometry_of_;
-  std::weak_ptr<const RunView> geometry_run_;
-};
 
 /// A panel that has its names and what the set shares.
 class NamedPanel : public Panel {

@@ -5,10 +5,20 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/odometry/engines.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/parameter_rows.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/session/debug_view.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/run/removal_errors.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/removal_summary.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/session/data_sources.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/run/removal_errors.hpp"
+
 namespace stillpoint {
 namespace {
 

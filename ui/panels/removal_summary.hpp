@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "ui/session/debug_view.hpp"
-
 namespace stillpoint {
+
+struct RemovalError;
 
 // Did removal help? The figures behind the answer. No ImGui.
 

@@ -3,6 +3,9 @@
 #include <cmath>
 
 #include "core/geometry/se3.hpp"
+#include "core/motion/figure_info.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
 

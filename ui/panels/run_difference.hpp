@@ -1,12 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/run/frame_figures.hpp"
-
 namespace stillpoint {
+
+struct MeasuredFrames;
 
 // How two runs differ in one frame. No ImGui.
 

@@ -4,7 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/median.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "ui/session/session_view.hpp"
 
 namespace stillpoint {
 
@@ -81,6 +86,10 @@ std::optional<int> frame_at(const SessionView& session, double seconds) {
   if (after == records.begin()) return after->index;
   const auto before = after - 1;
   return time - before->timestamp < after->timestamp - time ? before->index : after->index;
+}
+
+bool is_lost(const FrameRecord& record) {
+  return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
 }
 
 }  // namespace stillpoint

@@ -4,9 +4,13 @@
 #include <vector>
 
 #include "ui/plot/plot.hpp"
-#include "ui/session/session_view.hpp"
 
 namespace stillpoint {
+
+struct FrameRecord;
+struct RelativePoseError;
+struct RunView;
+struct SessionView;
 
 // What plots over a run are made of. Times are seconds since the run's first frame.
 
@@ -36,8 +40,6 @@ struct Series {
 [[nodiscard]] std::optional<int> frame_at(const SessionView& session, double seconds);
 
 /// Whether a record's frame has no pose of its own.
-[[nodiscard]] inline bool is_lost(const FrameRecord& record) {
-  return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
-}
+[[nodiscard]] bool is_lost(const FrameRecord& record);
 
 }  // namespace stillpoint

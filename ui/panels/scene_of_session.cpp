@@ -8,6 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/saved_map.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"

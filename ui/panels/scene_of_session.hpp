@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "ui/scene/scene_data.hpp"
-#include "ui/session/session_view.hpp"
 
 namespace stillpoint {
+
+struct SessionView;
 
 /// What of a session the trajectory view shows.
 struct SceneLayers {

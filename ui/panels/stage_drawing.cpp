@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "ui/panels/panels_shared.hpp"
 #include "ui/theme/colormap.hpp"
 
 namespace stillpoint {

@@ -4,9 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_stages.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/stage_change.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/stage_drawing.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

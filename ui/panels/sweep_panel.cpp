@@ -5,9 +5,18 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/run/ablation.hpp"
+#include "core/run/sweep.hpp"
+#include "core/run/sweep_range.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/panel.hpp"
+#include "ui/panels/panel_kit.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/panels/parameter_rows.hpp"
 #include "ui/plot/plot.hpp"
+#include "ui/session/debug_view.hpp"
+#include "ui/session/session_view.hpp"
+#include "ui/shell/ui_frame.hpp"
 
 namespace stillpoint {
 namespace {

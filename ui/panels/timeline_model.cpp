@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/inspect/run_view.hpp"
+#include "core/run/frame_figures.hpp"
 #include "ui/session/data_sources.hpp"
 
 namespace stillpoint {

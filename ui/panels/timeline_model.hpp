@@ -5,11 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include "core/run/frame_figures.hpp"
+#include "core/inspect/marks.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "ui/plot/plot_axis.hpp"
-#include "ui/session/session_view.hpp"
 
 namespace stillpoint {
+
+struct RunView;
+struct SessionView;
 
 // The timeline's arithmetic: what falls into each column of pixels, and the range a drag selects. No ImGui.
 

@@ -4,11 +4,15 @@
 #include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/theme/icons.hpp"
 

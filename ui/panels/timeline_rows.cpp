@@ -6,6 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/motion/figure_info.hpp"
+#include "core/run/frame_figures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/data_sources.hpp"

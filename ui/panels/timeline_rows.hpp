@@ -6,6 +6,8 @@
 
 namespace stillpoint {
 
+struct FigureInfo;
+
 /// The timeline's rows that are there whatever lanes are chosen. For the frame of the interface being drawn
 /// only.
 class TimelineRows {

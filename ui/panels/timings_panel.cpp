@@ -5,9 +5,16 @@
 #include <cmath>
 #include <functional>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/motion/stage_log.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/plot/right_click.hpp"
+#include "ui/shell/ui_pace.hpp"
 
 namespace stillpoint {
 namespace {

@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 
+#include "core/evaluation/tables.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
+#include "ui/plot/right_click.hpp"
 #include "ui/scene/scene_widget.hpp"
 
 namespace stillpoint {

@@ -4,9 +4,13 @@
 #include <cmath>
 
 #include "core/inspect/frame_pair.hpp"
+#include "core/inspect/frame_view.hpp"
 #include "core/inspect/scene_point.hpp"
+#include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/panels/panels_shared.hpp"
 #include "ui/plot/plot.hpp"
 
 namespace stillpoint {

@@ -6,6 +6,8 @@
 #include "ui/plot/plot_file.hpp"
 #include "ui/plot/plot_paint.hpp"
 #include "ui/plot/right_click.hpp"
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "ui/plot/plot_view.hpp"
-#include "ui/shell/canvas.hpp"
+#include "ui/theme/palette.hpp"
 
 namespace stillpoint {
+
+struct UiFrame;
 
 enum class SeriesStyle {
   kLine,     ///< values joined

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
+#include "ui/theme/theme.hpp"
+
 namespace stillpoint {
 namespace {
 

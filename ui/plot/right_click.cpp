@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/evaluation/tables.hpp"
 #include "core/out_folder.hpp"
+#include "ui/plot/plot_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -18,6 +20,8 @@ void write_table(const Table& table, const std::string& path) {
 }
 
 }  // namespace
+
+SaveOffer offer_of(const std::string& name, const Plot& plot) { return offer_of(name, plot, PlotView{}); }
 
 SaveOffer offer_of(const std::string& name, const Plot& plot, const PlotView& view) {
   const auto figure = std::make_shared<const PlotFigure>(plot, view);

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/tables.hpp"
-#include "ui/plot/plot_file.hpp"
-#include "ui/shell/canvas.hpp"
+#include "ui/shell/ui_frame.hpp"
 
 namespace stillpoint {
+
+struct Plot;
+struct PlotView;
+struct Table;
 
 // How what is shown gets out of the window: a right click in place on a plot or a table.
 
@@ -19,7 +21,8 @@ struct SaveOffer {
   std::function<std::string()> values{};  ///< as text for the clipboard; empty: not offered
 };
 
-[[nodiscard]] SaveOffer offer_of(const std::string& name, const Plot& plot, const PlotView& view = {});
+[[nodiscard]] SaveOffer offer_of(const std::string& name, const Plot& plot);
+[[nodiscard]] SaveOffer offer_of(const std::string& name, const Plot& plot, const PlotView& view);
 [[nodiscard]] SaveOffer offer_of(const std::string& name, Table table);
 
 /// Opens a menu of offers where the right button was pressed and let go of in place.

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/gl/framebuffer.hpp"
+#include "ui/scene/scene_renderer.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/theme/colormap.hpp"
+#include "ui/theme/fonts.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {
@@ -204,6 +209,10 @@ std::optional<ScenePose> pose_under(const SceneData& scene, const SceneView& vie
 
 }  // namespace
 
+SceneWidget::SceneWidget(const Gl& gl) : gl_(&gl), renderer_(std::make_unique<SceneRenderer>(gl)) {}
+
+SceneWidget::~SceneWidget() = default;
+
 SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const SceneData& scene, SceneView& view,
                                 ImVec2 size) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
@@ -229,7 +238,7 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
   }
 
   if (!framebuffer_ || framebuffer_->width() != width || framebuffer_->height() != height) {
-    framebuffer_.emplace(*gl_, width, height, kSamples);
+    framebuffer_ = std::make_unique<Framebuffer>(*gl_, width, height, kSamples);
     drawn_.reset();
   }
   Drawn wanted{
@@ -237,7 +246,7 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
       scene.up,       scene.show_grid,      scene.show_axes,       frame.theme.name, frame.scale};
   if (scene.current) wanted.current = scene.current->matrix();
   if (drawn_ != wanted) {
-    renderer_.draw(scene, view, frame.theme, frame.scale, *framebuffer_);
+    renderer_->draw(scene, view, frame.theme, frame.scale, *framebuffer_);
     drawn_ = wanted;
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();

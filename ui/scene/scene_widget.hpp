@@ -2,14 +2,19 @@
 
 #include <imgui.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "ui/scene/scene_renderer.hpp"
 #include "ui/scene/scene_view.hpp"
-#include "ui/shell/canvas.hpp"
+#include "ui/theme/palette.hpp"
 
 namespace stillpoint {
+
+class Framebuffer;
+class Gl;
+class SceneRenderer;
+struct UiFrame;
 
 /// A pose of a path under the mouse.
 struct ScenePose {
@@ -35,7 +40,10 @@ struct SceneResponse {
 /// axes' directions on it.
 class SceneWidget {
  public:
-  explicit SceneWidget(const Gl& gl) : gl_(&gl), renderer_(gl) {}
+  explicit SceneWidget(const Gl& gl);
+  ~SceneWidget();
+  SceneWidget(const SceneWidget&) = delete;
+  SceneWidget& operator=(const SceneWidget&) = delete;
 
   /// Draws into the given size (0 takes what is left) at ImGui's cursor.
   SceneResponse draw(const UiFrame& frame, const char* id, const SceneData& scene, SceneView& view,
@@ -43,8 +51,8 @@ class SceneWidget {
 
  private:
   const Gl* gl_;
-  SceneRenderer renderer_;
-  std::optional<Framebuffer> framebuffer_;
+  std::unique_ptr<SceneRenderer> renderer_;
+  std::unique_ptr<Framebuffer> framebuffer_;
 
   /// What a picture of the scene depends on: the one drawn last serves until something of it changes.
   struct Drawn {

@@ -6,6 +6,10 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/run/removal_errors.hpp"
+
 namespace stillpoint {
 
 std::optional<int> next_worst(const std::vector<int>& worst, int frame, std::optional<int> gone_to) {

@@ -7,16 +7,17 @@
 #include <variant>
 #include <vector>
 
-#include "core/check/findings.hpp"
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
-#include "core/run/removal_errors.hpp"
-#include "core/run/sweep.hpp"
+#include "core/run/sweep_range.hpp"
 
 namespace stillpoint {
 
+struct Finding;
 struct FrameView;
+struct RemovalError;
 struct RunView;
+struct SweepPoint;
 
 // What debugging adds to the session: its part of the snapshot panels draw, and what panels may ask for.
 
@@ -62,10 +63,10 @@ struct CheckView {
 /// Runs of the sequence's first frames at several values of one parameter.
 struct SweepView {
   SweepRange range;
-  std::vector<double> values;        ///< all that are asked for, ascending
-  std::vector<SweepPoint> points{};  ///< those done, in their order
-  int frames = 0;                    ///< so many are run each time
-  Config base;                       ///< what every other parameter is
+  std::vector<double> values;      ///< all that are asked for, ascending
+  std::vector<SweepPoint> points;  ///< those done, in their order
+  int frames = 0;                  ///< so many are run each time
+  Config base;                     ///< what every other parameter is
   bool busy = false;
   std::string problem{};  ///< why it ended early, one sentence; empty mostly
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/inspect/run_view.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {

@@ -5,7 +5,11 @@
 #include <iterator>
 #include <utility>
 
+#include "core/check/findings.hpp"
 #include "core/inspect/frame_neighbours.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 
 namespace stillpoint {
 namespace {

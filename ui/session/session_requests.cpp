@@ -8,7 +8,9 @@
 #include "core/error.hpp"
 #include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/export_session.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/session/session.hpp"
 
 namespace stillpoint {
@@ -285,6 +287,7 @@ void Session::carry_out(const request::Sweep& wanted) {
   if (sweeping_) throw InputError("another sweep still goes on");
   SweepView view{.range = wanted.range,
                  .values = sweep_values(wanted.base, wanted.range),
+                 .points = {},
                  .frames = std::clamp(wanted.frames, 0, source_->size()),
                  .base = wanted.base,
                  .busy = true};

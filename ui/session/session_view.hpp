@@ -5,11 +5,15 @@
 #include <vector>
 
 #include "core/config.hpp"
-#include "core/inspect/frame_view.hpp"
-#include "core/run/run_sequence.hpp"
+#include "core/evaluation/alignment.hpp"
+#include "core/geometry/camera.hpp"
+#include "core/geometry/trajectory.hpp"
 #include "ui/session/debug_view.hpp"
 
 namespace stillpoint {
+
+struct SavedKeyframe;
+struct SavedPoint;
 
 /// What panels draw: a snapshot of the session, plain data, made by the session once a frame of the interface
 /// at most.
@@ -33,9 +37,7 @@ struct SessionView {
 };
 
 /// Whether the sliders' config, not the run's, made the motion stages that are shown.
-[[nodiscard]] inline bool shows_preview(const SessionView& session) {
-  return session.debug.preview != nullptr && session.debug.preview->index == session.current->index;
-}
+[[nodiscard]] bool shows_preview(const SessionView& session);
 
 /// What panels of the frame shown draw while there is a preview of it: the same session, whose frame, config
 /// and nothing else are the preview's. @pre shows_preview(session)

@@ -3,6 +3,9 @@
 #include <chrono>
 #include <exception>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/run/sweep.hpp"
 #include "core/sequence/fingerprint.hpp"
 #include "core/stopwatch.hpp"
 #include "ui/session/session.hpp"

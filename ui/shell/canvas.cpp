@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ui/gl/imgui_renderer.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

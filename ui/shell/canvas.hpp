@@ -3,66 +3,23 @@
 #include <imgui.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "ui/gl/framebuffer.hpp"
-#include "ui/shell/event_log.hpp"
 #include "ui/shell/graphics_context.hpp"
 #include "ui/shell/input.hpp"
+#include "ui/shell/ui_frame.hpp"
 #include "ui/shell/ui_pace.hpp"
 #include "ui/theme/fonts.hpp"
-#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 
 class ImGuiRenderer;
-class PanelChoices;
 
 /// ImGui lays new windows out over two frames, so what has changed is drawn this many times.
 inline constexpr int kSettlingFrames = 3;
-
-/// How the interface looks, in a window and in images alike.
-struct Look {
-  ThemeName theme = ThemeName::kDark;
-  float scale = 1.0F;  ///< times the design size of text and spacing, 0.5 to 4
-  bool operator==(const Look&) const = default;
-};
-
-/// Something shown that a person wants as a file.
-struct FileOffer {
-  std::string name;     ///< of the file, as it is proposed: "errors.svg"
-  std::string endings;  ///< its file may have, for people: ".svg, .pdf or .csv"
-  std::function<void(const std::string& path)> write;  ///< @throws InputError
-};
-
-/// What a frame function works with, and what it may ask of the shell in return.
-struct UiFrame {
-  const Gl& gl;
-  const Fonts& fonts;
-  const Theme& theme;
-  ImVec2 size;                                ///< px, of the whole
-  float scale = 1.0F;                         ///< px a design pixel: multiply lengths by it
-  double time_s = 0.0;                        ///< of the interface's own clock; offscreen it ticks by frames
-  bool controls = true;                       ///< false in pictures for print: panels leave out their buttons
-  std::vector<std::string> dropped_files{};   ///< since the frame before
-  bool close_requested = false;               ///< the person closes the window
-  const UiPace* pace = nullptr;               ///< how fast the interface is; null where nobody measures
-  const EventLog* log = nullptr;              ///< what was said; null where nothing is
-  PanelChoices* choices = nullptr;            ///< of the panel being drawn; null where none are kept
-  std::optional<FileOffer>* offer = nullptr;  ///< where what is to be saved is put; null where nothing can be
-  bool busy = false;                          ///< work goes on beside the interface: its pace counts
-  Look wanted_look{};                         ///< from the next frame on
-  double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
-  bool quit = false;                                                ///< leave the shell's loop
-  bool changed = true;  ///< the picture is another than that of the frame before; known once it is drawn
-};
-
-/// Draws one frame of the interface through ImGui, whose context is current.
-using FrameFunction = std::function<void(UiFrame&)>;
 
 /// ImGui over one GL context: its state, fonts, theme and input. Window and Offscreen each have one, so that
 /// both draw by the same way.

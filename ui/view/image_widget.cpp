@@ -5,6 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/gl/texture.hpp"
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
+#include "ui/theme/theme.hpp"
+
 namespace stillpoint {
 namespace {
 

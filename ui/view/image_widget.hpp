@@ -5,12 +5,14 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "ui/gl/texture.hpp"
-#include "ui/shell/canvas.hpp"
 #include "ui/view/image_view.hpp"
 
 namespace stillpoint {
+
+class Texture;
+struct UiFrame;
 
 /// An image laid over another.
 struct ImageOverlay {

@@ -11,7 +11,11 @@
 #include <exception>
 #include <utility>
 
+#include "core/inspect/run_view.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/panels/panel.hpp"
+#include "ui/shell/event_log.hpp"
 
 namespace stillpoint {
 namespace {

@@ -5,10 +5,14 @@
 #include <cmath>
 
 #include "core/inspect/frame_verdict.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/data_sources.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {

@@ -1,6 +1,9 @@
 // What leads to failures: worst frames, breakpoint hits, bookmarks, a range of frames, ghosts.
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/session/data_sources.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <utility>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {

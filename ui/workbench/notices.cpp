@@ -8,7 +8,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/inspect/frame_view.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ui/panels/panel_kit.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

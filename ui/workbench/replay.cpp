@@ -6,8 +6,10 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/media/image_codec.hpp"
 #include "core/stopwatch.hpp"
+#include "ui/shell/event_log.hpp"
 
 namespace stillpoint {
 namespace {

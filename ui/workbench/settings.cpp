@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/out_folder.hpp"
+#include "ui/theme/theme.hpp"
 
 namespace stillpoint {
 namespace {

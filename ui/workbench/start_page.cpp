@@ -1,7 +1,9 @@
 // What the workbench shows while no sequence is open.
 #include <algorithm>
 
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint {

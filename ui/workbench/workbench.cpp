@@ -5,8 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/panels/panel_kit.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

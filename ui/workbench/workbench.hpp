@@ -9,9 +9,11 @@
 
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_choices.hpp"
+#include "ui/panels/panel_command.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/canvas.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/workbench/layout.hpp"
 #include "ui/workbench/open_dialog.hpp"
 #include "ui/workbench/palette.hpp"

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "core/inspect/frame_view.hpp"
+#include "ui/panels/panel_command.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include "core/inspect/frame_view.hpp"
+#include "ui/shell/event_log.hpp"
 #include "ui/workbench/workbench.hpp"
 
 // When another frame is shown, its tiles take to it in turn, so that no frame of the interface draws them

@@ -5,7 +5,13 @@
 
 #include <cmath>
 
+#include "core/check/findings.hpp"
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_scores.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/sweep.hpp"
 #include "core/run/worst_frames.hpp"
 
 namespace stillpoint {

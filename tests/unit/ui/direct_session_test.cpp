@@ -4,6 +4,7 @@
 #include <optional>
 #include <random>
 
+#include "core/inspect/frame_stages.hpp"
 #include "core/inspect/stage_change.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/unit/defocused_source.hpp"

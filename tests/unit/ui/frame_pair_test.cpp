@@ -2,6 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/map_id.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/unit/ui/inspect_scene.hpp"
 
 namespace stillpoint::testing {

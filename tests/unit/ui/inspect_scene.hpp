@@ -3,9 +3,14 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/motion/epipolar/epipolar_stages.hpp"
 #include "core/motion/paper/paper_stages.hpp"
 #include "core/motion/stillpoint/stillpoint_stages.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/odometry/map_id.hpp"
+#include "core/run/frame_scores.hpp"
 #include "ui/session/session_view.hpp"
 
 namespace stillpoint::testing {

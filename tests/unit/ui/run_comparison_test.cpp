@@ -6,6 +6,9 @@
 
 #include "core/motion/paper/paper_config.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
+#include "core/run/removal_errors.hpp"
 #include "ui/panels/parameter_rows.hpp"
 #include "ui/panels/removal_summary.hpp"
 #include "ui/panels/run_difference.hpp"

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "core/motion/stillpoint/stillpoint_config.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/support/same_stages.hpp"
 #include "tests/unit/ui/session_debug.hpp"
 

@@ -1,0 +1,9 @@
+#include "core/inspect/run_view.hpp"
+
+#include "core/run/frame_figures.hpp"
+
+namespace stillpoint {
+
+MeasuredFrames RunView::measured() const { return {records, &evaluation, &scores}; }
+
+}  // namespace stillpoint
