@@ -23,7 +23,9 @@ Painter::Painter(const PainterOptions& options)
                   .height = options.workbench_size.second,
                   .look = options.look}),
       panels_(make_panels()),
-      workbench_(make_panels()) {
+      workbench_(make_panels()),
+      runs_(options.runs) {
+  workbench_.set_runs(options.runs);
   choose(options.panels);
   if (options.layout.empty()) {
     workbench_.set_layout(default_layout(options.method, options.stereo));
@@ -108,10 +110,12 @@ std::vector<Painter::Picture> Painter::paint(const SessionView& view) {
                                                 options_.workbench_size)});
   for (Panel* chosen : panels_chosen_) {
     if (!chosen->is_for(view) && !named_.contains(chosen)) continue;
-    pictures.push_back(
-        {chosen->name(),
-         paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, *chosen, choices_[chosen]); },
-                     options_.panel_size)});
+    pictures.push_back({chosen->name(), paint_frame(
+                                            [&](UiFrame& frame) {
+                                              frame.runs = &runs_;
+                                              Workbench::draw_alone(frame, view, *chosen, choices_[chosen]);
+                                            },
+                                            options_.panel_size)});
   }
   return pictures;
 }

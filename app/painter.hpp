@@ -27,6 +27,7 @@ struct PainterOptions {
                          ///< method's default tiles, and panels as they are by themselves
   std::string method{};  ///< chooses the default layout
   bool stereo = false;   ///< … for stereo pairs
+  RunsShown runs{};      ///< which runs pictures show, and how
 };
 
 /// Draws panels and the workbench as images, in one GL context for all of them.
@@ -79,6 +80,7 @@ class Painter {
   Offscreen offscreen_;  // first: the panels' textures live in its context
   std::vector<std::unique_ptr<Panel>> panels_;
   Workbench workbench_;
+  RunsShown runs_;  // of panels drawn alone
   bool workbench_chosen_ = false;
   std::vector<Panel*> panels_chosen_;
   std::set<const Panel*> named_;                  // of these, those that were not chosen as one of all

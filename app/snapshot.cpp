@@ -28,8 +28,10 @@ namespace fs = std::filesystem;
 struct SnapshotArguments {
   SourceArguments place;
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
-  double scale = 1.0, fps = 0.0;  ///< fps: 0 = frames' own times
-  std::string beside;             ///< method whose stages are laid beside the run's; empty = none
+  double scale = 1.0, fps = 0.0;     ///< fps: 0 = frames' own times
+  std::vector<std::string> compare;  ///< methods and presets that run beside
+  std::string wipe, flip;            ///< runs by name; empty = none
+  std::string beside;                ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
 
@@ -42,7 +44,41 @@ PainterOptions painter_options(const SnapshotArguments& arguments, const std::st
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
   options.method = method;
+  if (!arguments.wipe.empty()) options.runs.pictures = RunPictures::wiped;
+  if (!arguments.wipe.empty() && arguments.wipe != "all") options.runs.chosen = split_list(arguments.wipe);
+  if (!arguments.flip.empty())
+    options.runs = {
+        .pictures = RunPictures::flipped, .chosen = {arguments.flip}, .flipped_to = arguments.flip};
   return options;
+}
+
+/// Runs beside the session's own, each from the first frame on.
+void add_compared(Session& session, const SnapshotArguments& arguments, const Config& config) {
+  for (const std::string& name : arguments.compare) {
+    const std::vector<std::string> methods = method_names();
+    Config other = config;
+    if (std::find(methods.begin(), methods.end(), name) != methods.end())
+      other.run.method = name;
+    else
+      other = load_config(name);
+    session.request(request::AddGhost{other, name, 0});
+    if (const auto view = session.view(); !view->message.empty())
+      throw InputError(fmt::format("--compare {}: {}", name, view->message));
+  }
+}
+
+/// @throws InputError for a run that pictures are to show and there is not
+void refuse_unknown_runs(const SessionView& view, const RunsShown& runs) {
+  std::vector<std::string> known;
+  for (const ListedRun& run : listed_runs(view)) known.push_back(run.name);
+  for (const std::string& name : runs.chosen)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError(fmt::format("there is no run {}; there are {}", name, fmt::join(known, ", ")));
+  if (runs.pictures == RunPictures::wiped && runs.chosen_of(view).size() < 2)
+    throw InputError(
+        fmt::format("--wipe takes two runs at least; there are {}. --compare METHOD and --run "
+                    "NAME=FILE lay others beside",
+                    fmt::join(known, ", ")));
 }
 
 /// Where images go: files one by one, a video, or both.
@@ -133,7 +169,8 @@ void snapshot(const SnapshotArguments& arguments) {
   const std::string& method = place.config.run.method;
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());
-  Painter painter(painter_options(arguments, method, place.source->camera().is_stereo()));
+  const PainterOptions options = painter_options(arguments, method, place.source->camera().is_stereo());
+  Painter painter(options);
   Pictures pictures(arguments, painter, usual_step(*place.source));
 
   place.options.keep_times = arguments.timings || finished_run;
@@ -145,6 +182,8 @@ void snapshot(const SnapshotArguments& arguments) {
                             painter.draws("inspector") || painter.draws("workbench"));
   Session session(place.source, place.config, place.options);
   if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
+  add_compared(session, arguments, place.config);
+  refuse_unknown_runs(*session.view(), options.runs);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
     const auto on_frame = [&](const FrameRecord& record) {
@@ -214,6 +253,17 @@ void add_snapshot_command(CLI::App& app) {
                    "Another method, whose stages are worked out for each frame as well: what its own panels "
                    "show")
       ->check(CLI::IsMember(method_names()));
+  command
+      ->add_option("--compare", arguments->compare,
+                   "Other methods or presets that run beside, with commas between; may be given again")
+      ->delimiter(',');
+  CLI::Option* wipe = command->add_option(
+      "--wipe", arguments->wipe,
+      "Pictures show several runs, each in a strip: all, or names of runs with commas between");
+  command
+      ->add_option("--flip", arguments->flip,
+                   "Pictures are of this run, by its name, in place of the sequence's own")
+      ->excludes(wipe);
   command->add_flag("--no-baseline", arguments->no_baseline, "Do not run method none beside for comparison");
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");

@@ -5,9 +5,11 @@
 
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panel_choices.hpp"
 #include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/session/shown_runs.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -45,6 +47,7 @@ class ComparePanel final : public NamedPanel {
       return;
     }
     chosen_ = std::min(chosen_, ghosts.size() - 1);
+    draw_picture_choice(frame, session);
     draw_table(frame, session, actions);
     const GhostView& ghost = ghosts[chosen_];
     const auto here = record_of(session, session.current->index),
@@ -74,6 +77,36 @@ class ComparePanel final : public NamedPanel {
     draw_frame_shown(frame, session, preview, actions);
   }
 
+  /// What pictures of all panels show: kept with the sequence, not with this panel.
+  static void draw_picture_choice(UiFrame& frame, const SessionView& session) {
+    if (frame.runs == nullptr) return;
+    PanelChoices* const choices = std::exchange(frame.choices, nullptr);
+    int pictures = static_cast<int>(frame.runs->pictures);
+    Controls controls(frame);
+    if (controls.choice("pictures", {"This run", "Wipe", "Flip"}, pictures,
+                        "What the pictures of all panels show: this run alone, the runs ticked below side by "
+                        "side (W), or one after the other (F)"))
+      frame.runs->pictures = static_cast<RunPictures>(pictures);
+    if (const auto flipped = frame.runs->flipped(session))
+      if (controls.button(fmt::format("Next after {} (F)", shortened(flipped->name, 18)).c_str()))
+        frame.runs->flip(session, 1);
+    frame.choices = choices;
+  }
+
+  /// Whether a run is among those that pictures show.
+  static void draw_picture_tick(const UiFrame& frame, const SessionView& session, const ListedRun& run) {
+    const std::vector<ListedRun> chosen = frame.runs->chosen_of(session);
+    bool on =
+        std::any_of(chosen.begin(), chosen.end(), [&](const ListedRun& one) { return one.name == run.name; });
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2.0F * frame.scale, 2.0F * frame.scale});
+    if (checkbox(frame, "##in pictures", on)) frame.runs->toggle(session, run.name);
+    ImGui::PopStyleVar();
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", run.no_pictures.empty() ? "Shown where pictures are wiped or flipped"
+                                                      : run.no_pictures.c_str());
+    ImGui::SameLine();
+  }
+
   void draw_table(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
     const ImVec2 low = ImGui::GetCursorScreenPos();
@@ -86,10 +119,19 @@ class ComparePanel final : public NamedPanel {
     ImGui::TableSetupColumn("Parts at", ImGuiTableColumnFlags_WidthStretch, 0.9F);
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 26.0F * frame.scale);
     ImGui::TableHeadersRow();
-    run_row(frame, {role_colour(Role::kEstimate, frame.theme.name)}, session.run->name + " (this run)",
-            *session.run, session.processed);
+    const std::vector<ListedRun> listed = listed_runs(session);
+    run_row(frame, session, listed.front(), {role_colour(Role::kEstimate, frame.theme.name)},
+            session.run->name + " (this run)", session.processed);
     ImGui::TableNextColumn();
     ImGui::TableNextColumn();
+    // Without pictures to choose, the list is of what can be compared frame by frame.
+    if (frame.runs != nullptr && session.baseline) {
+      run_row(frame, session, listed[1],
+              {role_colour(Role::kBaseline, frame.theme.name), SeriesStyle::kDashed, Sign::kDashed},
+              listed[1].name + " (baseline)", static_cast<int>(session.baseline->records.size()));
+      ImGui::TableNextColumn();
+      ImGui::TableNextColumn();
+    }
     for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) ghost_row(frame, session, i, actions);
     ImGui::EndTable();
     offer_table(frame, "runs", low, [&] { return runs_table(session); });
@@ -109,10 +151,14 @@ class ComparePanel final : public NamedPanel {
     return table;
   }
 
-  static void run_row(const UiFrame& frame, const RunLook& look, const std::string& name, const RunView& run,
-                      int processed) {
+  static void run_row(const UiFrame& frame, const SessionView& session, const ListedRun& listed,
+                      const RunLook& look, const std::string& name, int processed) {
+    const RunView& run = *listed.run;
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
+    ImGui::PushID(listed.name.c_str());
+    if (frame.runs != nullptr) draw_picture_tick(frame, session, listed);
+    ImGui::PopID();
     ImGui::AlignTextToFramePadding();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     draw_sign(frame, *ImGui::GetWindowDrawList(),
@@ -131,8 +177,10 @@ class ComparePanel final : public NamedPanel {
   void ghost_row(const UiFrame& frame, const SessionView& session, std::size_t index, PanelActions& actions) {
     const GhostView& ghost = session.debug.ghosts[index];
     ImGui::PushID(static_cast<int>(index));
-    run_row(frame, ghost_look(index, frame.theme.name), ghost.name + (ghost.busy ? "  running…" : ""),
-            *ghost.run, static_cast<int>(ghost.run->records.size()));
+    const std::vector<ListedRun> listed = listed_runs(session);
+    run_row(frame, session, listed[listed.size() - session.debug.ghosts.size() + index],
+            ghost_look(index, frame.theme.name), ghost.name + (ghost.busy ? "  running…" : ""),
+            static_cast<int>(ghost.run->records.size()));
     if (index == chosen_)
       ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, to_u32(frame.theme.accent, 0.18F));
     ImGui::TableNextColumn();

@@ -18,7 +18,8 @@ struct PanelActions {
   std::vector<SessionRequest> requests;  ///< in order
   bool compare_frames = false;           ///< FrameView::before is wanted
   std::optional<int> worst_by;  ///< the figure (frame_figure_infos()) that "worst" is to go by from now on
-  std::string reopen_with;  ///< the sequence anew, with a switch in place of how it was read: "camera=freiburg1"
+  std::string
+      reopen_with;  ///< the sequence anew, with a switch in place of how it was read: "camera=freiburg1"
   std::vector<std::string> perform;  ///< named actions to run, in order
 };
 
@@ -63,6 +64,13 @@ class Panel {
   [[nodiscard]] virtual PanelSize least() const { return {270.0F, 180.0F}; }
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
+  /// Whether what it shows of the frame is a run's, and so can be another run's as well (as_run()).
+  [[nodiscard]] virtual bool shows_a_run() const { return false; }
+  /// One more of its kind, in the same set, for another run's pictures in its place; null where its pictures
+  /// cannot be set against others.
+  [[nodiscard]] virtual std::unique_ptr<Panel> another() const { return nullptr; }
+  /// Panels made by another() so far: where it is drawn of several runs at once, each keeps its own textures.
+  std::vector<std::unique_ptr<Panel>> others;
   /// Whether it shows a frame of which the image alone is there (FrameView::image_alone); else it goes on
   /// showing the one before until the rest has come.
   [[nodiscard]] virtual bool shows_image_alone() const { return !previews(); }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ui/plot/plot_axis.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -51,14 +52,16 @@ void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb co
 }  // namespace
 
 const PairGeometry& PanelsShared::geometry(const SessionView& session) {
+  constexpr std::size_t kKept = 8;  // runs that may be drawn side by side
   const auto same = [](const auto& weak, const auto& strong) {
     return !weak.owner_before(strong) && !strong.owner_before(weak);
   };
-  if (same(geometry_of_, session.current) && same(geometry_run_, session.run)) return geometry_;
-  geometry_ = pair_geometry(*session.current, *session.run, session.camera);
-  geometry_of_ = session.current;
-  geometry_run_ = session.run;
-  return geometry_;
+  for (const KeptGeometry& kept : geometries_)
+    if (same(kept.current, session.current) && same(kept.run, session.run)) return kept.geometry;
+  geometries_.push_front(
+      {pair_geometry(*session.current, *session.run, session.camera), session.current, session.run});
+  if (geometries_.size() > kKept) geometries_.pop_back();
+  return geometries_.front().geometry;
 }
 
 // Legends and captions
@@ -213,6 +216,10 @@ void text_in_lines(const std::string& text) {
 }
 
 void draw_absent(const UiFrame& frame, const std::string& sentence) {
+  if (frame.strips != nullptr) {
+    frame.strips->say_absent(sentence);
+    return;
+  }
   const ImVec2 corner = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
   const float wrap = std::max(0.8F * room.x, 60.0F);
   const ImVec2 extent = ImGui::CalcTextSize(sentence.c_str(), nullptr, false, wrap);
@@ -295,17 +302,16 @@ ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb 
   return size;
 }
 
-void draw_preview_badge(const UiFrame& frame, ImVec2 corner) {
-  const std::string text = "Preview";
+float draw_badge(const UiFrame& frame, ImVec2 corner, const std::string& text, Rgb ground) {
   const ImVec2 extent = small_extent(frame, text);
   const float pad = 5.0F * frame.scale;
   const ImVec2 high{std::round(corner.x), std::round(corner.y + extent.y + pad)};
   const ImVec2 low{high.x - extent.x - 2.0F * pad, high.y - extent.y - pad};
-  // Dark ink on the warning's colour reads in either theme.
-  const Rgb ground = role_colour(Role::kWarning, frame.theme.name);
+  // Colours are light in the dark theme, and dark in the light one.
   const Rgb ink = frame.theme.name == ThemeName::kDark ? okabe_ito::kBlack : Rgb{0xFF, 0xFF, 0xFF};
   ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(ground), 3.0F * frame.scale);
   small_text(frame, {low.x + pad, low.y + 0.5F * pad}, text, ink);
+  return high.x - low.x;
 }
 
 }  // namespace stillpoint

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,9 +42,12 @@ struct PanelsShared {
   const PairGeometry& geometry(const SessionView& session);
 
  private:
-  PairGeometry geometry_;
-  std::weak_ptr<const FrameView> geometry_of_;
-  std::weak_ptr<const RunView> geometry_run_;
+  struct KeptGeometry {
+    PairGeometry geometry;
+    std::weak_ptr<const FrameView> current;
+    std::weak_ptr<const RunView> run;
+  };
+  std::list<KeptGeometry> geometries_;  // the newest first
 };
 
 /// A panel that has its names and what the set shares.
@@ -69,6 +73,7 @@ class FramePanel : public NamedPanel {
  public:
   using NamedPanel::NamedPanel;
   [[nodiscard]] bool previews() const override { return true; }
+  [[nodiscard]] bool shows_a_run() const override { return true; }
 };
 
 /// Controls side by side, on as many lines as they need.
@@ -189,7 +194,8 @@ void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float hei
 /// Text on a ground of its own that reads on any picture, its upper left corner at `at`. @returns its size.
 ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour);
 
-/// "Preview", beside what is not what the run made. @param corner its upper right corner
-void draw_preview_badge(const UiFrame& frame, ImVec2 corner);
+/// A word on a coloured ground: "Preview", beside what is not what the run made. @param corner its upper
+/// right corner. @returns its width, px
+float draw_badge(const UiFrame& frame, ImVec2 corner, const std::string& text, Rgb ground);
 
 }  // namespace stillpoint

@@ -8,6 +8,7 @@
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/stage_drawing.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -48,6 +49,10 @@ class StagesPanel final : public FramePanel {
 
   [[nodiscard]] PanelSize least() const override { return {420.0F, 280.0F}; }
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<StagesPanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     actions.compare_frames = true;
     list(session);
@@ -59,6 +64,10 @@ class StagesPanel final : public FramePanel {
       return;
     }
     const std::size_t current = current_index();
+    if (frame.strips != nullptr && frame.strips->pictures_alone()) {
+      draw_pictures_alone(frame, {session, actions}, stages_[current]);
+      return;
+    }
     draw_controls(frame, session, actions, current);
     const bool wide = ImGui::GetContentRegionAvail().x > kListFrom * frame.scale;
     if (wide) {
@@ -67,13 +76,30 @@ class StagesPanel final : public FramePanel {
       ImGui::EndChild();
       ImGui::SameLine();
     }
-    ImGui::BeginChild("stage", {0, 0}, false,
-                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    // No window of its own: pictures of other runs are laid over these.
+    ImGui::BeginGroup();
     draw_stage(frame, {session, actions}, stages_[current_index()], !wide);
-    ImGui::EndChild();
+    ImGui::EndGroup();
   }
 
  private:
+  /// Of another run, in the places of the first one's pictures.
+  void draw_pictures_alone(const UiFrame& frame, const FramePlace& place, const Stage& stage) {
+    Controls(frame).choice("against", {kAgainst.begin(), kAgainst.end()}, against_);
+    if (shared_->stage && !shared_->stage->same_place(stage)) {
+      draw_absent(frame, fmt::format("Method {} has no stage \"{}\".", place.session.config.run.method,
+                                     shared_->stage->name));
+      return;
+    }
+    if (stage.sides.size() > 1) {
+      std::vector<std::string> names;
+      for (const StageSide& side : stage.sides) names.push_back(side.name);
+      Controls(frame).choice("direction", names, direction_);
+    }
+    prepare(place.session, stage);
+    draw_pictures(frame, place, ImGui::GetContentRegionAvail());
+  }
+
   void list(const SessionView& session) {
     const bool same = !listed_.owner_before(session.current) && !session.current.owner_before(listed_);
     if (same && !stages_.empty()) return;

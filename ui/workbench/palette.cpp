@@ -162,6 +162,7 @@ std::vector<PaletteRow> Workbench::palette_rows() {
     rows.push_back(std::move(row));
   }
   if (session_ == nullptr || !host_.request) return rows;
+  add_picture_rows(rows);
   add_run_rows(rows);
   add_parameter_rows(rows);
   return rows;

@@ -7,6 +7,7 @@
 
 #include "core/odometry/engines.hpp"
 #include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_pictures.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -64,7 +65,7 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5.0F * frame.scale, 2.0F * frame.scale});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {5.0F * frame.scale, 3.0F * frame.scale});
   }
-  if (visible) panel.draw(frame, session, wanted);
+  if (visible) draw_by_runs(frame, session, panel, wanted);
   if (compact) {
     ImGui::PopStyleVar(2);
     ImGui::PopFont();
@@ -141,6 +142,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   look_ = frame.wanted_look;
   follow_session();
   frame.log = &log_;
+  frame.runs = &runs_;
   frame.busy = !opening_.empty() || (session != nullptr && session->busy);
   if (const auto before = std::exchange(before_frame_, {})) before();
   frame.offer = &offered_;

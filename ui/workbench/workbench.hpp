@@ -11,6 +11,7 @@
 #include "ui/panels/panel_choices.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
+#include "ui/session/shown_runs.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"
 #include "ui/workbench/open_dialog.hpp"
@@ -55,6 +56,10 @@ class Workbench {
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel);
   /// The same with choices for its controls.
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices);
+
+  /// Which runs pictures show, and how.
+  [[nodiscard]] const RunsShown& runs() const { return runs_; }
+  void set_runs(RunsShown runs) { runs_ = std::move(runs); }
 
   /// The tiles, with what is chosen in each panel.
   [[nodiscard]] LayoutNode layout() const;
@@ -111,6 +116,7 @@ class Workbench {
   void add_layout_actions();
   void add_debug_actions();
   void add_mark_actions();
+  void add_run_actions();
   void go_to(int frame);
   void step(int by);
   void ask(SessionRequest request);
@@ -147,6 +153,7 @@ class Workbench {
   void draw_palette_list();
   [[nodiscard]] std::vector<PaletteRow> palette_rows();
   void add_run_rows(std::vector<PaletteRow>& rows);
+  void add_picture_rows(std::vector<PaletteRow>& rows);
   void add_parameter_rows(std::vector<PaletteRow>& rows);
   void show_parameter(const std::string& key);
   void draw_shortcuts();
@@ -178,6 +185,7 @@ class Workbench {
   EventLog log_;
   std::string opening_, last_trouble_;
   std::map<std::string, PanelChoices> choices_;
+  RunsShown runs_;
   std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
   std::vector<PlacedPanel> places_;          ///< … with the tabs that share them
   std::vector<std::string> fronts_;          ///< tabs that were brought to the front, the last at the end
