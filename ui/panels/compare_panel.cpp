@@ -128,7 +128,7 @@ class ComparePanel final : public NamedPanel {
     if (frame.runs != nullptr && session.baseline) {
       run_row(frame, session, listed[1],
               {role_colour(Role::kBaseline, frame.theme.name), SeriesStyle::kDashed, Sign::kDashed},
-              listed[1].name + " (baseline)", static_cast<int>(session.baseline->records.size()));
+              session.baseline->name + " (baseline)", static_cast<int>(session.baseline->records.size()));
       ImGui::TableNextColumn();
       ImGui::TableNextColumn();
     }

@@ -24,25 +24,6 @@ float width_of(const ImFont& font, const std::string& text) {
   return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
 }
 
-/// Ends lines at spaces alone: ImGui would part 0.81 at its point. A figure keeps its unit.
-std::string wrapped(const ImFont& font, const std::string& text, float width) {
-  constexpr std::size_t kLongestUnit = 4;  // bytes, "°)."
-  std::string lines, line;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::size_t next = std::min(text.find(' ', end + 1), text.size());
-    const bool figure = end > at && std::isdigit(static_cast<unsigned char>(text[end - 1])) != 0;
-    if (end < text.size() && figure && next - end - 1 <= kLongestUnit) end = next;
-    const std::string word = text.substr(at, end - at);
-    if (at > 0 && width_of(font, line + ' ' + word) > width)
-      lines += std::exchange(line, word) + '\n';
-    else
-      line += (at > 0 ? " " : "") + word;
-    at = end + 1;
-  }
-  return lines + line;
-}
-
 void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour, float wrap = 0.0F) {
   ImGui::GetWindowDrawList()->AddText(frame.fonts.small, frame.fonts.small->FontSize,
                                       {std::round(at.x), std::round(at.y)}, to_u32(colour), text.c_str(),
@@ -141,7 +122,7 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
   }
   if (!legend.empty() && has_legend_) y += line;
   if (!caption.empty() && has_caption_) {
-    const std::string lines = wrapped(*frame.fonts.small, caption, width);
+    const std::string lines = in_lines(*frame.fonts.small, caption, width);
     if (draw) small_text(frame, {corner.x, corner.y + y}, lines, frame.theme.text_dim, width);
     y += small_extent(frame, lines, width).y;
   }
@@ -205,6 +186,25 @@ std::string cut_to(const ImFont& font, const std::string& text, float width) {
   return cut.empty() ? cut : cut + ellipsis;
 }
 
+std::string in_lines(const ImFont& font, const std::string& text, float width) {
+  // ImGui would part 0.81 at its point. A figure keeps its unit.
+  constexpr std::size_t kLongestUnit = 4;  // bytes, "°)."
+  std::string lines, line;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t next = std::min(text.find(' ', end + 1), text.size());
+    const bool figure = end > at && std::isdigit(static_cast<unsigned char>(text[end - 1])) != 0;
+    if (end < text.size() && figure && next - end - 1 <= kLongestUnit) end = next;
+    const std::string word = text.substr(at, end - at);
+    if (at > 0 && width_of(font, line + ' ' + word) > width)
+      lines += std::exchange(line, word) + '\n';
+    else
+      line += (at > 0 ? " " : "") + word;
+    at = end + 1;
+  }
+  return lines + line;
+}
+
 void text_in_room(const std::string& text, Rgb colour) {
   const std::string shown = cut_to(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x);
   ImGui::TextColored(to_vec4(colour), "%s", shown.c_str());
@@ -212,7 +212,7 @@ void text_in_room(const std::string& text, Rgb colour) {
 }
 
 void text_in_lines(const std::string& text) {
-  ImGui::TextWrapped("%s", wrapped(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
+  ImGui::TextWrapped("%s", in_lines(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
 }
 
 void draw_absent(const UiFrame& frame, const std::string& sentence) {

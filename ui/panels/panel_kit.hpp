@@ -37,6 +37,7 @@ struct PanelsShared {
   std::optional<ImageCursor> cursor;        ///< the same, where it was
   std::optional<FeatureSelection> feature;  ///< the feature chosen
   std::optional<Stage> stage;               ///< the stage chosen: its place
+  std::optional<Stage> stage_of_strips;     ///< the one that the first of several runs shows: its place
 
   /// The geometry of the pair shown, worked out once a frame.
   const PairGeometry& geometry(const SessionView& session);
@@ -161,6 +162,9 @@ struct Tiling {
 
 /// One line in the current font as far as there is room for it; the mouse over it shows it whole.
 void text_in_room(const std::string& text, Rgb colour);
+
+/// A text as lines that end at spaces alone, and never between a figure and its unit.
+[[nodiscard]] std::string in_lines(const ImFont& font, const std::string& text, float width);
 
 /// Lines in the current font that end at spaces alone, and never between a figure and its unit.
 void text_in_lines(const std::string& text);

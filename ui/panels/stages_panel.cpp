@@ -63,11 +63,13 @@ class StagesPanel final : public FramePanel {
                              : fmt::format("Frame {} has not been processed yet.", view.index));
       return;
     }
-    const std::size_t current = current_index();
     if (frame.strips != nullptr && frame.strips->pictures_alone()) {
-      draw_pictures_alone(frame, {session, actions}, stages_[current]);
+      draw_pictures_alone(frame, {session, actions});
       return;
     }
+    const std::size_t current = current_index();
+    shared_->stage_of_strips = stages_[current];
+    shared_->stage_of_strips->sides.clear();
     draw_controls(frame, session, actions, current);
     const bool wide = ImGui::GetContentRegionAvail().x > kListFrom * frame.scale;
     if (wide) {
@@ -84,11 +86,15 @@ class StagesPanel final : public FramePanel {
 
  private:
   /// Of another run, in the places of the first one's pictures.
-  void draw_pictures_alone(const UiFrame& frame, const FramePlace& place, const Stage& stage) {
+  void draw_pictures_alone(const UiFrame& frame, const FramePlace& place) {
     Controls(frame).choice("against", {kAgainst.begin(), kAgainst.end()}, against_);
-    if (shared_->stage && !shared_->stage->same_place(stage)) {
-      draw_absent(frame, fmt::format("Method {} has no stage \"{}\".", place.session.config.run.method,
-                                     shared_->stage->name));
+    if (!shared_->stage_of_strips) return;
+    const Stage& wanted = *shared_->stage_of_strips;
+    alone_ = find_stage(stages_, wanted);
+    const Stage& stage = stages_[*alone_];
+    if (!wanted.same_place(stage)) {
+      draw_absent(
+          frame, fmt::format("Method {} has no stage \"{}\".", place.session.config.run.method, wanted.name));
       return;
     }
     if (stage.sides.size() > 1) {
@@ -97,7 +103,8 @@ class StagesPanel final : public FramePanel {
       Controls(frame).choice("direction", names, direction_);
     }
     prepare(place.session, stage);
-    draw_pictures(frame, place, ImGui::GetContentRegionAvail());
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    draw_pictures(frame, place, {room.x, room.y - ImGui::GetStyle().ItemSpacing.y});
   }
 
   void list(const SessionView& session) {
@@ -109,6 +116,7 @@ class StagesPanel final : public FramePanel {
   }
 
   [[nodiscard]] std::size_t current_index() const {
+    if (alone_) return *alone_;
     return shared_->stage ? find_stage(stages_, *shared_->stage) : telling_stage(stages_);
   }
 
@@ -336,6 +344,7 @@ class StagesPanel final : public FramePanel {
   }
 
   std::vector<Stage> stages_;
+  std::optional<std::size_t> alone_;  // of these, the one that strips show; nothing in a panel of its own
   std::weak_ptr<const FrameView> listed_;
   int direction_ = 0, against_ = static_cast<int>(ChangeAgainst::kStageBefore);
   bool scroll_ = true;

@@ -8,6 +8,7 @@
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
+#include "ui/plot/path_plot.hpp"
 #include "ui/scene/scene_widget.hpp"
 
 namespace stillpoint {
@@ -32,6 +33,8 @@ class TrajectoryPanel final : public NamedPanel {
     draw_controls(frame, session);
     Footer footer;
     footer.legend = ghost_legend(frame, session);
+    scene_.data.show_legend = has_room_for_legend(frame);
+    if (!scene_.data.show_legend) add_path_legend(frame, footer);
     footer.caption = alignment_text(session);
     const ImVec2 room = room_above(frame, footer);
     look(room);
@@ -73,49 +76,33 @@ class TrajectoryPanel final : public NamedPanel {
     if (scene_.data.current) follow(view_, *scene_.data.current);
   }
 
-  /// The paths as they are laid out here: seen along the axis in which they reach least, and as numbers.
+  /// The paths as they are laid out here: from the side that shows most of them, and as numbers.
   [[nodiscard]] std::vector<SaveOffer> offers(ThemeName theme) const {
-    std::vector<std::array<std::vector<double>, 3>> paths(scene_.data.paths.size());
-    std::array<std::vector<double>, 3> all;
+    std::vector<std::array<std::vector<double>, 3>> positions(scene_.data.paths.size());
+    std::vector<PlotPath> paths;
     Table table{{"path", "frame", "time (s)", "x (m)", "y (m)", "z (m)"}, {}};
-    for (std::size_t p = 0; p < paths.size(); ++p)
-      for (std::size_t i = 0; i < scene_.data.paths[p].positions.size(); ++i) {
-        const Eigen::Vector3d at = scene_.data.paths[p].positions[i].cast<double>();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          paths[p][axis].push_back(at[static_cast<Eigen::Index>(axis)]);
-          all[axis].push_back(paths[p][axis].back());
-        }
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+      const ScenePath& path = scene_.data.paths[p];
+      for (std::size_t i = 0; i < path.positions.size(); ++i) {
+        const Eigen::Vector3d at = path.positions[i].cast<double>();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          positions[p][axis].push_back(at[static_cast<Eigen::Index>(axis)]);
         const bool known = i < scene_.frames_of_path[p].size();
-        table.rows.push_back({scene_.data.paths[p].name,
-                              known ? fmt::format("{}", scene_.frames_of_path[p][i].index) : std::string(),
-                              known ? fmt::format("{}", scene_.frames_of_path[p][i].seconds) : std::string(),
-                              fmt::format("{}", at.x()), fmt::format("{}", at.y()),
-                              fmt::format("{}", at.z())});
+        table.rows.push_back(
+            {path.name, known ? fmt::format("{}", scene_.frames_of_path[p][i].index) : std::string(),
+             known ? fmt::format("{}", scene_.frames_of_path[p][i].seconds) : std::string(),
+             fmt::format("{}", at.x()), fmt::format("{}", at.y()), fmt::format("{}", at.z())});
       }
-    std::array<AxisRange, 3> extents;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      extents[axis] = range_of(all[axis], 0.05, AxisScale::kLinear);
-    std::array<std::size_t, 3> axes{0, 1, 2};
-    std::stable_sort(axes.begin(), axes.end(),
-                     [&](std::size_t a, std::size_t b) { return extents[a].span() > extents[b].span(); });
-    const std::size_t across = std::min(axes[0], axes[1]), up = std::max(axes[0], axes[1]);
-    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
-    Plot plot{.x_label = kNames[across], .x_unit = "m", .y_label = kNames[up], .y_unit = "m"};
-    plot.y_from_zero = false;
-    plot.equal_scale = true;
-    plot.x_limits = extents[across];
-    for (std::size_t p = 0; p < paths.size(); ++p) {
       const auto ghost = std::find(scene_.ghost_paths.begin(), scene_.ghost_paths.end(), p);
       const SeriesStyle style =
           ghost == scene_.ghost_paths.end()
-              ? (scene_.data.paths[p].dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
+              ? (path.dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
               : ghost_look(static_cast<std::size_t>(ghost - scene_.ghost_paths.begin()), theme).line;
-      plot.series.push_back({scene_.data.paths[p].name, paths[p][across], paths[p][up],
-                             path_colour(scene_.data.paths[p], theme), style});
+      paths.push_back({path.name, &positions[p], path_colour(path, theme), style});
     }
     SaveOffer poses = offer_of("poses", std::move(table));
     poses.what = "its poses";
-    return {offer_of("trajectory", plot), std::move(poses)};
+    return {offer_of("trajectory", path_plot(paths).plot), std::move(poses)};
   }
 
   void draw_controls(const UiFrame& frame, const SessionView& session) {
@@ -141,6 +128,25 @@ class TrajectoryPanel final : public NamedPanel {
     controls.toggle("Keyframes", layers_.keyframes);
     if (!session.run->evaluation.matched.empty())
       controls.toggle("Errors", layers_.errors, "Lines from each pose to where it truly was");
+  }
+
+  /// Whether the names of the paths cover no more than a corner of the picture.
+  [[nodiscard]] bool has_room_for_legend(const UiFrame& frame) const {
+    constexpr float kMostHeight = 0.5F, kBelow = 60.0F;  // of the room; design px of what stands below
+    const float line = frame.fonts.small->FontSize + 4.0F * frame.scale;
+    const auto lines = static_cast<float>(scene_legend(scene_.data, frame.theme.name).size());
+    return line * lines <= kMostHeight * (ImGui::GetContentRegionAvail().y - kBelow * frame.scale);
+  }
+
+  /// The paths' names below the picture, but for those of ghosts, which stand there anyway.
+  void add_path_legend(const UiFrame& frame, Footer& footer) const {
+    std::vector<LegendEntry> paths;
+    for (const SceneLegendEntry& entry : scene_legend(scene_.data, frame.theme.name)) {
+      if (entry.name.starts_with("ghost: ")) continue;
+      const Sign sign = entry.width_px <= 0.0F ? Sign::kCircle : entry.broken ? Sign::kDashed : Sign::kLine;
+      paths.push_back({entry.name, entry.colour, sign});
+    }
+    footer.legend.insert(footer.legend.begin(), paths.begin(), paths.end());
   }
 
   [[nodiscard]] static std::vector<LegendEntry> ghost_legend(const UiFrame& frame,

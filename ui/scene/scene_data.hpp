@@ -56,6 +56,7 @@ struct SceneData {
   FrustumShape frustum;
   Eigen::Vector3d up{0.0, 0.0, 1.0};  ///< unit; the grid is perpendicular to it
   double ground_m = 0.0;              ///< the grid's height along `up`
+  bool show_legend = true;  ///< over the picture; where it would cover too much of it, it stands elsewhere
   bool show_grid = true;
   bool show_axes = true;
 

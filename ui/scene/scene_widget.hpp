@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ui/scene/scene_renderer.hpp"
 #include "ui/scene/scene_view.hpp"
@@ -29,6 +30,15 @@ struct SceneResponse {
     return {panel_min.x + static_cast<float>(pixel.x()), panel_min.y + static_cast<float>(pixel.y())};
   }
 };
+
+/// What tells one kind of thing in a scene from another.
+struct SceneLegendEntry {
+  std::string name;
+  Rgb colour;
+  float width_px = 0.0F;  ///< of its line; 0 for a dot
+  bool broken = false;
+};
+[[nodiscard]] std::vector<SceneLegendEntry> scene_legend(const SceneData& scene, ThemeName theme);
 
 /// The trajectory view as a widget: left drag orbits, right or middle drag (or Shift and left) pans, the
 /// wheel zooms about the cursor, double click fits everything. With legend, error scale, scale bar and the

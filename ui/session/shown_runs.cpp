@@ -46,7 +46,7 @@ std::vector<ListedRun> listed_runs(const SessionView& session) {
                                .current = session.current,
                                .no_pictures = {}}};
   if (session.baseline) {
-    const std::string name = unlike_others(runs, session.baseline->name);
+    const std::string name = unlike_others(runs, "baseline " + session.baseline->name);
     runs.push_back({.name = name,
                     .kind = Kind::baseline,
                     .ghost = 0,

@@ -193,10 +193,13 @@ ImVec2 ImageResponse::keypoint_to_screen(const cv::Point2f& keypoint) const {
 
 namespace {
 
-/// The part of the display's x that a picture is seen in.
+/// The part of the display that a picture is seen in.
 void set_seen(PictureStrips::Place& place, const ImageResponse& response, const Eigen::Vector2d& image_size) {
-  place.from = std::clamp(response.to_screen({0.0, 0.0}).x, place.low.x, place.high.x);
-  place.to = std::clamp(response.to_screen(image_size).x, place.low.x, place.high.x);
+  const ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  place.from = std::clamp(low.x, place.low.x, place.high.x);
+  place.to = std::clamp(high.x, place.low.x, place.high.x);
+  place.top = std::clamp(low.y, place.low.y, place.high.y);
+  place.bottom = std::clamp(high.y, place.low.y, place.high.y);
 }
 
 /// The button under a picture, and what the mouse does to it. @returns its place among the strips, if any

@@ -54,7 +54,14 @@ PictureStrips::Place* PictureStrips::find(const char* id) {
 }
 
 PictureStrips::Place& PictureStrips::add(const char* id, ImVec2 low, ImVec2 high) {
-  Place place{.id = id, .low = low, .high = high, .from = low.x, .to = high.x, .drawn = {}};
+  Place place{.id = id,
+              .low = low,
+              .high = high,
+              .from = low.x,
+              .to = high.x,
+              .top = low.y,
+              .bottom = high.y,
+              .drawn = {}};
   place.drawn.resize(strips_.size());
   places_.push_back(std::move(place));
   return places_.back();
@@ -104,7 +111,7 @@ void PictureStrips::draw_strip(const UiFrame& frame, const Place& place, std::si
   }
   const float gap = 5.0F * frame.scale;
   const float left = strip == 0 ? std::max(from, place.from) : from;
-  draw_name(frame, strips_[strip], {left + gap, place.high.y - frame.fonts.small->FontSize - 2.0F * gap});
+  draw_name(frame, strips_[strip], {left + gap, place.bottom - frame.fonts.small->FontSize - 2.0F * gap});
   list.PopClipRect();
 }
 
@@ -116,7 +123,7 @@ void PictureStrips::finish(const UiFrame& frame, ImVec2 low, ImVec2 high) {
     for (std::size_t i = 0; i + 1 < strips_.size(); ++i) {
       const float x = edges(place, i).to, half = 0.5F * kDivider * frame.scale;
       ImDrawList& list = *ImGui::GetWindowDrawList();
-      list.PushClipRect(place.low, place.high, true);
+      list.PushClipRect({place.from, place.top}, {place.to, place.bottom}, true);
       list.AddRectFilled({x - half - 1.0F, place.low.y}, {x + half + 1.0F, place.high.y},
                          IM_COL32(0, 0, 0, 150));
       list.AddRectFilled({x - half, place.low.y}, {x + half, place.high.y}, IM_COL32(255, 255, 255, 220));

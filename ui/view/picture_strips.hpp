@@ -29,8 +29,9 @@ class PictureStrips {
   /// Where a picture stands.
   struct Place {
     std::string id;
-    ImVec2 low, high;                                              ///< px, of the panel it fills
-    float from = 0.0F, to = 0.0F;                                  ///< px, of its part that is seen
+    ImVec2 low, high;                 ///< px, of the panel it fills
+    float from = 0.0F, to = 0.0F;     ///< px, the columns in which the picture itself is seen …
+    float top = 0.0F, bottom = 0.0F;  ///< … and the rows
     bool hovered = false, clicked = false, right_clicked = false;  ///< the whole of it
     std::vector<bool> drawn;                                       ///< by strip
   };

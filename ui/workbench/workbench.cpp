@@ -108,6 +108,8 @@ LayoutNode Workbench::layout() const {
   for_each_panel(layout, [this](LayoutNode& tile) {
     const auto chosen = choices_.find(tile.panel);
     tile.choices = chosen == choices_.end() ? PanelChoices::Words() : chosen->second.changed();
+    tile.front =
+        std::find(fronts_.begin(), fronts_.end(), tile.panel) != fronts_.end() && !is_behind(tile.panel);
   });
   return layout;
 }
@@ -115,6 +117,7 @@ LayoutNode Workbench::layout() const {
 void Workbench::set_layout(LayoutNode layout) {
   for_each_panel(layout, [this](const LayoutNode& tile) {
     if (!tile.choices.empty()) choices_[tile.panel].want(tile.choices);
+    if (tile.front) bring_to_front(tile.panel);
   });
   for (const std::string& name : panels_of(layout))
     if (find_panel(name) == nullptr) remove_panel(layout, name);

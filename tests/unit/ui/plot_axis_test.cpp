@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ui/plot/path_plot.hpp"
 #include "ui/plot/plot_view.hpp"
 
 namespace stillpoint {
@@ -152,6 +153,20 @@ TEST(NearestIndexTest, FindsTheNearest) {
   EXPECT_EQ(nearest_index(x, 3.0), 2U);
   EXPECT_EQ(nearest_index(x, 99.0), 2U);
   EXPECT_EQ(nearest_index({}, 1.0), std::nullopt);
+}
+
+TEST(PathPlot, ShowsTheTwoAxesInWhichPathsReachFurthest) {
+  // One path goes along z, the other along x; neither goes far in y.
+  const std::array<std::vector<double>, 3> along_z{{{0.0, 0.1}, {0.0, 0.2}, {-3.0, 3.0}}},
+      along_x{{{0.0, 4.0}, {0.0, 0.1}, {0.0, 0.0}}};
+  const std::vector<PlotPath> paths{{"a", &along_z, {}}, {"b", &along_x, {}}};
+  const PathPlot made = path_plot(paths);
+  EXPECT_STREQ(made.across, "x");
+  EXPECT_STREQ(made.up, "z");
+  ASSERT_EQ(made.plot.series.size(), 2U);
+  EXPECT_EQ(made.plot.series[0].y.back(), 3.0);
+  EXPECT_EQ(made.plot.series[1].x.back(), 4.0);
+  EXPECT_TRUE(made.plot.equal_scale);
 }
 
 }  // namespace
