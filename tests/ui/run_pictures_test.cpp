@@ -8,9 +8,12 @@
 #include <set>
 
 #include "tests/support/golden.hpp"
+#include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"
 #include "ui/panels/panel_choices.hpp"
+#include "ui/plot/plot.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/text.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint::testing {
@@ -198,7 +201,9 @@ TEST(RunPictures, PanelsWithoutARunsPictureAreAsTheyAre) {
 
 TEST(RunPictures, EveryPanelIsDrawnByRuns) {
   SessionView session = with_trajectory(generated_example());
-  GhostView ghost{.name = "later", .run = session.run, .current = nullptr, .diverged = {}};
+  GhostView ghost;
+  ghost.name = "later";
+  ghost.run = session.run;
   session.debug.ghosts.push_back(ghost);
   for (const std::string& name : panel_names()) {
     Strips strips(name);
@@ -269,6 +274,119 @@ TEST_F(RunKeys, ThePaletteChoosesAmongRuns) {
   session_.debug.ghosts.clear();
   draw();
   EXPECT_FALSE(workbench_.actions().run("flip_runs"));
+}
+
+TEST_F(RunKeys, ThePaletteGoesOnAfterAnEnterThatFoundNothing) {
+  const auto type = [this](const std::string& text) {
+    for (const char letter : text) {
+      offscreen_.send(TextTyped{static_cast<unsigned char>(letter)});
+      draw();
+    }
+    draw();
+  };
+  strike(Key::kP, {.ctrl = true, .shift = true});
+  type("qqq");
+  strike(Key::kEnter);
+  EXPECT_TRUE(workbench_.palette_open());
+  for (int i = 0; i < 3; ++i) strike(Key::kBackspace);
+  type("wipe runs against");
+  strike(Key::kEnter);
+  EXPECT_FALSE(workbench_.palette_open());
+  EXPECT_EQ(workbench_.runs().pictures, RunPictures::wiped);
+}
+
+TEST_F(RunKeys, AHiddenRunIsLeftOutOfPlotsAndIsStillListed) {
+  const auto picture = [this] {
+    draw();
+    return offscreen_.render([this](UiFrame& frame) { workbench_.draw(frame, &session_); });
+  };
+  for (const char* panel : {"errors", "compare"}) {
+    workbench_.set_layout({.panel = panel});
+    workbench_.set_runs({});
+    const cv::Mat all = picture();
+    workbench_.set_runs({.hidden = {"motion.border_px 7"}});
+    const cv::Mat fewer = picture();
+    EXPECT_GT(cv::norm(all, fewer, cv::NORM_INF), 50.0) << panel;
+    if (std::string(panel) == "compare") continue;
+    // The one that is left has the colour it had.
+    const Rgb green = okabe_ito::kGreen, purple = okabe_ito::kPurple;
+    const auto count = [](const cv::Mat& image, Rgb colour) {
+      cv::Mat there;
+      cv::inRange(image, cv::Scalar(colour.b, colour.g, colour.r), cv::Scalar(colour.b, colour.g, colour.r),
+                  there);
+      return cv::countNonZero(there);
+    };
+    EXPECT_GT(count(all, purple), 20);
+    EXPECT_GT(count(fewer, green), 20);
+    EXPECT_EQ(count(fewer, purple), 0);
+  }
+}
+
+TEST(PlotLegend, NamesTheRunItselfWhereThereIsRoomForFew) {
+  const std::vector<double> x{0.0, 1.0}, y{1.0, 2.0};
+  const Rgb own{10, 200, 30};
+  Plot plot{.x_label = "time", .y_label = "RPE over 1 s"};
+  plot.series = {{"baseline with a long name", x, y, {200, 30, 10}},
+                 {"another run with a long name", x, y, {30, 10, 200}},
+                 {"the run itself, by a long name", x, y, own}};
+  Offscreen offscreen({.width = 280, .height = 160});
+  PlotView view;
+  const cv::Mat image = offscreen.render([&](UiFrame& frame) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(frame.size);
+    ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration);
+    draw_plot(frame, "plot", plot, view);
+    ImGui::End();
+  });
+  cv::Mat swatch;
+  const cv::Mat heading = image.rowRange(0, 26);
+  cv::inRange(heading, cv::Scalar(own.b, own.g, own.r), cv::Scalar(own.b, own.g, own.r), swatch);
+  EXPECT_GT(cv::countNonZero(swatch), 8);
+}
+
+TEST(Bookmarks, NotesHaveTheRoomOfANarrowTile) {
+  // Where the time would stand in a wider tile, a note is typed.
+  const SessionView session = debug_example();
+  PanelStage stage("bookmarks", {}, 280, 240);
+  bool typed = false;
+  for (float y = 40.0F; y < 110.0F && !typed; y += 8.0F) {
+    stage.play(session, {MouseMoved{100.0F, y}, MouseButton{0, true, {}}, MouseButton{0, false, {}}});
+    stage.play(session, {TextTyped{'z'}});
+    for (const SessionRequest& request :
+         stage.play(session, {KeyChanged{Key::kEnter, true, {}}, KeyChanged{Key::kEnter, false, {}}})
+             .requests)
+      if (const auto* marks = std::get_if<request::Bookmarks>(&request))
+        for (const Bookmark& bookmark : marks->all) typed |= bookmark.note.find('z') != std::string::npos;
+  }
+  EXPECT_TRUE(typed);
+}
+
+TEST(Text, LinesEndAtSpacesAndFiguresKeepTheirUnits) {
+  Offscreen offscreen({.width = 64, .height = 64});
+  offscreen.draw([](UiFrame& frame) {
+    const ImFont& font = *frame.fonts.text;
+    const auto width = [&](const std::string& text) {
+      return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
+    };
+    const std::string text = "frame 417 was lost for 0.81 s after 12 px of blur";
+    for (const float room : {90.0F, 120.0F, 150.0F}) {
+      const std::string lines = in_lines(font, text, room);
+      std::string whole = lines;
+      std::replace(whole.begin(), whole.end(), '\n', ' ');
+      EXPECT_EQ(whole, text);
+      EXPECT_NE(lines, text);
+      EXPECT_EQ(lines.find("0.81\n"), std::string::npos) << lines;
+      EXPECT_EQ(lines.find("12\n"), std::string::npos) << lines;
+      for (std::size_t at = 0; at < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', at), lines.size());
+        EXPECT_LE(width(lines.substr(at, end - at)), room) << lines;
+        at = end + 1;
+      }
+    }
+    EXPECT_FLOAT_EQ(widest_word(font, "a longest b"), width("longest"));
+    EXPECT_LE(width(cut_to(font, text, 100.0F)), 100.0F);
+    EXPECT_EQ(cut_to(font, text, 1e4F), text);
+  });
 }
 
 /// The tables of the panel Feature, each by its own right click.

@@ -277,6 +277,7 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
                          {.pictures = RunPictures::wiped,
                           .chosen = {"paper", "method none"},
                           .flipped_to = "method none",
+                          .hidden = {"baseline none"},
                           .dividers = {0.25F}}},
       b{"b", {}, {}};
   remember(settings.recent, {"a", {}, {}});

@@ -32,6 +32,7 @@ class ComparePanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return false; }
+  [[nodiscard]] bool lists_runs() const override { return true; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
@@ -99,6 +100,20 @@ class ComparePanel final : public NamedPanel {
     bool on =
         std::any_of(chosen.begin(), chosen.end(), [&](const ListedRun& one) { return one.name == run.name; });
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2.0F * frame.scale, 2.0F * frame.scale});
+    if (run.kind != ListedRun::Kind::own) {
+      const bool hidden = frame.runs->hides(run.name);
+      ImGui::PushStyleColor(ImGuiCol_Button, ImVec4{0, 0, 0, 0});
+      ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(hidden ? frame.theme.text_dim : frame.theme.text));
+      if (ImGui::Button(hidden ? icons::kHide : icons::kShow, {1.5F * ImGui::GetFrameHeight(), 0.0F}))
+        frame.runs->toggle_hidden(run.name);
+      ImGui::PopStyleColor(2);
+      if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(hidden ? "Left out of plots, tables and the trajectory; click to show it there"
+                                 : "In plots, tables and the trajectory; click to leave it out");
+    } else {
+      ImGui::Dummy({1.5F * ImGui::GetFrameHeight(), 1.0F});
+    }
+    ImGui::SameLine();
     if (checkbox(frame, "##in pictures", on)) frame.runs->toggle(session, run.name);
     ImGui::PopStyleVar();
     if (ImGui::IsItemHovered())
@@ -179,8 +194,8 @@ class ComparePanel final : public NamedPanel {
     ImGui::PushID(static_cast<int>(index));
     const std::vector<ListedRun> listed = listed_runs(session);
     run_row(frame, session, listed[listed.size() - session.debug.ghosts.size() + index],
-            ghost_look(index, frame.theme.name), ghost.name + (ghost.busy ? "  running…" : ""),
-            static_cast<int>(ghost.run->records.size()));
+            ghost_look(session.debug.ghosts, index, frame.theme.name),
+            ghost.name + (ghost.busy ? "  running…" : ""), static_cast<int>(ghost.run->records.size()));
     if (index == chosen_)
       ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, to_u32(frame.theme.accent, 0.18F));
     ImGui::TableNextColumn();
@@ -234,9 +249,10 @@ class ComparePanel final : public NamedPanel {
                                                : "The frame cannot be shown: " + view.frame.problem);
       return;
     }
-    const ComparisonColours colours{.agreed = okabe_ito::kGreen,
-                                    .missed = ghost_look(chosen_, frame.theme.name).colour,
-                                    .wrong = okabe_ito::kSkyBlue};
+    const ComparisonColours colours{
+        .agreed = okabe_ito::kGreen,
+        .missed = ghost_look(ghost.look.value_or(chosen_), frame.theme.name).colour,
+        .wrong = okabe_ito::kSkyBlue};
     // The ghost's image is another object whenever its frame or its run changes.
     const Texture& compared = compared_.get(frame, ghost.current, static_cast<int>(chosen_), [&] {
       const cv::Size size = view.frame.gray.size();

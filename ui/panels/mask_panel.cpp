@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/evaluation/mask_scores.hpp"
@@ -12,6 +13,11 @@ namespace stillpoint {
 namespace {
 
 constexpr float kBesideFrom = 640.0F;  // design px: from this width on the truth stands beside unasked
+
+std::string as_sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
 
 std::string percent(std::optional<double> share) {
   return share ? fmt::format("{:.0f} %", 100.0 * *share) : std::string("–");
@@ -177,7 +183,7 @@ class MaskPanel final : public FramePanel {
       footer.caption += fmt::format(", {} region{}", regions_.size(), regions_.size() == 1 ? "" : "s");
     if (is_the_runs()) {
       footer.caption += fmt::format(": what method {} removed.", log_->method);
-      if (!log_->note.empty()) footer.caption += fmt::format(" {}.", log_->note);
+      if (!log_->note.empty()) footer.caption += fmt::format(" {}.", as_sentence(log_->note));
     } else {
       if (!info_.values_layer.empty())
         if (const Layer* values = log_->layer(info_.values_layer, round_shown(*log_, round_));

@@ -66,6 +66,8 @@ class Panel {
   [[nodiscard]] virtual bool previews() const { return false; }
   /// Whether what it shows of the frame is a run's, and so can be another run's as well (as_run()).
   [[nodiscard]] virtual bool shows_a_run() const { return false; }
+  /// Whether it lists all runs, those too that other panels are not to show.
+  [[nodiscard]] virtual bool lists_runs() const { return false; }
   /// One more of its kind, in the same set, for another run's pictures in its place; null where its pictures
   /// cannot be set against others.
   [[nodiscard]] virtual std::unique_ptr<Panel> another() const { return nullptr; }

@@ -14,6 +14,7 @@
 #include "core/inspect/scene_point.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/plot/right_click.hpp"
+#include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_view.hpp"
 
@@ -157,14 +158,8 @@ struct Tiling {
 };
 [[nodiscard]] Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& picture);
 
-/// A text as it fits into `width` px: whole, or cut and ended by an ellipsis. "" where not even that fits.
-[[nodiscard]] std::string cut_to(const ImFont& font, const std::string& text, float width);
-
 /// One line in the current font as far as there is room for it; the mouse over it shows it whole.
 void text_in_room(const std::string& text, Rgb colour);
-
-/// A text as lines that end at spaces alone, and never between a figure and its unit.
-[[nodiscard]] std::string in_lines(const ImFont& font, const std::string& text, float width);
 
 /// Lines in the current font that end at spaces alone, and never between a figure and its unit.
 void text_in_lines(const std::string& text);

@@ -98,7 +98,7 @@ Rgb run_colour(const ListedRun& run, ThemeName theme) {
     case ListedRun::Kind::ghost:
       break;
   }
-  return ghost_look(run.ghost, theme).colour;
+  return ghost_look(run.look, theme).colour;
 }
 
 bool is_by_runs(const UiFrame& frame, const SessionView& session, const Panel& panel) {

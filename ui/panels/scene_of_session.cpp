@@ -84,7 +84,7 @@ void add_ghosts(const SessionView& session, const Pose& world_from_estimate, Ses
     SceneData alone;
     alone.paths.push_back(path);
     const SceneBounds box = bounds(alone);
-    path.dash_m = ghost_look(i, ThemeName::kDark).dash * (box.high - box.low).norm();
+    path.dash_m = ghost_look(session.debug.ghosts, i, ThemeName::kDark).dash * (box.high - box.low).norm();
     scene.ghost_paths.push_back(scene.data.paths.size() - 1);
   }
 }

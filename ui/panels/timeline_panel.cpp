@@ -77,7 +77,7 @@ class TimelinePanel final : public NamedPanel {
           .x_label = "frame", .y_label = shown_name(info), .y_unit = std::string(shown_unit(info.unit).unit)};
       plot.series.push_back({session.run->name, frames, lane.values, lane_colour(info, frame.theme.name)});
       for (std::size_t g = 0; g < lane.ghosts.size() && g < ghosts.size(); ++g) {
-        const RunLook look = ghost_look(g, frame.theme.name);
+        const RunLook look = ghost_look(session.debug.ghosts, g, frame.theme.name);
         plot.series.push_back(
             {session.debug.ghosts[g].name, ghosts[g], lane.ghosts[g], look.colour, look.line});
       }
@@ -330,7 +330,8 @@ class TimelinePanel final : public NamedPanel {
                  frame.theme.text_dim);
     paint.lane(model_.frames, lane.values, lane.highest, colour, top, bottom);
     for (std::size_t g = 0; g < lane.ghosts.size() && g < model_.ghost_frames.size(); ++g)
-      paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest, g, top, bottom);
+      paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest,
+                       ghost_look(session.debug.ghosts, g, frame.theme.name), top, bottom);
     if (chosen) draw_worst(frame, session, paint, lane, top, bottom);
     if (const auto here = record_of(session, session.current->index))
       paint.value(top, lane_text(lane.values[*here], info), frame.theme.text);

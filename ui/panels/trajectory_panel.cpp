@@ -65,8 +65,11 @@ class TrajectoryPanel final : public NamedPanel {
     theme_ = frame.theme.name;
     const std::uint64_t revision = scene_.data.revision + 1;
     scene_ = scene_of_session(session, layers_);
+    ghost_lines_.clear();
     for (std::size_t i = 0; i < scene_.ghost_paths.size(); ++i)
-      scene_.data.paths[scene_.ghost_paths[i]].colour = ghost_look(i, theme_).colour;
+      ghost_lines_.push_back(ghost_look(session.debug.ghosts, i, theme_).line);
+    for (std::size_t i = 0; i < scene_.ghost_paths.size(); ++i)
+      scene_.data.paths[scene_.ghost_paths[i]].colour = ghost_look(session.debug.ghosts, i, theme_).colour;
     scene_.data.revision = scene_.data.image_revision = revision;
     sight_ = sight_of(scene_.data);
     view_shown_ = session.current;
@@ -97,7 +100,7 @@ class TrajectoryPanel final : public NamedPanel {
       const SeriesStyle style =
           ghost == scene_.ghost_paths.end()
               ? (path.dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
-              : ghost_look(static_cast<std::size_t>(ghost - scene_.ghost_paths.begin()), theme).line;
+              : ghost_lines_[static_cast<std::size_t>(ghost - scene_.ghost_paths.begin())];
       paths.push_back({path.name, &positions[p], path_colour(path, theme), style});
     }
     SaveOffer poses = offer_of("poses", std::move(table));
@@ -154,7 +157,7 @@ class TrajectoryPanel final : public NamedPanel {
     std::vector<LegendEntry> legend;
     for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
       const GhostView& ghost = session.debug.ghosts[i];
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       const std::string parts =
           ghost.diverged ? fmt::format(", parts at frame {}", *ghost.diverged) : ", same way so far";
       legend.push_back({shortened(ghost.name) + parts, look.colour, look.sign});
@@ -169,7 +172,7 @@ class TrajectoryPanel final : public NamedPanel {
     for (std::size_t i = 0; i < scene_.ghost_paths.size() && i < session.debug.ghosts.size(); ++i) {
       const GhostView& ghost = session.debug.ghosts[i];
       const std::size_t path = scene_.ghost_paths[i];
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       const auto sign_at = [&](int wanted, float radius) {
         const auto& frames = scene_.frames_of_path[path];
         const auto found =
@@ -254,6 +257,7 @@ class TrajectoryPanel final : public NamedPanel {
   std::weak_ptr<const FrameView> view_shown_;
   std::uint64_t revision_ = 0;
   const void* run_ = nullptr;
+  std::vector<SeriesStyle> ghost_lines_;                        // as plots draw them
   std::vector<std::pair<const RunView*, std::size_t>> ghosts_;  // with how many records
   ThemeName theme_ = ThemeName::kDark;
 };

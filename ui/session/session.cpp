@@ -155,7 +155,8 @@ DebugView Session::debug_view() {
                             .run = ghost.run->run_view(),
                             .current = ghost.current,
                             .diverged = ghost.diverged,
-                            .outside = !ghost.run->track().outside().empty()});
+                            .outside = !ghost.run->track().outside().empty(),
+                            .look = ghost.look});
   return debug;
 }
 

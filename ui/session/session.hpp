@@ -90,6 +90,7 @@ class Session {
   struct Ghost {
     std::string name;
     std::unique_ptr<ShownRun> run;
+    std::size_t look = 0;                        // keeps its colour when others go
     std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
     std::optional<int> diverged{};
     int compared = 0;  // frames
@@ -153,6 +154,7 @@ class Session {
   void preview_step();
   void advance(Ghost& ghost);
   void compare(Ghost& ghost);
+  void add(Ghost ghost);
   void begin_waiting_ghosts();
   void open_beside();
   void update_breakpoints();

@@ -42,6 +42,7 @@ std::vector<ListedRun> listed_runs(const SessionView& session) {
   std::vector<ListedRun> runs{{.name = session.run->name,
                                .kind = Kind::own,
                                .ghost = 0,
+                               .look = 0,
                                .run = session.run,
                                .current = session.current,
                                .no_pictures = {}}};
@@ -50,6 +51,7 @@ std::vector<ListedRun> listed_runs(const SessionView& session) {
     runs.push_back({.name = name,
                     .kind = Kind::baseline,
                     .ghost = 0,
+                    .look = 0,
                     .run = session.baseline,
                     .current = nullptr,
                     .no_pictures = fmt::format("The baseline {0} keeps its figures alone. \"Compare with "
@@ -61,6 +63,7 @@ std::vector<ListedRun> listed_runs(const SessionView& session) {
     runs.push_back({.name = unlike_others(runs, ghost.name),
                     .kind = Kind::ghost,
                     .ghost = i,
+                    .look = ghost.look.value_or(i),
                     .run = ghost.run,
                     .current = ghost.current,
                     .no_pictures = why_no_pictures(session, ghost)});
@@ -107,6 +110,14 @@ std::optional<ListedRun> RunsShown::flipped(const SessionView& session) const {
   return runs.empty() ? std::nullopt : std::optional(runs.front());
 }
 
+bool RunsShown::hides(const std::string& name) const {
+  return std::find(hidden.begin(), hidden.end(), name) != hidden.end();
+}
+
+void RunsShown::toggle_hidden(const std::string& name) {
+  if (std::erase(hidden, name) == 0) hidden.push_back(name);
+}
+
 void RunsShown::fit_dividers(std::size_t strips) {
   if (strips == 0 || dividers.size() + 1 == strips) return;
   dividers.clear();
@@ -132,11 +143,25 @@ RunPictures run_pictures(const std::string& word) {
   return RunPictures::alone;
 }
 
+SessionView without_hidden(const SessionView& session, const RunsShown& shown) {
+  SessionView other = session;
+  other.debug.ghosts.clear();
+  for (const ListedRun& run : listed_runs(session)) {
+    if (run.kind == ListedRun::Kind::baseline && shown.hides(run.name)) other.baseline = nullptr;
+    if (run.kind != ListedRun::Kind::ghost || shown.hides(run.name)) continue;
+    other.debug.ghosts.push_back(session.debug.ghosts[run.ghost]);
+    // Those that are left keep their colours and names.
+    other.debug.ghosts.back().look = run.look;
+  }
+  return other;
+}
+
 SessionView as_run(const SessionView& session, const ListedRun& run) {
   SessionView other;
   other.title = session.title;
   other.camera = session.camera;
   other.config = run.kind == ListedRun::Kind::ghost ? session.debug.ghosts[run.ghost].config : session.config;
+  other.own_run = run.kind == ListedRun::Kind::own;
   other.frame_count = session.frame_count;
   other.processed = static_cast<int>(run.run->records.size());
   other.playing = session.playing;

@@ -17,6 +17,7 @@ struct ListedRun {
   std::string name;  ///< as panels write it, no two alike
   Kind kind = Kind::own;
   std::size_t ghost = 0;                     ///< index into DebugView::ghosts
+  std::size_t look = 0;                      ///< … and which of the looks of ghosts it has
   std::shared_ptr<const RunView> run;        ///< never null
   std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null where it has none
   std::string no_pictures;                   ///< why its pictures cannot be shown; empty where they can
@@ -37,6 +38,7 @@ struct RunsShown {
   RunPictures pictures = RunPictures::alone;
   std::vector<std::string> chosen{};  ///< empty: all that have pictures
   std::string flipped_to{};           ///< the run seen while pictures flip; empty: the first one chosen
+  std::vector<std::string> hidden{};  ///< runs that plots, tables and the trajectory leave out
   std::vector<float> dividers{};      ///< ascending shares of a picture's width, one fewer than strips
   bool operator==(const RunsShown&) const = default;
 
@@ -48,6 +50,9 @@ struct RunsShown {
   void flip(const SessionView& session, int by);
   /// The run that pictures show in place of the session's own; nothing while they do not flip.
   [[nodiscard]] std::optional<ListedRun> flipped(const SessionView& session) const;
+  [[nodiscard]] bool hides(const std::string& name) const;
+  /// Leaves a run out of plots, tables and the trajectory, or has it there again.
+  void toggle_hidden(const std::string& name);
   /// Dividers for so many strips: those there are, or equal strips where there are others.
   void fit_dividers(std::size_t strips);
 };
@@ -56,6 +61,9 @@ struct RunsShown {
 [[nodiscard]] std::string to_string(RunPictures pictures);
 /// @returns alone for a word that is none
 [[nodiscard]] RunPictures run_pictures(const std::string& word);
+
+/// The session without the runs that are hidden; the session's own always stays.
+[[nodiscard]] SessionView without_hidden(const SessionView& session, const RunsShown& shown);
 
 /// What panels of the frame shown draw for another run: the session with that run in place of its own. What
 /// pictures have no use for (map points, keyframes, ghosts) is left out.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ui/shell/canvas.hpp"
+#include "ui/theme/text.hpp"
 
 namespace stillpoint {
 namespace {
@@ -25,14 +26,17 @@ void draw_name(const UiFrame& frame, const PictureStrip& strip, ImVec2 at) {
                strip.name.c_str());
 }
 
+/// Nothing where the strip is narrower than a word: it reads as soon as it is drawn wider.
 void draw_sentence(const UiFrame& frame, const std::string& text, ImVec2 low, ImVec2 high) {
-  const float wrap = std::max(0.86F * (high.x - low.x), 30.0F);
   const ImFont* font = frame.fonts.small;
-  const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6F, wrap, text.c_str());
+  const float wrap = 0.86F * (high.x - low.x);
+  if (widest_word(*font, text) > wrap) return;
+  const std::string lines = in_lines(*font, text, wrap);
+  const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, lines.c_str());
   ImGui::GetWindowDrawList()->AddText(
       font, font->FontSize,
       {std::round(0.5F * (low.x + high.x - extent.x)), std::round(0.5F * (low.y + high.y - extent.y))},
-      to_u32(frame.theme.text_dim), text.c_str(), nullptr, wrap);
+      to_u32(frame.theme.text_dim), lines.c_str());
 }
 
 }  // namespace
@@ -51,6 +55,11 @@ PictureStrips::Place* PictureStrips::find(const char* id) {
   const auto found =
       std::find_if(places_.begin(), places_.end(), [&](const Place& place) { return place.id == id; });
   return found == places_.end() ? nullptr : &*found;
+}
+
+void PictureStrips::say_absent(const std::string& sentence) {
+  strips_[strip_].absent = sentence;
+  absent_from_ = std::max(absent_from_, ImGui::GetCursorScreenPos().y);
 }
 
 PictureStrips::Place& PictureStrips::add(const char* id, ImVec2 low, ImVec2 high) {
@@ -116,8 +125,8 @@ void PictureStrips::draw_strip(const UiFrame& frame, const Place& place, std::si
 }
 
 void PictureStrips::finish(const UiFrame& frame, ImVec2 low, ImVec2 high) {
-  const bool none = places_.empty();
-  if (none) add("", low, high);
+  // Controls that stand above a sentence stay free.
+  if (places_.empty()) add("", {low.x, std::max(low.y, absent_from_)}, high);
   for (const Place& place : places_) {
     for (std::size_t strip = 0; strip < strips_.size(); ++strip) draw_strip(frame, place, strip);
     for (std::size_t i = 0; i + 1 < strips_.size(); ++i) {

@@ -48,7 +48,7 @@ class PictureStrips {
   /// Marks a picture as drawn in the strip at hand.
   void note_drawn(Place& place) { place.drawn[strip_] = true; }
   /// What the strip at hand has instead of pictures.
-  void say_absent(const std::string& sentence) { strips_[strip_].absent = sentence; }
+  void say_absent(const std::string& sentence);
 
   /// The strip at hand of a place, px: its edges from left to right.
   struct Edges {
@@ -71,6 +71,7 @@ class PictureStrips {
   std::vector<Place> places_;
   std::size_t strip_ = 0;
   int passes_ = 0;
+  float absent_from_ = -1e6F;  // px, of the display: above it stand controls
   bool makes_places_ = true, takes_clicks_ = true;
 };
 

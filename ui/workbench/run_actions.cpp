@@ -59,6 +59,13 @@ void Workbench::add_picture_rows(std::vector<PaletteRow>& rows) {
                     .run = [this, name = run.name] {
                       if (session_ != nullptr) runs_.toggle(*session_, name);
                     }});
+    if (run.kind == ListedRun::Kind::own) continue;
+    const bool hidden = runs_.hides(run.name);
+    rows.push_back({.icon = hidden ? icons::kShow : icons::kHide,
+                    .title = hidden ? fmt::format("Show {} in plots and the trajectory", run.name)
+                                    : fmt::format("Hide {} in plots and the trajectory", run.name),
+                    .words = "run table",
+                    .run = [this, name = run.name] { runs_.toggle_hidden(name); }});
   }
 }
 

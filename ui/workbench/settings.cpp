@@ -32,6 +32,7 @@ Json to_json(const RunsShown& runs) {
   return {{"pictures", to_string(runs.pictures)},
           {"chosen", runs.chosen},
           {"flipped_to", runs.flipped_to},
+          {"hidden", runs.hidden},
           {"dividers", runs.dividers}};
 }
 
@@ -39,6 +40,7 @@ RunsShown runs_from(const Json& json) {
   RunsShown runs{.pictures = run_pictures(json.value("pictures", "")),
                  .chosen = json.value("chosen", std::vector<std::string>{}),
                  .flipped_to = json.value("flipped_to", ""),
+                 .hidden = json.value("hidden", std::vector<std::string>{}),
                  .dividers = json.value("dividers", std::vector<float>{})};
   // Whoever wrote the file: strips go from left to right.
   const bool in_order = std::is_sorted(runs.dividers.begin(), runs.dividers.end()) &&

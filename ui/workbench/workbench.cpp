@@ -184,6 +184,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
   compare_frames_ = false;
   previewed_.reset();
+  visible_.clear();
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -294,13 +295,21 @@ void Workbench::draw_tile(const PlacedPanel& tile) {
   draw_tile_heading(*panel, tile, heading);
   PanelActions wanted;
   frame_->choices = &choices_[name];
-  const SessionView& session = view_of(name);
+  const SessionView& session = visible(view_of(name), *panel);
   const bool preview = panel->previews() && shows_preview(session);
   draw_panel_body(*frame_, preview ? previewed(session) : session, *panel, below_heading(rect, heading),
                   wanted);
   frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
+}
+
+const SessionView& Workbench::visible(const SessionView& session, const Panel& panel) {
+  // Pictures show the runs that are ticked for them, hidden elsewhere or not.
+  if (runs_.hidden.empty() || panel.lists_runs() || panel.shows_a_run()) return session;
+  std::unique_ptr<const SessionView>& kept = visible_[&session];
+  if (!kept) kept = std::make_unique<const SessionView>(without_hidden(session, runs_));
+  return *kept;
 }
 
 const SessionView& Workbench::previewed(const SessionView& session) {

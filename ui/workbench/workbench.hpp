@@ -99,6 +99,7 @@ class Workbench {
  private:
   struct Palette {
     bool open = false, opened_now = false;
+    bool takes_keys = false;  ///< its field is given the keyboard again
     char query[128] = "";
     int chosen = 0;
   };
@@ -146,6 +147,7 @@ class Workbench {
   void next_tab();
   [[nodiscard]] bool is_behind(const std::string& panel) const;
   [[nodiscard]] const SessionView& previewed(const SessionView& session);
+  [[nodiscard]] const SessionView& visible(const SessionView& session, const Panel& panel);
   void draw_tile_heading(Panel& panel, const PlacedPanel& tile, float height);
   void draw_tabs(const PlacedPanel& tile, float height, float width);
   void draw_tile_menu(const std::string& name);
@@ -218,7 +220,8 @@ class Workbench {
   const SessionView* session_ = nullptr;
   std::shared_ptr<const SessionView> turning_to_;  // what tiles take to in turn; null: all have the session
   std::unique_ptr<const SessionView> previewed_;   // as panels of the frame shown draw its preview
-  bool compare_frames_ = false;                    // whether a panel drawn wants the frame before
+  std::map<const SessionView*, std::unique_ptr<const SessionView>> visible_;  // without hidden runs
+  bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 
   /// What a tile shows while others have their turn.

@@ -46,6 +46,17 @@ TEST(LinearTicksTest, NeverMoreThanAskedAndAlwaysInside) {
   }
 }
 
+TEST(LinearTicksTest, AScaleTakesTwo) {
+  EXPECT_THAT(labels(linear_ticks({0.0, 495.0}, 2)), ElementsAre("0", "400"));
+  EXPECT_THAT(labels(linear_ticks({0.0, 0.49}, 2)), ElementsAre("0", "0.4"));
+  for (double high = 1.0; high < 20.0; high *= 1.03)
+    for (int most = 2; most < 5; ++most) {
+      const auto ticks = linear_ticks({0.0, high}, most);
+      EXPECT_GE(ticks.size(), 2U) << high << ", " << most;
+      EXPECT_LE(static_cast<int>(ticks.size()), most) << high;
+    }
+}
+
 TEST(LinearTicksTest, NoneForARangeThatIsNone) {
   EXPECT_THAT(linear_ticks({1.0, 1.0}, 5), IsEmpty());
   EXPECT_THAT(linear_ticks({0.0, std::numeric_limits<double>::infinity()}, 5), IsEmpty());

@@ -13,7 +13,10 @@ using ::testing::IsEmpty;
 GhostView ghost_run(const std::string& name, int frame, bool outside = false) {
   auto run = std::make_shared<RunView>();
   run->name = name;
-  GhostView view{.name = name, .run = run, .current = nullptr, .diverged = {}, .outside = outside};
+  GhostView view;
+  view.name = name;
+  view.run = run;
+  view.outside = outside;
   if (frame < 0) return view;
   auto current = std::make_shared<FrameView>();
   current->index = frame;
@@ -113,6 +116,23 @@ TEST(ShownRuns, DividersFitTheStrips) {
   EXPECT_THAT(shown.dividers, ElementsAre(0.2F, 0.9F));
   shown.fit_dividers(1);
   EXPECT_THAT(shown.dividers, IsEmpty());
+}
+
+TEST(ShownRuns, HiddenOnesLeaveTheOthersTheirLooks) {
+  const SessionView view = session_of_runs();
+  RunsShown shown;
+  shown.toggle_hidden("method none");
+  shown.toggle_hidden("baseline none");
+  shown.toggle_hidden("paper");  // the session's own stays
+  const SessionView seen = without_hidden(view, shown);
+  EXPECT_EQ(seen.baseline, nullptr);
+  ASSERT_EQ(seen.debug.ghosts.size(), 2U);
+  EXPECT_EQ(seen.debug.ghosts[0].run, view.debug.ghosts[1].run);
+  EXPECT_EQ(seen.debug.ghosts[0].look, 1U);
+  EXPECT_EQ(seen.debug.ghosts[1].look, 2U);
+  EXPECT_EQ(seen.run, view.run);
+  shown.toggle_hidden("method none");
+  EXPECT_EQ(without_hidden(view, shown).debug.ghosts.size(), 3U);
 }
 
 }  // namespace
