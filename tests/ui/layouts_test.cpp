@@ -162,7 +162,7 @@ TEST_F(LayoutsTest, ALegendThatWouldCoverThePathsStandsBelow) {
     cv::inRange(image(there), cv::Scalar(160, 160, 160), cv::Scalar(255, 255, 255), bright);
     return cv::countNonZero(bright);
   };
-  EXPECT_GT(upper_left(720), 60);
+  EXPECT_GT(upper_left(720), 35);
   EXPECT_LT(upper_left(330), 20);
 }
 

@@ -21,24 +21,42 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// The example's two ghosts look alike; here the second one took out something else.
+/// A view of the same frame that removed a band across the whole picture, from row `top` on.
+std::shared_ptr<const FrameView> with_band(const FrameView& view, int top) {
+  auto current = std::make_shared<FrameView>(view);
+  current->mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(0));
+  current->mask.rowRange(top, top + 24) = 255;
+  return current;
+}
+
+/// Three runs, each of which removed something in every strip, and each something else.
 SessionView three_runs() {
   SessionView session = debug_example();
-  auto current = std::make_shared<FrameView>(*session.debug.ghosts[1].current);
-  current->mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(0));
-  current->mask(cv::Rect(250, 60, 60, 130)) = 255;
-  session.debug.ghosts[1].current = current;
+  session.current = with_band(*session.current, 70);
+  session.debug.ghosts[0].current = with_band(*session.debug.ghosts[0].current, 105);
+  session.debug.ghosts[1].current = with_band(*session.debug.ghosts[1].current, 140);
   return session;
+}
+
+/// The column of a divider, as it goes through all rows given.
+int divider_between(const cv::Mat& image, int from, int to, const cv::Range& rows) {
+  for (int x = from; x < to; ++x) {
+    bool white = true;
+    for (int y = rows.start; y < rows.end && white; y += 10)
+      for (int channel = 0; channel < 3; ++channel) white &= image.at<cv::Vec3b>(y, x)[channel] > 205;
+    if (white) return x;
+  }
+  return 0;
 }
 
 /// Another program's trajectory beside them.
 SessionView with_trajectory(SessionView session) {
-  GhostView ghost = session.debug.ghosts.back();
+  GhostView ghost;
   ghost.name = "orb3";
   ghost.outside = true;
-  auto run = std::make_shared<RunView>(*ghost.run);
+  auto run = std::make_shared<RunView>(*session.run);
   for (FrameRecord& record : run->records) record.features.clear();
-  auto current = std::make_shared<FrameView>(*ghost.current);
+  auto current = std::make_shared<FrameView>(*session.current);
   current->mask = cv::Mat();
   current->record = &run->records[static_cast<std::size_t>(current->index)];
   ghost.run = run;
@@ -102,6 +120,7 @@ TEST(RunPictures, GoldenImageOfThreeRunsAndATrajectory) {
   strips.runs.pictures = RunPictures::wiped;
   strips.runs.chosen = kRunNames;
   strips.runs.chosen.emplace_back("orb3");
+  strips.runs.dividers = {0.2F, 0.5F, 0.75F};
   EXPECT_TRUE(matches_golden(strips.render(session), "wiped_mask"));
 }
 
@@ -148,12 +167,7 @@ TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
   strips.choices.want({{"Truth", "off"}});
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat before = strips.render(session);
-  // White from top to bottom: the first divider.
-  int divider = 0;
-  for (int x = 100; x < 320 && divider == 0; ++x)
-    if (before.at<cv::Vec3b>(200, x) == before.at<cv::Vec3b>(260, x) &&
-        before.at<cv::Vec3b>(200, x)[0] > 200 && before.at<cv::Vec3b>(230, x)[2] > 200)
-      divider = x;
+  const int divider = divider_between(before, 120, 300, {60, 380});
   ASSERT_GT(divider, 0);
   const auto at = [](int x) { return MouseMoved{static_cast<float>(x), 230.0F}; };
   strips.play(session, {at(divider), MouseButton{0, true, {}}, at(divider - 60), MouseButton{0, false, {}}});
@@ -180,9 +194,8 @@ TEST(RunPictures, DividersStayInOrder) {
   strips.runs.dividers = {0.4F, 0.5F};
   strips.choices.want({{"Truth", "off"}});
   const cv::Mat before = strips.render(session);
-  int divider = 0;
-  for (int x = 150; x < 330 && divider == 0; ++x)
-    if (before.at<cv::Vec3b>(200, x)[0] > 200 && before.at<cv::Vec3b>(260, x)[0] > 200) divider = x;
+  const int divider = divider_between(before, 200, 300, {60, 380});
+  ASSERT_GT(divider, 0);
   strips.play(session, {MouseMoved{static_cast<float>(divider), 230.0F}, MouseButton{0, true, {}},
                         MouseMoved{630.0F, 230.0F}, MouseButton{0, false, {}}});
   EXPECT_LT(strips.runs.dividers[0], strips.runs.dividers[1]);
@@ -387,6 +400,31 @@ TEST(Text, LinesEndAtSpacesAndFiguresKeepTheirUnits) {
     EXPECT_LE(width(cut_to(font, text, 100.0F)), 100.0F);
     EXPECT_EQ(cut_to(font, text, 1e4F), text);
   });
+}
+
+TEST_F(RunKeys, AHiddenBaselineLeavesTheTrajectoryAndComesBackByTheList) {
+  session_.debug.ghosts.clear();
+  const Rgb baseline = role_colour(Role::kBaseline, ThemeName::kDark);
+  const auto picture = [this](const char* panel, const std::vector<std::string>& hidden) {
+    if (panels_of(workbench_.layout()) != std::vector<std::string>{panel})
+      workbench_.set_layout({.panel = panel});
+    RunsShown runs;
+    runs.hidden = hidden;
+    workbench_.set_runs(runs);
+    draw();
+    return offscreen_.render([this](UiFrame& frame) { workbench_.draw(frame, &session_); });
+  };
+  const auto count = [&](const cv::Mat& image) {
+    cv::Mat there;
+    const cv::Scalar colour(baseline.b, baseline.g, baseline.r);
+    cv::inRange(image, colour, colour, there);
+    return cv::countNonZero(there);
+  };
+  EXPECT_GT(count(picture("trajectory", {})), 20);
+  EXPECT_EQ(count(picture("trajectory", {"baseline none"})), 0);
+  EXPECT_GT(count(picture("trajectory", {})), 20);
+  // The list has it whether hidden or not.
+  EXPECT_GT(count(picture("compare", {"baseline none"})), 5);
 }
 
 /// The tables of the panel Feature, each by its own right click.

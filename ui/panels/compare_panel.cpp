@@ -41,6 +41,8 @@ class ComparePanel final : public NamedPanel {
       return;
     }
     if (ghosts.empty()) {
+      // What is left out of plots is taken back in here.
+      if (frame.runs != nullptr && session.baseline) draw_table(frame, session, actions);
       draw_absent(
           frame,
           "No second run yet. In the parameters panel, change something or choose a method to compare "
@@ -283,13 +285,8 @@ class ComparePanel final : public NamedPanel {
 
   void draw_figures(const UiFrame& frame, const SessionView& session, const GhostView& ghost) const {
     ImGui::PushFont(frame.fonts.small);
-    const bool same = difference_.translation_m == 0.0 && difference_.rotation_deg == 0.0;
     ImGui::PushTextWrapPos(0.0F);
-    if (same)
-      ImGui::TextUnformatted("Both poses are the same.");
-    else
-      ImGui::Text("Poses differ by %.2f mm and %.3f °.", 1000.0 * difference_.translation_m,
-                  difference_.rotation_deg);
+    ImGui::TextUnformatted(pose_text(difference_, ghost.name, ghost.outside).c_str());
     ImGui::PopTextWrapPos();
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
     const ImVec2 low = ImGui::GetCursorScreenPos();

@@ -59,7 +59,8 @@ class TrajectoryPanel final : public NamedPanel {
     const bool same_frame =
         !view_shown_.owner_before(session.current) && !session.current.owner_before(view_shown_);
     if (same_frame && revision_ == session.revision && run_ == session.run.get() &&
-        layers_ == layers_drawn_ && ghosts == ghosts_ && theme_ == frame.theme.name)
+        baseline_ == session.baseline.get() && layers_ == layers_drawn_ && ghosts == ghosts_ &&
+        theme_ == frame.theme.name)
       return;
     ghosts_ = std::move(ghosts);
     theme_ = frame.theme.name;
@@ -75,6 +76,7 @@ class TrajectoryPanel final : public NamedPanel {
     view_shown_ = session.current;
     revision_ = session.revision;
     run_ = session.run.get();
+    baseline_ = session.baseline.get();
     layers_drawn_ = layers_;
     if (scene_.data.current) follow(view_, *scene_.data.current);
   }
@@ -257,6 +259,7 @@ class TrajectoryPanel final : public NamedPanel {
   std::weak_ptr<const FrameView> view_shown_;
   std::uint64_t revision_ = 0;
   const void* run_ = nullptr;
+  const RunView* baseline_ = nullptr;
   std::vector<SeriesStyle> ghost_lines_;                        // as plots draw them
   std::vector<std::pair<const RunView*, std::size_t>> ghosts_;  // with how many records
   ThemeName theme_ = ThemeName::kDark;
