@@ -434,6 +434,8 @@ TEST(FeatureTables, AreBothOffered) {
   ASSERT_FALSE(current->record->features.empty());
   auto before = std::make_shared<FrameRecord>(*current->record);
   before->index = current->index - 1;
+  // Where the example's flow says that they came from.
+  for (FeatureRecord& feature : before->features) feature.pixel.x -= 6.9F;
   current->history = {before};
   session.current = current;
   // High enough for all that is told of a feature to be seen.
