@@ -164,6 +164,8 @@ TEST_F(LayoutsTest, ALegendThatWouldCoverThePathsStandsBelow) {
   };
   EXPECT_GT(upper_left(720), 35);
   EXPECT_LT(upper_left(330), 20);
+  // With no room below either, it is over the picture rather than nowhere.
+  EXPECT_GT(upper_left(240), 35);
 }
 
 TEST_F(LayoutsTest, APanelBroughtUpIsSeenWhereverThereIsRoom) {

@@ -135,6 +135,8 @@ class Footer {
   /// px, at the current content region's width. In a low panel the caption goes first, then the legend: the
   /// picture matters more.
   [[nodiscard]] float height(const UiFrame& frame) const;
+  /// Whether there was room for the legend; known once the height is.
+  [[nodiscard]] bool has_room_for_legend() const { return has_legend_; }
   /// Draws it at ImGui's cursor.
   void draw(const UiFrame& frame) const;
 

@@ -34,8 +34,13 @@ class TrajectoryPanel final : public NamedPanel {
     Footer footer;
     footer.legend = ghost_legend(frame, session);
     scene_.data.show_legend = has_room_for_legend(frame);
-    if (!scene_.data.show_legend) add_path_legend(frame, footer);
     footer.caption = alignment_text(session);
+    if (!scene_.data.show_legend) add_path_legend(frame, footer);
+    // Names that have no room below either are better over the picture than nowhere.
+    if (!scene_.data.show_legend && footer.height(frame) >= 0.0F && !footer.has_room_for_legend()) {
+      scene_.data.show_legend = true;
+      footer.legend = ghost_legend(frame, session);
+    }
     const ImVec2 room = room_above(frame, footer);
     look(room);
     const SceneView before = view_;
