@@ -128,7 +128,8 @@ class ComparePanel final : public NamedPanel {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
     const ImVec2 low = ImGui::GetCursorScreenPos();
     if (!ImGui::BeginTable("runs", 6, kFlags)) return;
-    ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, 2.2F);
+    // Eye and tick stand before the name.
+    ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, frame.runs != nullptr ? 3.8F : 2.2F);
     ImGui::TableSetupColumn("Frames", ImGuiTableColumnFlags_WidthStretch, 0.8F);
     const std::string rpe = "RPE " + session.run->evaluation.rpe_time.delta;
     ImGui::TableSetupColumn(rpe.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
@@ -182,7 +183,7 @@ class ComparePanel final : public NamedPanel {
               {at.x + 8.0F * frame.scale, at.y + 0.5F * ImGui::GetFrameHeight()}, 4.0F * frame.scale,
               look.sign, to_u32(look.colour));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 20.0F * frame.scale);
-    ImGui::TextUnformatted(name.c_str());
+    text_in_room(name, frame.theme.text);
     ImGui::TableNextColumn();
     ImGui::Text("%d", processed);
     ImGui::TableNextColumn();

@@ -17,9 +17,10 @@ struct ScenePath {
   Role role = Role::kEstimate;
   std::vector<Eigen::Vector3f> positions{};  ///< m, world
   float width_px = 2.5F;
-  bool pickable = false;        ///< its positions answer to the mouse
-  std::optional<Rgb> colour{};  ///< instead of its role's
-  double dash_m = 0.0;          ///< length of dashes and of the gaps between; 0 = unbroken
+  bool pickable = false;         ///< its positions answer to the mouse
+  std::optional<Rgb> colour{};   ///< instead of its role's
+  double dash_m = 0.0;           ///< length of dashes and of the gaps between; 0 = unbroken
+  bool named_elsewhere = false;  ///< as below the picture
 };
 
 /// The colour a path is drawn in.

@@ -29,7 +29,10 @@ class Overlay {
     const float font = frame_.fonts.small->FontSize, line = font + 4.0F * scale_;
     const ImVec2 corner{low_.x + 8.0F * scale_, low_.y + 8.0F * scale_};
     const float room = std::max(high_.y - corner.y - 12.0F * scale_, 0.0F);
-    entries.resize(std::min(entries.size(), static_cast<std::size_t>(room / line)));
+    const auto most = static_cast<std::size_t>(room / line);
+    if (entries.size() > most)
+      std::erase_if(entries, [](const SceneLegendEntry& entry) { return entry.elsewhere; });
+    entries.resize(std::min(entries.size(), most));
     if (entries.empty()) return corner;
     float widest = 0.0F;
     for (const SceneLegendEntry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
@@ -246,8 +249,8 @@ std::vector<SceneLegendEntry> scene_legend(const SceneData& scene, ThemeName the
   std::vector<SceneLegendEntry> entries;
   for (const ScenePath& path : scene.paths)
     if (!path.name.empty())
-      entries.push_back(
-          {path.name, path_colour(path, theme), std::max(2.0F, path.width_px), path.dash_m > 0.0});
+      entries.push_back({path.name, path_colour(path, theme), std::max(2.0F, path.width_px),
+                         path.dash_m > 0.0, path.named_elsewhere});
   const auto removed = [](const ScenePoint& point) { return point.removed; };
   if (std::any_of(scene.points.begin(), scene.points.end(), removed))
     entries.push_back({"removed points", role_colour(Role::kRemoved, theme), 0.0F});

@@ -37,6 +37,7 @@ struct SceneLegendEntry {
   Rgb colour;
   float width_px = 0.0F;  ///< of its line; 0 for a dot
   bool broken = false;
+  bool elsewhere = false;  ///< the first to go where there is no room for all
 };
 [[nodiscard]] std::vector<SceneLegendEntry> scene_legend(const SceneData& scene, ThemeName theme);
 
