@@ -66,7 +66,9 @@ Painter::Painter(const PainterOptions& options, PictureChoice chosen)
                   .look = options.look}),
       panels_(make_panels()),
       workbench_(make_panels()),
-      chosen_(std::move(chosen)) {
+      chosen_(std::move(chosen)),
+      runs_(options.runs) {
+  workbench_.set_runs(options.runs);
   if (chosen_.layout) take_choices(*chosen_.layout);
   workbench_.set_layout(chosen_.layout ? *chosen_.layout : default_layout(options.method, options.stereo));
 }
@@ -116,9 +118,12 @@ void Painter::paint(const SessionView& view, const std::function<void(const Pict
   for (const std::string& name : chosen_.panels) {
     Panel& chosen = panel(name);
     if (!chosen.is_for(view) && !chosen_.named.contains(name)) continue;
-    done({name,
-          paint_frame([&](UiFrame& frame) { Workbench::draw_alone(frame, view, chosen, choices_[&chosen]); },
-                      options_.panel_size)});
+    done({name, paint_frame(
+                    [&](UiFrame& frame) {
+                      frame.runs = &runs_;
+                      Workbench::draw_alone(frame, view, chosen, choices_[&chosen]);
+                    },
+                    options_.panel_size)});
   }
 }
 

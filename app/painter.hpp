@@ -29,6 +29,7 @@ struct PainterOptions {
                          ///< method's default tiles, and panels as they are by themselves
   std::string method{};  ///< chooses the default layout
   bool stereo = false;   ///< … for stereo pairs
+  RunsShown runs{};      ///< which runs pictures show, and how
 };
 
 /// Which pictures options ask for: known before anything is opened or drawn.
@@ -85,6 +86,7 @@ class Painter {
   std::vector<std::unique_ptr<Panel>> panels_;
   Workbench workbench_;
   PictureChoice chosen_;
+  RunsShown runs_;  // of panels drawn alone
   std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 

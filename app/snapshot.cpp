@@ -34,8 +34,10 @@ namespace fs = std::filesystem;
 struct SnapshotArguments {
   SourceArguments place;
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
-  double scale = 1.0, fps = 0.0;  ///< fps: 0 = frames' own times
-  std::string beside;             ///< method whose stages are laid beside the run's; empty = none
+  double scale = 1.0, fps = 0.0;     ///< fps: 0 = frames' own times
+  std::vector<std::string> compare;  ///< methods and presets that run beside
+  std::string wipe, flip;            ///< runs by name; empty = none
+  std::string beside;                ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
 
@@ -46,7 +48,41 @@ PainterOptions painter_options(const SnapshotArguments& arguments) {
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
+  if (!arguments.wipe.empty()) options.runs.pictures = RunPictures::wiped;
+  if (!arguments.wipe.empty() && arguments.wipe != "all") options.runs.chosen = split_list(arguments.wipe);
+  if (!arguments.flip.empty())
+    options.runs = {
+        .pictures = RunPictures::flipped, .chosen = {arguments.flip}, .flipped_to = arguments.flip};
   return options;
+}
+
+/// Runs beside the session's own, each from the first frame on.
+void add_compared(Session& session, const SnapshotArguments& arguments, const Config& config) {
+  for (const std::string& name : arguments.compare) {
+    const std::vector<std::string> methods = method_names();
+    Config other = config;
+    if (std::find(methods.begin(), methods.end(), name) != methods.end())
+      other.run.method = name;
+    else
+      other = load_config(name);
+    session.request(request::AddGhost{other, name, 0});
+    if (const auto view = session.view(); !view->message.empty())
+      throw InputError(fmt::format("--compare {}: {}", name, view->message));
+  }
+}
+
+/// @throws InputError for a run that pictures are to show and there is not
+void refuse_unknown_runs(const SessionView& view, const RunsShown& runs) {
+  std::vector<std::string> known;
+  for (const ListedRun& run : listed_runs(view)) known.push_back(run.name);
+  for (const std::string& name : runs.chosen)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError(fmt::format("there is no run {}; there are {}", name, fmt::join(known, ", ")));
+  if (runs.pictures == RunPictures::wiped && runs.chosen_of(view).size() < 2)
+    throw InputError(
+        fmt::format("--wipe takes two runs at least; there are {}. --compare METHOD and --run "
+                    "NAME=FILE lay others beside",
+                    fmt::join(known, ", ")));
 }
 
 /// Whether the pictures show what a method's stages made.
@@ -134,11 +170,12 @@ std::vector<int> frames_where(const Condition& condition, const RunView& run,
 /// A session on its way to the first frame that is drawn, while what draws it is set up.
 class EarlySession {
  public:
-  /// @param first frame; nothing where it is not known yet
-  EarlySession(const OpenedSource& place, const std::string& beside, std::optional<int> first)
-      : making_(std::async(std::launch::async, [this, &place, beside, first] {
+  /// @param prepare before its first frame @param first frame; nothing where it is not known yet
+  EarlySession(const OpenedSource& place, const std::function<void(Session&)>& prepare,
+               std::optional<int> first)
+      : making_(std::async(std::launch::async, [this, &place, prepare, first] {
           auto session = std::make_unique<Session>(place.source, place.config, place.options);
-          if (!beside.empty()) session->request(request::StagesBeside{beside});
+          prepare(*session);
           // One far ahead is waited for with a bar that tells how far it is.
           constexpr int kMostFrames = 8;
           if (first && *first < kMostFrames)
@@ -187,7 +224,12 @@ void snapshot(const SnapshotArguments& arguments) {
   options.stereo = place.source->camera().is_stereo();
   Pictures pictures(arguments, chosen.workbench ? options.workbench_size : options.panel_size,
                     usual_step(*place.source));
-  EarlySession early(place, arguments.beside, condition ? std::nullopt : std::optional(frames.front()));
+  const auto prepare = [&](Session& session) {
+    if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
+    add_compared(session, arguments, place.config);
+    refuse_unknown_runs(*session.view(), options.runs);
+  };
+  EarlySession early(place, prepare, condition ? std::nullopt : std::optional(frames.front()));
   Painter painter(options, chosen);
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
@@ -259,6 +301,17 @@ void add_snapshot_command(CLI::App& app) {
                    "Another method, whose stages are worked out for each frame as well: what its own panels "
                    "show")
       ->check(CLI::IsMember(method_names()));
+  command
+      ->add_option("--compare", arguments->compare,
+                   "Other methods or presets that run beside, with commas between; may be given again")
+      ->delimiter(',');
+  CLI::Option* wipe = command->add_option(
+      "--wipe", arguments->wipe,
+      "Pictures show several runs, each in a strip: all, or names of runs with commas between");
+  command
+      ->add_option("--flip", arguments->flip,
+                   "Pictures are of this run, by its name, in place of the sequence's own")
+      ->excludes(wipe);
   command->add_flag("--no-baseline", arguments->no_baseline, "Do not run method none beside for comparison");
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");

@@ -11,6 +11,7 @@
 #include "app/version.hpp"
 #include "core/evaluation/pose_series.hpp"
 #include "core/run/removal_errors.hpp"
+#include "ui/plot/path_plot.hpp"
 #include "ui/plot/plot_file.hpp"
 
 namespace stillpoint {
@@ -59,35 +60,18 @@ std::vector<Path> paths_of(const ReportGroup& group) {
   return paths;
 }
 
-AxisRange extent_of(const std::vector<Path>& paths, std::size_t axis) {
-  std::vector<double> all;
-  for (const Path& path : paths)
-    all.insert(all.end(), path.series.position[axis].begin(), path.series.position[axis].end());
-  return range_of(all, 0.05, AxisScale::kLinear);
-}
-
 std::string drawn_figure(const Plot& plot, const std::string& caption) {
   return figure_html_of_png(plot_drawn(PlotFigure(plot, PlotView{}), ".png"), caption);
 }
 
-/// From the side that shows most of where the camera went.
 std::string path_picture(const std::vector<Path>& paths) {
-  std::array<std::size_t, 3> axes{0, 1, 2};
-  std::array<AxisRange, 3> extents;
-  for (const std::size_t axis : axes) extents[axis] = extent_of(paths, axis);
-  std::stable_sort(axes.begin(), axes.end(),
-                   [&](std::size_t a, std::size_t b) { return extents[a].span() > extents[b].span(); });
-  const std::size_t across = std::min(axes[0], axes[1]), up = std::max(axes[0], axes[1]);
-  Plot plot{.x_label = kAxisNames[across], .x_unit = "m", .y_label = kAxisNames[up], .y_unit = "m"};
-  plot.y_from_zero = false;
-  plot.equal_scale = true;
-  plot.x_limits = extents[across];
+  std::vector<PlotPath> flat;
   for (const Path& path : paths)
-    plot.series.push_back({path.name, path.series.position[across], path.series.position[up], path.colour,
-                           path.style, path.width});
-  return drawn_figure(plot, fmt::format("All runs in one scale, along {} and {}, the two axes in which the "
-                                        "camera went furthest",
-                                        kAxisNames[across], kAxisNames[up]));
+    flat.push_back({path.name, &path.series.position, path.colour, path.style, path.width});
+  const PathPlot made = path_plot(flat);
+  return drawn_figure(made.plot, fmt::format("All runs in one scale, along {} and {}, the two axes in which "
+                                             "the camera went furthest",
+                                             made.across, made.up));
 }
 
 std::string pose_plots(const std::vector<Path>& paths, bool turns) {

@@ -113,6 +113,28 @@ TEST_F(Snapshot, APictureThatCannotBeWrittenIsToldWhicheverItIs) {
   }
 }
 
+TEST_F(Snapshot, SetsRunsAgainstEachOther) {
+  const auto picture = [&](const std::string& folder, std::vector<std::string> more) {
+    std::vector<std::string> all = {"--method", "paper", "--frames", "4",
+                                    "--panels", "mask",  "--out",    sequence_.path(folder)};
+    all.insert(all.end(), more.begin(), more.end());
+    const CliResult result = snapshot(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return cv::imread(sequence_.path(folder) + "/000004_mask.png");
+  };
+  const cv::Mat alone = picture("alone", {}),
+                wiped = picture("wiped", {"--compare", "none", "--wipe", "all"}),
+                flipped = picture("flipped", {"--compare", "none", "--flip", "none"});
+  ASSERT_EQ(alone.size(), wiped.size());
+  EXPECT_GT(cv::norm(alone, wiped, cv::NORM_INF), 50.0);
+  EXPECT_GT(cv::norm(alone, flipped, cv::NORM_INF), 50.0);
+  EXPECT_GT(cv::norm(wiped, flipped, cv::NORM_INF), 50.0);
+  expect_one_sentence(snapshot({"--wipe", "all", "--frames", "4", "--out", out()}), "--wipe takes two runs");
+  expect_one_sentence(snapshot({"--compare", "none", "--wipe", "stillpoint,orb3", "--out", out()}),
+                      "there is no run orb3; there are stillpoint, baseline none, none");
+  expect_one_sentence(snapshot({"--compare", "nothing", "--out", out()}), "nothing");
+}
+
 TEST_F(Snapshot, KeepsEarlierImagesUnlessForced) {
   const std::vector<std::string> wanted = {"--frames", "0", "--panels", "input", "--out", out()};
   EXPECT_EQ(snapshot(wanted).exit_code, 0);

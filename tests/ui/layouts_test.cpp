@@ -133,6 +133,41 @@ TEST_F(LayoutsTest, ATabIsBroughtToTheFrontByItsNameByKeyAndByMenu) {
   EXPECT_THAT(panels_of(workbench_.layout()), Not(Contains("bookmarks")));
 }
 
+TEST_F(LayoutsTest, TheTabThatWasSeenIsSeenAgain) {
+  show(named_layouts()[3], {900, 700, 1.0F});  // Failures
+  ASSERT_TRUE(workbench_.tile_of("breakpoints"));
+  EXPECT_TRUE(workbench_.actions().run("panel.bookmarks"));
+  draw();
+  draw();
+  ASSERT_TRUE(workbench_.tile_of("bookmarks"));
+  const std::string kept = to_json(workbench_.layout());
+  Workbench again(make_panels());
+  again.set_layout(parse_layout(kept, "kept", again.panel_names()));
+  for (int i = 0; i < 2; ++i) offscreen_.draw([&](UiFrame& frame) { again.draw(frame, &example_); });
+  EXPECT_TRUE(again.tile_of("bookmarks"));
+  EXPECT_FALSE(again.tile_of("breakpoints"));
+  offscreen_.make_current();
+}
+
+TEST_F(LayoutsTest, ALegendThatWouldCoverThePathsStandsBelow) {
+  workbench_.set_layout({.panel = "trajectory"});
+  const auto upper_left = [&](int height) {
+    offscreen_.resize(640, height);
+    draw();
+    const cv::Mat image = offscreen_.render([&](UiFrame& frame) { workbench_.draw(frame, &example_); });
+    const auto tile = workbench_.tile_of("trajectory");
+    // Below the controls, where the names of the paths stand in a large tile: how much is as bright as text.
+    cv::Mat bright;
+    const cv::Rect there(static_cast<int>(tile->x) + 44, static_cast<int>(tile->y) + 72, 70, 30);
+    cv::inRange(image(there), cv::Scalar(160, 160, 160), cv::Scalar(255, 255, 255), bright);
+    return cv::countNonZero(bright);
+  };
+  EXPECT_GT(upper_left(720), 35);
+  EXPECT_LT(upper_left(330), 20);
+  // With no room below either, it is over the picture rather than nowhere.
+  EXPECT_GT(upper_left(240), 35);
+}
+
 TEST_F(LayoutsTest, APanelBroughtUpIsSeenWhereverThereIsRoom) {
   for (const std::string& panel : panel_names()) {
     show(named_layouts()[0], {900, 700, 1.0F});

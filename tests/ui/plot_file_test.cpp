@@ -119,6 +119,17 @@ TEST_F(PlotFile, RefusesOtherEndingsAndPlacesThatAreNone) {
   EXPECT_GT(written("empty.svg").size(), 200U);  // axes without a curve
 }
 
+/// Presses and lets go of a button at a place. @param draw draws as often as it takes to be noticed
+template <typename Draw>
+void click(Offscreen& offscreen, const Draw& draw, ImVec2 at, int button) {
+  offscreen.send(MouseMoved{at.x, at.y});
+  draw();
+  for (const bool down : {true, false}) {
+    offscreen.send(MouseButton{button, down, {}});
+    draw();
+  }
+}
+
 /// What a right click somewhere on a panel offers first, and the file it writes.
 class RightClick : public ::testing::TestWithParam<std::pair<std::string, std::string>> {};
 
@@ -146,19 +157,11 @@ TEST_P(RightClick, SavesWhatThePanelShows) {
         ImGui::End();
       });
   };
-  const auto click = [&](float x, float y, int button) {
-    offscreen.send(MouseMoved{x, y});
-    draw();
-    for (const bool down : {true, false}) {
-      offscreen.send(MouseButton{button, down, {}});
-      draw();
-    }
-  };
   draw();
   for (const float x : {330.0F, 560.0F})
     for (float y = 70.0F; y < 540.0F && !offer; y += 35.0F) {
-      click(x, y, 1);
-      click(x + 30.0F, y + 18.0F, 0);
+      click(offscreen, draw, {x, y}, 1);
+      click(offscreen, draw, {x + 30.0F, y + 18.0F}, 0);
     }
   ASSERT_TRUE(offer) << name;
   EXPECT_TRUE(offer->name.ends_with(ending)) << offer->name;
@@ -194,20 +197,12 @@ TEST_F(PlotFile, IsOfferedByARightClick) {
   const auto draw = [&] {
     for (int i = 0; i < 3; ++i) offscreen.draw([&](UiFrame& frame) { workbench.draw(frame, &session); });
   };
-  const auto click = [&](float x, float y, int button) {
-    offscreen.send(MouseMoved{x, y});
-    draw();
-    for (const bool down : {true, false}) {
-      offscreen.send(MouseButton{button, down, {}});
-      draw();
-    }
-  };
   draw();
   const auto tile = workbench.tile_of("errors");
   ASSERT_TRUE(tile);
   const float x = tile->x + 0.5F * tile->width, y = tile->y + 0.4F * tile->height;
-  click(x, y, 1);
-  click(x + 30.0F, y + 20.0F, 0);  // the first of the menu
+  click(offscreen, draw, {x, y}, 1);
+  click(offscreen, draw, {x + 30.0F, y + 20.0F}, 0);  // the first of the menu
   // The path proposed is replaced by one of the test's.
   const std::string path = folder_.path("mine.svg");
   offscreen.send(KeyChanged{Key::kA, true, {.ctrl = true}});

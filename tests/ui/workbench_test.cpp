@@ -1,6 +1,7 @@
 // The whole interface over a small sequence: offscreen, and in a window under Xvfb.
 #include "ui/workbench/workbench.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -274,7 +275,12 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
                          {"camera=freiburg3", "frames=60"},
                          {"run.method=paper"},
                          17,
-                         {{"method none", {"run.method=none"}, 0}, {"later", {}, 5}}},
+                         {{"method none", {"run.method=none"}, 0}, {"later", {}, 5}},
+                         {.pictures = RunPictures::wiped,
+                          .chosen = {"paper", "method none"},
+                          .flipped_to = "method none",
+                          .hidden = {"baseline none"},
+                          .dividers = {0.25F}}},
       b{"b", {}, {}};
   remember(settings.recent, {"a", {}, {}});
   remember(settings.recent, b);
@@ -298,6 +304,20 @@ TEST(Settings, PathsOfEarlierVersionsAreRecentSequences) {
   const Settings read = read_settings(folder.path("settings.json"), {}, &problem);
   EXPECT_EQ(problem, "");
   EXPECT_THAT(read.recent, ElementsAre(RecentSequence{"x", {}, {}}, RecentSequence{"y", {}, {}}));
+}
+
+TEST(Settings, DividersOutOfOrderAreEqualStripsAgain) {
+  const TemporaryFolder folder;
+  for (const char* dividers : {"[0.7, 0.2]", "[-1]", "[0.5, 2]"}) {
+    folder.write(
+        "settings.json",
+        fmt::format(R"({{"recent": [{{"where": "a", "runs": {{"pictures": "wipe", "dividers": {}}}}}]}})",
+                    dividers));
+    const Settings read = read_settings(folder.path("settings.json"), {});
+    ASSERT_EQ(read.recent.size(), 1U) << dividers;
+    EXPECT_EQ(read.recent[0].runs.pictures, RunPictures::wiped);
+    EXPECT_TRUE(read.recent[0].runs.dividers.empty()) << dividers;
+  }
 }
 
 TEST(Settings, DamagedOnesGiveTheDefaults) {

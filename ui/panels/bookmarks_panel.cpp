@@ -55,9 +55,11 @@ class BookmarksPanel final : public NamedPanel {
     }
     const ImVec2 low = ImGui::GetCursorScreenPos();
     ImGui::BeginChild("list");
-    if (ImGui::BeginTable("bookmarks", 4, ImGuiTableFlags_BordersInnerH)) {
+    // In a narrow tile the note matters more than the time.
+    has_times_ = ImGui::GetContentRegionAvail().x > kTimesFrom * frame.scale;
+    if (ImGui::BeginTable("bookmarks", has_times_ ? 4 : 3, ImGuiTableFlags_BordersInnerH)) {
       ImGui::TableSetupColumn("frame", ImGuiTableColumnFlags_WidthFixed, 58.0F * frame.scale);
-      ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 62.0F * frame.scale);
+      if (has_times_) ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 62.0F * frame.scale);
       ImGui::TableSetupColumn("note", ImGuiTableColumnFlags_WidthStretch);
       ImGui::TableSetupColumn("delete", ImGuiTableColumnFlags_WidthFixed, 26.0F * frame.scale);
       fields_.resize(bookmarks.size());
@@ -86,10 +88,12 @@ class BookmarksPanel final : public NamedPanel {
     if (ImGui::Button(fmt::format("{}", bookmark.frame).c_str(), {-1.0F, 0.0F}))
       actions.go_to_frame = bookmark.frame;
     if (here) ImGui::PopStyleColor();
-    ImGui::TableNextColumn();
-    ImGui::AlignTextToFramePadding();
-    if (const auto at = record_of(session, bookmark.frame))
-      ImGui::TextDisabled("%.2f s", session.run->records[*at].timestamp - series_start(session));
+    if (has_times_) {
+      ImGui::TableNextColumn();
+      ImGui::AlignTextToFramePadding();
+      if (const auto at = record_of(session, bookmark.frame))
+        ImGui::TextDisabled("%.2f s", session.run->records[*at].timestamp - series_start(session));
+    }
     ImGui::TableNextColumn();
     Field& field = fields_[index];
     if (editing != bookmark.frame) {
@@ -103,6 +107,8 @@ class BookmarksPanel final : public NamedPanel {
     ImGui::SetNextItemWidth(-1.0F);
     ImGui::InputTextWithHint("##note", "note", field.data(), field.size());
     if (ImGui::IsItemActive()) editing_ = bookmark.frame;
+    if (ImGui::IsItemHovered() && ImGui::CalcTextSize(bookmark.note.c_str()).x > ImGui::GetItemRectSize().x)
+      ImGui::SetTooltip("%s", bookmark.note.c_str());
     if (ImGui::IsItemDeactivatedAfterEdit()) {
       std::vector<Bookmark> all = session.debug.bookmarks;
       all[index].note = field.data();
@@ -116,6 +122,9 @@ class BookmarksPanel final : public NamedPanel {
     ImGui::PopID();
   }
 
+  static constexpr float kTimesFrom = 330.0F;  // design px
+
+  bool has_times_ = true;
   std::vector<Field> fields_;
   int editing_ = -1;          // frame of the note being typed
   std::optional<int> focus_;  // frame whose note is to be typed next

@@ -10,10 +10,12 @@
 #include "core/run/frame_figures.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/panel_choices.hpp"
 #include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/right_click.hpp"
+#include "ui/session/shown_runs.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {
@@ -36,6 +38,7 @@ class ComparePanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return false; }
+  [[nodiscard]] bool lists_runs() const override { return true; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const auto& ghosts = session.debug.ghosts;
@@ -44,6 +47,8 @@ class ComparePanel final : public NamedPanel {
       return;
     }
     if (ghosts.empty()) {
+      // What is left out of plots is taken back in here.
+      if (frame.runs != nullptr && session.baseline) draw_table(frame, session, actions);
       draw_absent(
           frame,
           "No second run yet. In the parameters panel, change something or choose a method to compare "
@@ -51,6 +56,7 @@ class ComparePanel final : public NamedPanel {
       return;
     }
     chosen_ = std::min(chosen_, ghosts.size() - 1);
+    draw_picture_choice(frame, session);
     draw_table(frame, session, actions);
     const GhostView& ghost = ghosts[chosen_];
     const auto here = record_of(session, session.current->index),
@@ -80,11 +86,56 @@ class ComparePanel final : public NamedPanel {
     draw_frame_shown(frame, session, preview, actions);
   }
 
+  /// What pictures of all panels show: kept with the sequence, not with this panel.
+  static void draw_picture_choice(UiFrame& frame, const SessionView& session) {
+    if (frame.runs == nullptr) return;
+    PanelChoices* const choices = std::exchange(frame.choices, nullptr);
+    int pictures = static_cast<int>(frame.runs->pictures);
+    Controls controls(frame);
+    if (controls.choice("pictures", {"This run", "Wipe", "Flip"}, pictures,
+                        "What the pictures of all panels show: this run alone, the runs ticked below side by "
+                        "side (W), or one after the other (F)"))
+      frame.runs->pictures = static_cast<RunPictures>(pictures);
+    if (const auto flipped = frame.runs->flipped(session))
+      if (controls.button(fmt::format("Next after {} (F)", shortened(flipped->name, 18)).c_str()))
+        frame.runs->flip(session, 1);
+    frame.choices = choices;
+  }
+
+  /// Whether a run is among those that pictures show.
+  static void draw_picture_tick(const UiFrame& frame, const SessionView& session, const ListedRun& run) {
+    const std::vector<ListedRun> chosen = frame.runs->chosen_of(session);
+    bool on =
+        std::any_of(chosen.begin(), chosen.end(), [&](const ListedRun& one) { return one.name == run.name; });
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2.0F * frame.scale, 2.0F * frame.scale});
+    if (run.kind != ListedRun::Kind::own) {
+      const bool hidden = frame.runs->hides(run.name);
+      ImGui::PushStyleColor(ImGuiCol_Button, ImVec4{0, 0, 0, 0});
+      ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(hidden ? frame.theme.text_dim : frame.theme.text));
+      if (ImGui::Button(hidden ? icons::kHide : icons::kShow, {1.5F * ImGui::GetFrameHeight(), 0.0F}))
+        frame.runs->toggle_hidden(run.name);
+      ImGui::PopStyleColor(2);
+      if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(hidden ? "Left out of plots, tables and the trajectory; click to show it there"
+                                 : "In plots, tables and the trajectory; click to leave it out");
+    } else {
+      ImGui::Dummy({1.5F * ImGui::GetFrameHeight(), 1.0F});
+    }
+    ImGui::SameLine();
+    if (checkbox(frame, "##in pictures", on)) frame.runs->toggle(session, run.name);
+    ImGui::PopStyleVar();
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", run.no_pictures.empty() ? "Shown where pictures are wiped or flipped"
+                                                      : run.no_pictures.c_str());
+    ImGui::SameLine();
+  }
+
   void draw_table(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp;
     const ImVec2 low = ImGui::GetCursorScreenPos();
     if (!ImGui::BeginTable("runs", 6, kFlags)) return;
-    ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, 2.2F);
+    // Eye and tick stand before the name.
+    ImGui::TableSetupColumn("Run", ImGuiTableColumnFlags_WidthStretch, frame.runs != nullptr ? 3.8F : 2.2F);
     ImGui::TableSetupColumn("Frames", ImGuiTableColumnFlags_WidthStretch, 0.8F);
     const std::string rpe = "RPE " + session.run->evaluation.rpe_time.delta;
     ImGui::TableSetupColumn(rpe.c_str(), ImGuiTableColumnFlags_WidthStretch, 1.0F);
@@ -92,10 +143,19 @@ class ComparePanel final : public NamedPanel {
     ImGui::TableSetupColumn("Parts at", ImGuiTableColumnFlags_WidthStretch, 0.9F);
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 26.0F * frame.scale);
     ImGui::TableHeadersRow();
-    run_row(frame, {role_colour(Role::kEstimate, frame.theme.name)}, session.run->name + " (this run)",
-            *session.run, session.processed);
+    const std::vector<ListedRun> listed = listed_runs(session);
+    run_row(frame, session, listed.front(), {role_colour(Role::kEstimate, frame.theme.name)},
+            session.run->name + " (this run)", session.processed);
     ImGui::TableNextColumn();
     ImGui::TableNextColumn();
+    // Without pictures to choose, the list is of what can be compared frame by frame.
+    if (frame.runs != nullptr && session.baseline) {
+      run_row(frame, session, listed[1],
+              {role_colour(Role::kBaseline, frame.theme.name), SeriesStyle::kDashed, Sign::kDashed},
+              session.baseline->name + " (baseline)", static_cast<int>(session.baseline->records.size()));
+      ImGui::TableNextColumn();
+      ImGui::TableNextColumn();
+    }
     for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) ghost_row(frame, session, i, actions);
     ImGui::EndTable();
     offer_table(frame, "runs", low, [&] { return runs_table(session); });
@@ -115,17 +175,21 @@ class ComparePanel final : public NamedPanel {
     return table;
   }
 
-  static void run_row(const UiFrame& frame, const RunLook& look, const std::string& name, const RunView& run,
-                      int processed) {
+  static void run_row(const UiFrame& frame, const SessionView& session, const ListedRun& listed,
+                      const RunLook& look, const std::string& name, int processed) {
+    const RunView& run = *listed.run;
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
+    ImGui::PushID(listed.name.c_str());
+    if (frame.runs != nullptr) draw_picture_tick(frame, session, listed);
+    ImGui::PopID();
     ImGui::AlignTextToFramePadding();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     draw_sign(frame, *ImGui::GetWindowDrawList(),
               {at.x + 8.0F * frame.scale, at.y + 0.5F * ImGui::GetFrameHeight()}, 4.0F * frame.scale,
               look.sign, to_u32(look.colour));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 20.0F * frame.scale);
-    ImGui::TextUnformatted(name.c_str());
+    text_in_room(name, frame.theme.text);
     ImGui::TableNextColumn();
     ImGui::Text("%d", processed);
     ImGui::TableNextColumn();
@@ -137,8 +201,10 @@ class ComparePanel final : public NamedPanel {
   void ghost_row(const UiFrame& frame, const SessionView& session, std::size_t index, PanelActions& actions) {
     const GhostView& ghost = session.debug.ghosts[index];
     ImGui::PushID(static_cast<int>(index));
-    run_row(frame, ghost_look(index, frame.theme.name), ghost.name + (ghost.busy ? "  running…" : ""),
-            *ghost.run, static_cast<int>(ghost.run->records.size()));
+    const std::vector<ListedRun> listed = listed_runs(session);
+    run_row(frame, session, listed[listed.size() - session.debug.ghosts.size() + index],
+            ghost_look(session.debug.ghosts, index, frame.theme.name),
+            ghost.name + (ghost.busy ? "  running…" : ""), static_cast<int>(ghost.run->records.size()));
     if (index == chosen_)
       ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, to_u32(frame.theme.accent, 0.18F));
     ImGui::TableNextColumn();
@@ -192,9 +258,10 @@ class ComparePanel final : public NamedPanel {
                                                : "The frame cannot be shown: " + view.frame.problem);
       return;
     }
-    const ComparisonColours colours{.agreed = okabe_ito::kGreen,
-                                    .missed = ghost_look(chosen_, frame.theme.name).colour,
-                                    .wrong = okabe_ito::kSkyBlue};
+    const ComparisonColours colours{
+        .agreed = okabe_ito::kGreen,
+        .missed = ghost_look(ghost.look.value_or(chosen_), frame.theme.name).colour,
+        .wrong = okabe_ito::kSkyBlue};
     // The ghost's image is another object whenever its frame or its run changes.
     const Texture& compared = compared_.get(frame, ghost.current, static_cast<int>(chosen_), [&] {
       const cv::Size size = view.frame.gray.size();
@@ -225,13 +292,8 @@ class ComparePanel final : public NamedPanel {
 
   void draw_figures(const UiFrame& frame, const SessionView& session, const GhostView& ghost) const {
     ImGui::PushFont(frame.fonts.small);
-    const bool same = difference_.translation_m == 0.0 && difference_.rotation_deg == 0.0;
     ImGui::PushTextWrapPos(0.0F);
-    if (same)
-      ImGui::TextUnformatted("Both poses are the same.");
-    else
-      ImGui::Text("Poses differ by %.2f mm and %.3f °.", 1000.0 * difference_.translation_m,
-                  difference_.rotation_deg);
+    ImGui::TextUnformatted(pose_text(difference_, ghost.name, ghost.outside).c_str());
     ImGui::PopTextWrapPos();
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
     const ImVec2 low = ImGui::GetCursorScreenPos();

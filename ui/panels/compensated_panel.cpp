@@ -21,6 +21,10 @@ class CompensatedPanel final : public FramePanel {
   explicit CompensatedPanel(Shared shared)
       : FramePanel("compensated", "Compensated frame", std::move(shared)) {}
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<CompensatedPanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog* log = stages_or_absent(frame, session, actions, name(), "compensated");
     if (log == nullptr) return;

@@ -19,6 +19,10 @@ class DifferencePanel final : public FramePanel {
  public:
   explicit DifferencePanel(Shared shared) : FramePanel("difference", "Difference", std::move(shared)) {}
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<DifferencePanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog* log = stages_or_absent(frame, session, actions, name(), "difference");
     if (log == nullptr) return;

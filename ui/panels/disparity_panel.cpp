@@ -30,6 +30,7 @@ class DisparityPanel final : public FramePanel {
  public:
   explicit DisparityPanel(Shared shared) : FramePanel("disparity", "Disparity", std::move(shared)) {}
 
+  [[nodiscard]] bool shows_a_run() const override { return false; }
   [[nodiscard]] bool is_for(const SessionView& session) const override { return session.camera.is_stereo(); }
   [[nodiscard]] PanelSize least() const override { return {300.0F, 190.0F}; }
 
@@ -130,6 +131,7 @@ class StereoHolesPanel final : public FramePanel {
  public:
   explicit StereoHolesPanel(Shared shared) : FramePanel("stereo_holes", "Stereo holes", std::move(shared)) {}
 
+  [[nodiscard]] bool shows_a_run() const override { return false; }
   [[nodiscard]] bool is_for(const SessionView& session) const override { return session.camera.is_stereo(); }
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (!has_stereo(frame, session)) return;

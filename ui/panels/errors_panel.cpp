@@ -93,7 +93,7 @@ class ErrorsPanel final : public NamedPanel {
     view_[per_second].log_y = log_;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const PlotResponse response =
-        draw_plot(frame, per_second ? "second" : "frame", plot, view_[per_second], size);
+        draw_plot(frame, per_second ? "rpe_over_time" : "rpe_per_frame", plot, view_[per_second], size);
     x_ = view_[per_second].x;
     if (run.x.empty() && baseline.x.empty()) {
       draw_label(frame, {corner.x + 0.3F * size.x, corner.y + 0.4F * size.y},
@@ -109,7 +109,7 @@ class ErrorsPanel final : public NamedPanel {
   void add_ghosts(const UiFrame& frame, const SessionView& session, Series Curves::*which, Plot& plot) const {
     for (std::size_t i = 0; i < ghosts_.size(); ++i) {
       const GhostView& ghost = session.debug.ghosts[i];
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       const Series& series = ghosts_[i].*which;
       plot.series.push_back({shortened(ghost.name, 24), series.x, series.y, look.colour, look.line, 2.0F});
       if (!ghost.diverged) continue;

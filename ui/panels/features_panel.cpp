@@ -25,6 +25,10 @@ class FeaturesPanel final : public FramePanel {
 
   [[nodiscard]] bool shows_image_alone() const override { return true; }
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<FeaturesPanel>(moment_, shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
     if (view.image_alone) {

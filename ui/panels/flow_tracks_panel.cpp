@@ -17,6 +17,10 @@ class FlowTracksPanel final : public FramePanel {
  public:
   explicit FlowTracksPanel(Shared shared) : FramePanel("flow_tracks", "Flow tracks", std::move(shared)) {}
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<FlowTracksPanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog* log = stages_or_absent(frame, session, actions, name(), "flow_tracks");
     if (log == nullptr) return;

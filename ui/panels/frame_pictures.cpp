@@ -236,7 +236,9 @@ const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& sessio
     if (is_runs || beside) continue;
     text = fmt::format("The run's method, {}, has no such stage.", session.config.run.method);
     const std::string label = fmt::format("Lay {}'s beside", method.name);
-    if (controls.button(label.c_str(),
+    // Stages are laid beside those of the session's own run alone.
+    if (session.own_run &&
+        controls.button(label.c_str(),
                         "Works out that method's stages of each frame shown, beside the run's"))
       actions.requests.emplace_back(request::StagesBeside{method.name});
   }

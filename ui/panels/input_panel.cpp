@@ -19,6 +19,8 @@ class InputPanel final : public FramePanel {
  public:
   explicit InputPanel(Shared shared) : FramePanel("input", "Input", std::move(shared)) {}
 
+  [[nodiscard]] bool shows_a_run() const override { return false; }
+
   [[nodiscard]] PanelSize least() const override { return {300.0F, 190.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return true; }

@@ -135,7 +135,8 @@ class LogPanel final : public NamedPanel {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float left = 20.0F * frame.scale + column;
     const float wrap = std::max(ImGui::GetContentRegionAvail().x - left, 60.0F * frame.scale);
-    const float height = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap).y;
+    const std::string text = in_lines(*ImGui::GetFont(), line.text, wrap);
+    const float height = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap).y;
     const bool goes = line.frame >= 0 && line.frame < session.frame_count;
     const bool clicked =
         ImGui::Selectable("##line", false, goes ? 0 : ImGuiSelectableFlags_Disabled, {0.0F, height});
@@ -144,11 +145,12 @@ class LogPanel final : public NamedPanel {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const Theme& theme = frame.theme;
     const Rgb colour = line.bad ? role_colour(Role::kWarning, theme.name) : theme.text;
-    list.AddText(frame.fonts.text, frame.fonts.text->FontSize, at, to_u32(line.bad ? colour : theme.text_dim),
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, to_u32(line.bad ? colour : theme.text_dim),
                  line.bad ? icons::kWarning : icons::kInfo);
-    list.AddText({at.x + 20.0F * frame.scale, at.y}, to_u32(theme.text_dim), line.when.c_str());
-    list.AddText(frame.fonts.text, frame.fonts.text->FontSize, {at.x + left, at.y}, to_u32(colour),
-                 line.text.c_str(), nullptr, wrap);
+    list.AddText({at.x + 20.0F * frame.scale, at.y}, to_u32(theme.text_dim),
+                 cut_to(*ImGui::GetFont(), line.when, column - 6.0F * frame.scale).c_str());
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), {at.x + left, at.y}, to_u32(colour), text.c_str(),
+                 nullptr, wrap);
   }
 
   bool errors_only_ = false;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/evaluation/mask_scores.hpp"
@@ -15,6 +16,11 @@ namespace {
 
 constexpr float kBesideFrom = 640.0F;  // design px: from this width on the truth stands beside unasked
 
+std::string as_sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 std::string percent(std::optional<double> share) {
   return share ? fmt::format("{:.0f} %", 100.0 * *share) : std::string("–");
 }
@@ -27,6 +33,10 @@ class MaskPanel final : public FramePanel {
       : FramePanel(info.name, info.title, std::move(shared)), info_(std::move(info)) {}
 
   [[nodiscard]] bool shows_image_alone() const override { return true; }
+
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<MaskPanel>(info_, shared_);
+  }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;
@@ -175,7 +185,7 @@ class MaskPanel final : public FramePanel {
       footer.caption += fmt::format(", {} region{}", regions_.size(), regions_.size() == 1 ? "" : "s");
     if (is_the_runs()) {
       footer.caption += fmt::format(": what method {} removed.", log_->method);
-      if (!log_->note.empty()) footer.caption += fmt::format(" {}.", log_->note);
+      if (!log_->note.empty()) footer.caption += fmt::format(" {}.", as_sentence(log_->note));
     } else {
       if (!info_.values_layer.empty())
         if (const Layer* values = log_->layer(info_.values_layer, round_shown(*log_, round_));

@@ -18,6 +18,10 @@ class MotionPanel final : public FramePanel {
 
   [[nodiscard]] PanelSize least() const override { return {320.0F, 190.0F}; }
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<MotionPanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const StageLog& log = *session.current->motion;
     std::vector<const Stage*> stages = overview_of(log);

@@ -26,6 +26,8 @@ class OutlinePanel final : public FramePanel {
  public:
   explicit OutlinePanel(Shared shared) : FramePanel("outline", "Truth by hand", std::move(shared)) {}
 
+  [[nodiscard]] bool shows_a_run() const override { return false; }
+
   [[nodiscard]] std::vector<PanelCommand> commands() override {
     const auto command = [](const char* name, const char* title, std::vector<KeyChord> keys,
                             std::function<bool(const SessionView&)> enabled,

@@ -51,6 +51,15 @@ class Panel {
   [[nodiscard]] virtual PanelSize least() const { return {270.0F, 180.0F}; }
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
+  /// Whether what it shows of the frame is a run's, and so can be another run's as well (as_run()).
+  [[nodiscard]] virtual bool shows_a_run() const { return false; }
+  /// Whether it lists all runs, those too that other panels are not to show.
+  [[nodiscard]] virtual bool lists_runs() const { return false; }
+  /// One more of its kind, in the same set, for another run's pictures in its place; null where its pictures
+  /// cannot be set against others.
+  [[nodiscard]] virtual std::unique_ptr<Panel> another() const { return nullptr; }
+  /// Panels made by another() so far: where it is drawn of several runs at once, each keeps its own textures.
+  std::vector<std::unique_ptr<Panel>> others;
   /// Whether it shows a frame of which the image alone is there (FrameView::image_alone); else it goes on
   /// showing the one before until the rest has come.
   [[nodiscard]] virtual bool shows_image_alone() const { return !previews(); }

@@ -35,6 +35,19 @@ class PanelChoices {
     return value;
   }
 
+  /// What every control said last: for another panel of its kind, which is to show the same of another run.
+  [[nodiscard]] PanelChoices mirrored() const {
+    PanelChoices mirror;
+    mirror.wanted_ = now_;
+    mirror.wanted_.insert(passing_.begin(), passing_.end());
+    mirror.mirrors_ = true;
+    return mirror;
+  }
+  /// Whether what a frame's own controls say is taken too, not a person's choices alone.
+  [[nodiscard]] bool mirrors() const { return mirrors_; }
+  /// Told by a control whose choice is a matter of the frame and is not kept.
+  void note_passing(const std::string& control, const std::string& now) { passing_[control] = now; }
+
   /// Told by a control after it was drawn.
   void note(const std::string& control, const std::string& now) { now_[control] = now; }
 
@@ -48,7 +61,8 @@ class PanelChoices {
   }
 
  private:
-  Words wanted_, refused_, first_, now_;
+  Words wanted_, refused_, first_, now_, passing_;
+  bool mirrors_ = false;
 };
 
 }  // namespace stillpoint

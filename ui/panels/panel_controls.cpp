@@ -42,21 +42,14 @@ float Controls::text_width(const char* label) const { return ImGui::CalcTextSize
 
 bool Controls::choice(const char* id, const std::vector<std::string>& names, int& chosen,
                       const char* tooltip) {
-  if (!frame_.controls) return false;
-  const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
-  const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
-  float width = 0.0F;
-  for (const std::string& name : names) width += width_of(name) + gap;
-  place(width - gap);
   const auto shown = [&] {
     const bool any = chosen >= 0 && chosen < static_cast<int>(names.size());
     return any ? names[static_cast<std::size_t>(chosen)] : std::string();
   };
-  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  float right = ImGui::GetCursorScreenPos().x;
   bool changed = false;
   // Which round is shown is a matter of the frame, not of taste.
-  const bool kept = frame_.choices != nullptr && std::string_view(id) != kRoundId;
+  const bool passing = std::string_view(id) == kRoundId;
+  const bool kept = frame_.choices != nullptr && (!passing || frame_.choices->mirrors());
   if (kept) {
     const auto wanted = frame_.choices->take(id, shown());
     const auto found = wanted ? std::find(names.begin(), names.end(), *wanted) : names.end();
@@ -67,6 +60,14 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
       frame_.choices->refuse(id, *wanted);
     }
   }
+  if (!frame_.controls) return changed;
+  const float padding = ImGui::GetStyle().FramePadding.x, gap = frame_.scale;
+  const auto width_of = [&](const std::string& name) { return text_width(name.c_str()) + 2.0F * padding; };
+  float width = 0.0F;
+  for (const std::string& name : names) width += width_of(name) + gap;
+  place(width - gap);
+  const float edge = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  float right = ImGui::GetCursorScreenPos().x;
   ImGui::PushID(id);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, ImGui::GetStyle().ItemSpacing.y});
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
@@ -94,13 +95,12 @@ bool Controls::choice(const char* id, const std::vector<std::string>& names, int
   ImGui::PopStyleVar();
   ImGui::PopID();
   if (kept) frame_.choices->note(id, shown());
+  if (passing && frame_.choices != nullptr) frame_.choices->note_passing(id, shown());
   right_ = right - gap;
   return changed;
 }
 
 bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
-  if (!frame_.controls) return false;
-  place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
   bool changed = false;
   if (frame_.choices != nullptr) {
     const auto wanted = frame_.choices->take(label, on ? "on" : "off");
@@ -111,6 +111,8 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
       changed = true;
     }
   }
+  if (!frame_.controls) return changed;
+  place(ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + text_width(label));
   changed = checkbox(frame_, label, on) || changed;
   if (frame_.choices != nullptr) frame_.choices->note(label, on ? "on" : "off");
   tooltip_of_last(tooltip);
@@ -118,10 +120,6 @@ bool Controls::toggle(const char* label, bool& on, const char* tooltip) {
 }
 
 bool Controls::slider(const char* label, float& value, float low, float high, const char* format) {
-  if (!frame_.controls) return false;
-  const float name = text_width(label);
-  place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
-  ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
   bool changed = false;
   const auto words = [&] { return fmt::format("{:.4g}", value); };
   if (frame_.choices != nullptr) {
@@ -135,6 +133,10 @@ bool Controls::slider(const char* label, float& value, float low, float high, co
         frame_.choices->refuse(label, *wanted);
     }
   }
+  if (!frame_.controls) return changed;
+  const float name = text_width(label);
+  place(kSliderWidth * frame_.scale + (name > 0.0F ? ImGui::GetStyle().ItemInnerSpacing.x + name : 0.0F));
+  ImGui::SetNextItemWidth(kSliderWidth * frame_.scale);
   changed = ImGui::SliderFloat(label, &value, low, high, format) || changed;
   if (frame_.choices != nullptr) frame_.choices->note(label, words());
   return changed;

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "ui/plot/plot_axis.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -17,29 +17,6 @@ constexpr float kBarWidth = 12.0F;  // design px
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
   const ImFont* font = frame.fonts.small;
   return font->CalcTextSizeA(font->FontSize, 1e6F, wrap, text.c_str());
-}
-
-float width_of(const ImFont& font, const std::string& text) {
-  return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
-}
-
-/// Ends lines at spaces alone: ImGui would part 0.81 at its point. A figure keeps its unit.
-std::string wrapped(const ImFont& font, const std::string& text, float width) {
-  constexpr std::size_t kLongestUnit = 4;  // bytes, "°)."
-  std::string lines, line;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::size_t next = std::min(text.find(' ', end + 1), text.size());
-    const bool figure = end > at && std::isdigit(static_cast<unsigned char>(text[end - 1])) != 0;
-    if (end < text.size() && figure && next - end - 1 <= kLongestUnit) end = next;
-    const std::string word = text.substr(at, end - at);
-    if (at > 0 && width_of(font, line + ' ' + word) > width)
-      lines += std::exchange(line, word) + '\n';
-    else
-      line += (at > 0 ? " " : "") + word;
-    at = end + 1;
-  }
-  return lines + line;
 }
 
 void small_text(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour, float wrap = 0.0F) {
@@ -127,7 +104,7 @@ float Footer::lay_out(const UiFrame& frame, bool draw) const {
   }
   if (!legend.empty() && has_legend_) y += line;
   if (!caption.empty() && has_caption_) {
-    const std::string lines = wrapped(*frame.fonts.small, caption, width);
+    const std::string lines = in_lines(*frame.fonts.small, caption, width);
     if (draw) small_text(frame, {corner.x, corner.y + y}, lines, frame.theme.text_dim, width);
     y += small_extent(frame, lines, width).y;
   }
@@ -179,18 +156,6 @@ Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& pictur
   return best;
 }
 
-std::string cut_to(const ImFont& font, const std::string& text, float width) {
-  if (width_of(font, text) <= width) return text;
-  const std::string ellipsis = "…";
-  std::string cut = text;
-  do {
-    // Never in the middle of a UTF-8 letter.
-    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U) cut.pop_back();
-    if (!cut.empty()) cut.pop_back();
-  } while (!cut.empty() && width_of(font, cut + ellipsis) > width);
-  return cut.empty() ? cut : cut + ellipsis;
-}
-
 void text_in_room(const std::string& text, Rgb colour) {
   const std::string shown = cut_to(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x);
   ImGui::TextColored(to_vec4(colour), "%s", shown.c_str());
@@ -198,10 +163,14 @@ void text_in_room(const std::string& text, Rgb colour) {
 }
 
 void text_in_lines(const std::string& text) {
-  ImGui::TextWrapped("%s", wrapped(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
+  ImGui::TextWrapped("%s", in_lines(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x).c_str());
 }
 
 void draw_absent(const UiFrame& frame, const std::string& sentence) {
+  if (frame.strips != nullptr) {
+    frame.strips->say_absent(sentence);
+    return;
+  }
   const ImVec2 corner = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
   const float wrap = std::max(0.8F * room.x, 60.0F);
   const ImVec2 extent = ImGui::CalcTextSize(sentence.c_str(), nullptr, false, wrap);
@@ -284,17 +253,16 @@ ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb 
   return size;
 }
 
-void draw_preview_badge(const UiFrame& frame, ImVec2 corner) {
-  const std::string text = "Preview";
+float draw_badge(const UiFrame& frame, ImVec2 corner, const std::string& text, Rgb ground) {
   const ImVec2 extent = small_extent(frame, text);
   const float pad = 5.0F * frame.scale;
   const ImVec2 high{std::round(corner.x), std::round(corner.y + extent.y + pad)};
   const ImVec2 low{high.x - extent.x - 2.0F * pad, high.y - extent.y - pad};
-  // Dark ink on the warning's colour reads in either theme.
-  const Rgb ground = role_colour(Role::kWarning, frame.theme.name);
+  // Colours are light in the dark theme, and dark in the light one.
   const Rgb ink = frame.theme.name == ThemeName::kDark ? okabe_ito::kBlack : Rgb{0xFF, 0xFF, 0xFF};
   ImGui::GetWindowDrawList()->AddRectFilled(low, high, to_u32(ground), 3.0F * frame.scale);
   small_text(frame, {low.x + pad, low.y + 0.5F * pad}, text, ink);
+  return high.x - low.x;
 }
 
 }  // namespace stillpoint

@@ -12,6 +12,7 @@
 #include "ui/panels/panel.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
+#include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {
@@ -44,6 +45,7 @@ class FramePanel : public NamedPanel {
  public:
   using NamedPanel::NamedPanel;
   [[nodiscard]] bool previews() const override { return true; }
+  [[nodiscard]] bool shows_a_run() const override { return true; }
 };
 
 /// Controls side by side, on as many lines as they need.
@@ -103,6 +105,8 @@ class Footer {
   /// px, at the current content region's width. In a low panel the caption goes first, then the legend: the
   /// picture matters more.
   [[nodiscard]] float height(const UiFrame& frame) const;
+  /// Whether there was room for the legend; known once the height is.
+  [[nodiscard]] bool has_room_for_legend() const { return has_legend_; }
   /// Draws it at ImGui's cursor.
   void draw(const UiFrame& frame) const;
 
@@ -125,9 +129,6 @@ struct Tiling {
   [[nodiscard]] ImVec2 corner(ImVec2 start, int index) const;
 };
 [[nodiscard]] Tiling tile(const UiFrame& frame, ImVec2 room, int count, const cv::Size& picture);
-
-/// A text as it fits into `width` px: whole, or cut and ended by an ellipsis. "" where not even that fits.
-[[nodiscard]] std::string cut_to(const ImFont& font, const std::string& text, float width);
 
 /// One line in the current font as far as there is room for it; the mouse over it shows it whole.
 void text_in_room(const std::string& text, Rgb colour);
@@ -164,7 +165,8 @@ void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float hei
 /// Text on a ground of its own that reads on any picture, its upper left corner at `at`. @returns its size.
 ImVec2 draw_label(const UiFrame& frame, ImVec2 at, const std::string& text, Rgb colour);
 
-/// "Preview", beside what is not what the run made. @param corner its upper right corner
-void draw_preview_badge(const UiFrame& frame, ImVec2 corner);
+/// A word on a coloured ground: "Preview", beside what is not what the run made. @param corner its upper
+/// right corner. @returns its width, px
+float draw_badge(const UiFrame& frame, ImVec2 corner, const std::string& text, Rgb ground);
 
 }  // namespace stillpoint

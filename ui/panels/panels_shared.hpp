@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <list>
 #include <memory>
 #include <optional>
 
@@ -30,14 +31,18 @@ struct PanelsShared {
   std::optional<ImageCursor> cursor;        ///< the same, where it was
   std::optional<FeatureSelection> feature;  ///< the feature chosen
   std::optional<Stage> stage;               ///< the stage chosen: its place
+  std::optional<Stage> stage_of_strips;     ///< the one that the first of several runs shows: its place
 
   /// The geometry of the pair shown, worked out once a frame.
   const PairGeometry& geometry(const SessionView& session);
 
  private:
-  std::shared_ptr<const PairGeometry> geometry_;
-  std::weak_ptr<const FrameView> geometry_of_;
-  std::weak_ptr<const RunView> geometry_run_;
+  struct KeptGeometry {
+    std::shared_ptr<const PairGeometry> geometry;
+    std::weak_ptr<const FrameView> current;
+    std::weak_ptr<const RunView> run;
+  };
+  std::list<KeptGeometry> geometries_;  // the newest first
 };
 
 }  // namespace stillpoint

@@ -121,7 +121,7 @@ class PosePanel final : public NamedPanel {
       add(session.baseline->name, *baseline_, role_colour(Role::kBaseline, theme), SeriesStyle::kDashed,
           1.6F);
     for (std::size_t i = 0; i < ghosts_.size(); ++i) {
-      const RunLook look = ghost_look(i, theme);
+      const RunLook look = ghost_look(session.debug.ghosts, i, theme);
       add(shortened(session.debug.ghosts[i].name, 24), ghosts_[i], look.colour, look.line, 2.0F);
     }
     add(session.run->name, run_, role_colour(Role::kEstimate, theme), SeriesStyle::kLine, 2.0F);

@@ -1,5 +1,7 @@
 #include "ui/panels/run_difference.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/geometry/se3.hpp"
@@ -31,6 +33,15 @@ FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const 
     add(infos[i].title, shown_value(infos[i], a[i]), shown_value(infos[i], b[i]));
   }
   return difference;
+}
+
+std::string pose_text(const FrameDifference& difference, const std::string& ghost, bool outside) {
+  if (outside)
+    return fmt::format("{}'s poses are of a world of its own: errors and the trajectory compare them.",
+                       ghost);
+  if (difference.translation_m == 0.0 && difference.rotation_deg == 0.0) return "Both poses are the same.";
+  return fmt::format("Poses differ by {:.2f} mm and {:.3f} °.", 1000.0 * difference.translation_m,
+                     difference.rotation_deg);
 }
 
 std::optional<double> MaskOverlap::iou() const {

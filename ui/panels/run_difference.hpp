@@ -28,6 +28,11 @@ struct FrameDifference {
 [[nodiscard]] FrameDifference difference_of(const MeasuredFrames& run, std::size_t row,
                                             const MeasuredFrames& ghost, std::size_t ghost_row);
 
+/// How far apart both poses are, in a sentence.
+/// @param outside the ghost is another program's: its world is another, and no pose of it is told from here
+[[nodiscard]] std::string pose_text(const FrameDifference& difference, const std::string& ghost,
+                                    bool outside);
+
 /// How two masks of one size share the image. A mask that is empty removes nothing.
 struct MaskOverlap {
   int both = 0, only_run = 0, only_ghost = 0;  ///< px

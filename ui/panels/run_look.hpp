@@ -14,8 +14,10 @@ struct RunLook {
   double dash = 0.0;  ///< of its path in the trajectory view, as a share of the path's extent; 0 = unbroken
 };
 
-/// Of the ghost with this index, the same in every panel.
-[[nodiscard]] RunLook ghost_look(std::size_t index, ThemeName theme);
+/// The look with this number, of those that ghosts have.
+[[nodiscard]] RunLook ghost_look(std::size_t number, ThemeName theme);
+/// Of one of a session's ghosts, the same in every panel, whichever others are there.
+[[nodiscard]] RunLook ghost_look(const std::vector<GhostView>& ghosts, std::size_t index, ThemeName theme);
 
 /// A run's name where there is little room, cut with an ellipsis.
 [[nodiscard]] std::string shortened(const std::string& name, std::size_t most = 30);

@@ -84,12 +84,16 @@ void add_ghosts(const SessionView& session, const Pose& world_from_estimate, Ses
     const Pose world =
         ghost.outside ? world_of_outside(session, *ghost.run, world_from_estimate) : world_from_estimate;
     add_run(session, *ghost.run, world,
-            {.name = "ghost: " + shortened(ghost.name), .width_px = 2.2F, .pickable = true}, scene);
+            {.name = "ghost: " + shortened(ghost.name),
+             .width_px = 2.2F,
+             .pickable = true,
+             .named_elsewhere = true},
+            scene);
     ScenePath& path = scene.data.paths.back();
     SceneData alone;
     alone.paths.push_back(path);
     const SceneBounds box = bounds(alone);
-    path.dash_m = ghost_look(i, ThemeName::kDark).dash * (box.high - box.low).norm();
+    path.dash_m = ghost_look(session.debug.ghosts, i, ThemeName::kDark).dash * (box.high - box.low).norm();
     scene.ghost_paths.push_back(scene.data.paths.size() - 1);
   }
 }

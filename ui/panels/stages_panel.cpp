@@ -15,6 +15,7 @@
 #include "ui/plot/right_click.hpp"
 #include "ui/shell/input.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -55,6 +56,10 @@ class StagesPanel final : public FramePanel {
 
   [[nodiscard]] PanelSize least() const override { return {420.0F, 280.0F}; }
 
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<StagesPanel>(shared_);
+  }
+
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     actions.compare_frames = true;
     list(session);
@@ -65,7 +70,13 @@ class StagesPanel final : public FramePanel {
                              : fmt::format("Frame {} has not been processed yet.", view.index));
       return;
     }
+    if (frame.strips != nullptr && frame.strips->pictures_alone()) {
+      draw_pictures_alone(frame, {session, actions});
+      return;
+    }
     const std::size_t current = current_index();
+    shared_->stage_of_strips = stages_[current];
+    shared_->stage_of_strips->sides.clear();
     draw_controls(frame, session, actions, current);
     const bool wide = ImGui::GetContentRegionAvail().x > kListFrom * frame.scale;
     if (wide) {
@@ -74,13 +85,35 @@ class StagesPanel final : public FramePanel {
       ImGui::EndChild();
       ImGui::SameLine();
     }
-    ImGui::BeginChild("stage", {0, 0}, false,
-                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    // No window of its own: pictures of other runs are laid over these.
+    ImGui::BeginGroup();
     draw_stage(frame, {session, actions}, stages_[current_index()], !wide);
-    ImGui::EndChild();
+    ImGui::EndGroup();
   }
 
  private:
+  /// Of another run, in the places of the first one's pictures.
+  void draw_pictures_alone(const UiFrame& frame, const FramePlace& place) {
+    Controls(frame).choice("against", {kAgainst.begin(), kAgainst.end()}, against_);
+    if (!shared_->stage_of_strips) return;
+    const Stage& wanted = *shared_->stage_of_strips;
+    alone_ = find_stage(stages_, wanted);
+    const Stage& stage = stages_[*alone_];
+    if (!wanted.same_place(stage)) {
+      draw_absent(
+          frame, fmt::format("Method {} has no stage \"{}\".", place.session.config.run.method, wanted.name));
+      return;
+    }
+    if (stage.sides.size() > 1) {
+      std::vector<std::string> names;
+      for (const StageSide& side : stage.sides) names.push_back(side.name);
+      Controls(frame).choice("direction", names, direction_);
+    }
+    prepare(place.session, stage);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    draw_pictures(frame, place, {room.x, room.y - ImGui::GetStyle().ItemSpacing.y});
+  }
+
   void list(const SessionView& session) {
     const bool same = !listed_.owner_before(session.current) && !session.current.owner_before(listed_);
     if (same && !stages_.empty()) return;
@@ -90,6 +123,7 @@ class StagesPanel final : public FramePanel {
   }
 
   [[nodiscard]] std::size_t current_index() const {
+    if (alone_) return *alone_;
     return shared_->stage ? find_stage(stages_, *shared_->stage) : telling_stage(stages_);
   }
 
@@ -317,6 +351,7 @@ class StagesPanel final : public FramePanel {
   }
 
   std::vector<Stage> stages_;
+  std::optional<std::size_t> alone_;  // of these, the one that strips show; nothing in a panel of its own
   std::weak_ptr<const FrameView> listed_;
   int direction_ = 0, against_ = static_cast<int>(ChangeAgainst::kStageBefore);
   bool scroll_ = true;

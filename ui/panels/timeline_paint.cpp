@@ -116,8 +116,7 @@ void TimelinePaint::lane(const std::vector<int>& frames, const std::vector<doubl
 }
 
 void TimelinePaint::ghost_lane(const std::vector<int>& frames, const std::vector<double>& values,
-                               double highest, std::size_t ghost, float top, float bottom) const {
-  const RunLook look = ghost_look(ghost, frame_.theme.name);
+                               double highest, const RunLook& look, float top, float bottom) const {
   const float thick = 2.0F * frame_.scale;
   int last = -2;
   float last_y = 0.0F;

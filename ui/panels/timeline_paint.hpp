@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_look.hpp"
 #include "ui/panels/timeline_model.hpp"
 
 namespace stillpoint {
@@ -38,7 +39,7 @@ class TimelinePaint {
             float top, float bottom) const;
   /// A ghost's figure over the run's: its greatest values, joined and broken as its look is.
   void ghost_lane(const std::vector<int>& frames, const std::vector<double>& values, double highest,
-                  std::size_t ghost, float top, float bottom) const;
+                  const RunLook& look, float top, float bottom) const;
   void ring(int frame, double value, double highest, Rgb colour, float top, float bottom) const;
   void upright(double frame, Rgb colour, float alpha, float thickness, float top, float bottom) const;
   /// The range selected, over all rows.

@@ -9,6 +9,7 @@
 #include "core/inspect/run_view.hpp"
 #include "core/run/worst_frames.hpp"
 #include "ui/panels/all_panels.hpp"
+#include "ui/panels/row_window.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/panels/timeline_rows.hpp"
@@ -22,34 +23,9 @@ namespace {
 constexpr double kWheelFactor = 1.2;
 constexpr double kLeastFrames = 4.0;       // in sight when zoomed in furthest
 constexpr float kRoomForControls = 95.0F;  // design px, height of the panel
-constexpr float kBar = 7.0F;               // design px, of the bar that scrolls rows
 constexpr float kLeastLane = 20.0F;        // design px
 constexpr float kGrip = 5.0F;              // design px about an end of the range
 constexpr std::size_t kWorstShown = 5;
-
-/// The rows that are seen where there is no room for all.
-struct RowWindow {
-  std::size_t first = 0, count = 0;
-  float height = 0.0F;  // px, of all rows together
-};
-
-/// @param wanted the first row to be seen; fewer than fit are never shown at the end
-template <typename HeightOf>
-RowWindow row_window(std::size_t rows, const HeightOf& height_of, float room, std::size_t wanted) {
-  RowWindow window;
-  for (std::size_t i = 0; i < rows; ++i) window.height += height_of(i);
-  if (window.height <= room) return {0, rows, window.height};
-  // From the end back as many as fit: nothing later is worth being the first.
-  std::size_t latest = rows;
-  for (float used = 0.0F; latest > 0 && used + height_of(latest - 1) <= room; --latest)
-    used += height_of(latest - 1);
-  window.first = std::min(wanted, std::min(latest, rows - std::min<std::size_t>(rows, 1)));
-  for (float used = 0.0F; window.first + window.count < rows; ++window.count) {
-    used += height_of(window.first + window.count);
-    if (used > room) break;
-  }
-  return window;
-}
 
 std::string earlier(const char* what) { return std::string(icons::kChevronLeft) + "  " + what; }
 std::string later(const char* what) { return std::string(what) + "  " + icons::kChevronRight; }
@@ -105,7 +81,7 @@ class TimelinePanel final : public NamedPanel {
           .x_label = "frame", .y_label = shown_name(info), .y_unit = std::string(shown_unit(info.unit).unit)};
       plot.series.push_back({session.run->name, frames, lane.values, lane_colour(info, frame.theme.name)});
       for (std::size_t g = 0; g < lane.ghosts.size() && g < ghosts.size(); ++g) {
-        const RunLook look = ghost_look(g, frame.theme.name);
+        const RunLook look = ghost_look(session.debug.ghosts, g, frame.theme.name);
         plot.series.push_back(
             {session.debug.ghosts[g].name, ghosts[g], lane.ghosts[g], look.colour, look.line});
       }
@@ -322,36 +298,11 @@ class TimelinePanel final : public NamedPanel {
         draw_lane(frame, session, paint, model_.lanes[i - ghosts], y, bottom, actions);
       y = bottom + gap;
     }
-    if (window.count < all) draw_scrollbar(frame, window, all, {high.x - kBar * frame.scale, rows_top}, high);
+    if (window.count < all) first_row_ = draw_row_bar(frame, window, all, {high.x, rows_top}, high.y);
     if (const auto span = drag_.active() ? drag_.span(session.frame_count) : session.debug.span)
       paint.span(*span, low.y, ruler_bottom, y);
     if (hovered_) paint.upright(*hovered_, frame.theme.text_dim, 0.7F, 1.0F, low.y, y);
     paint.upright(session.current->index, role_colour(Role::kCursor, frame.theme.name), 1.0F, 1.5F, low.y, y);
-  }
-
-  /// The rows seen of those that have no room together, as a bar that can be dragged.
-  void draw_scrollbar(const UiFrame& frame, const RowWindow& window, std::size_t all, ImVec2 low,
-                      ImVec2 high) {
-    const float whole = std::max(high.y - low.y, 1.0F), count = static_cast<float>(all);
-    ImGui::SetCursorScreenPos(low);
-    ImGui::InvisibleButton("more rows", {high.x - low.x, whole});
-    const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
-    if (active) {
-      const float at =
-          (ImGui::GetIO().MousePos.y - low.y) / whole * count - 0.5F * static_cast<float>(window.count);
-      first_row_ =
-          static_cast<std::size_t>(std::clamp(at + 0.5F, 0.0F, count - static_cast<float>(window.count)));
-    }
-    if (hovered)
-      ImGui::SetTooltip("%d of %d rows; drag, or Shift and the wheel, for the others",
-                        static_cast<int>(window.count), static_cast<int>(all));
-    const float top = low.y + whole * static_cast<float>(window.first) / count,
-                bottom = top + whole * static_cast<float>(window.count) / count;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float inset = 2.0F * frame.scale;
-    list.AddRectFilled({low.x + inset, low.y}, {high.x, high.y}, to_u32(frame.theme.raised), inset);
-    list.AddRectFilled({low.x + inset, top}, {high.x, bottom},
-                       to_u32(hovered || active ? frame.theme.text : frame.theme.text_dim), inset);
   }
 
   void draw_lane(const UiFrame& frame, const SessionView& session, const TimelinePaint& paint,
@@ -383,7 +334,8 @@ class TimelinePanel final : public NamedPanel {
                  frame.theme.text_dim);
     paint.lane(model_.frames, lane.values, lane.highest, colour, top, bottom);
     for (std::size_t g = 0; g < lane.ghosts.size() && g < model_.ghost_frames.size(); ++g)
-      paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest, g, top, bottom);
+      paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest,
+                       ghost_look(session.debug.ghosts, g, frame.theme.name), top, bottom);
     if (chosen) draw_worst(frame, session, paint, lane, top, bottom);
     if (const auto here = record_of(session, session.current->index))
       paint.value(top, lane_text(lane.values[*here], info), frame.theme.text);

@@ -65,7 +65,7 @@ void TimelineRows::marks(float top, float bottom) const {
 
 void TimelineRows::ghost(std::size_t index, float top, float bottom) const {
   const GhostView& one = session_.debug.ghosts[index];
-  const RunLook look = ghost_look(index, frame_.theme.name);
+  const RunLook look = ghost_look(session_.debug.ghosts, index, frame_.theme.name);
   const auto& frames = model_.ghost_frames[index];
   paint_.ground(top, bottom, frames.empty() ? -1 : frames.back());
   paint_.name_sign(top, bottom, look.sign, look.colour);

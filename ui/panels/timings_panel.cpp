@@ -169,7 +169,7 @@ class TimingsPanel final : public NamedPanel {
           {named ? kStages[i].name : "", index_, tops_[i], colour_of(i), SeriesStyle::kBars});
     plot.series.push_back({"whole frame", index_, total_, frame.theme.text, SeriesStyle::kSteps, 1.5F});
     for (std::size_t i = 0; i < ghosts_.size(); ++i) {
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       plot.series.push_back({shortened(session.debug.ghosts[i].name, 24), ghosts_[i].index, ghosts_[i].total,
                              look.colour, look.line, 2.0F});
     }
@@ -236,7 +236,8 @@ class TimingsPanel final : public NamedPanel {
       cell(figures.median);
       cell(figures.p99);
       for (std::size_t i = 0; i < ghosts_.size(); ++i) {
-        ImGui::PushStyleColor(ImGuiCol_Text, to_vec4(ghost_look(i, frame.theme.name).colour));
+        ImGui::PushStyleColor(ImGuiCol_Text,
+                              to_vec4(ghost_look(session.debug.ghosts, i, frame.theme.name).colour));
         cell(of_ghost(ghosts_[i]).mean);
         ImGui::PopStyleColor();
       }

@@ -11,6 +11,7 @@
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
+#include "ui/plot/path_plot.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/scene/scene_widget.hpp"
 
@@ -36,7 +37,14 @@ class TrajectoryPanel final : public NamedPanel {
     draw_controls(frame, session);
     Footer footer;
     footer.legend = ghost_legend(frame, session);
+    scene_.data.show_legend = has_room_for_legend(frame);
     footer.caption = alignment_text(session);
+    if (!scene_.data.show_legend) add_path_legend(frame, footer);
+    // Names that have no room below either are better over the picture than nowhere.
+    if (!scene_.data.show_legend && footer.height(frame) >= 0.0F && !footer.has_room_for_legend()) {
+      scene_.data.show_legend = true;
+      footer.legend = ghost_legend(frame, session);
+    }
     const ImVec2 room = room_above(frame, footer);
     look(room);
     const SceneView before = view_;
@@ -60,66 +68,55 @@ class TrajectoryPanel final : public NamedPanel {
     const bool same_frame =
         !view_shown_.owner_before(session.current) && !session.current.owner_before(view_shown_);
     if (same_frame && revision_ == session.revision && run_ == session.run.get() &&
-        layers_ == layers_drawn_ && ghosts == ghosts_ && theme_ == frame.theme.name)
+        baseline_ == session.baseline.get() && layers_ == layers_drawn_ && ghosts == ghosts_ &&
+        theme_ == frame.theme.name)
       return;
     ghosts_ = std::move(ghosts);
     theme_ = frame.theme.name;
     const std::uint64_t revision = scene_.data.revision + 1;
     scene_ = scene_of_session(session, layers_);
+    ghost_lines_.clear();
     for (std::size_t i = 0; i < scene_.ghost_paths.size(); ++i)
-      scene_.data.paths[scene_.ghost_paths[i]].colour = ghost_look(i, theme_).colour;
+      ghost_lines_.push_back(ghost_look(session.debug.ghosts, i, theme_).line);
+    for (std::size_t i = 0; i < scene_.ghost_paths.size(); ++i)
+      scene_.data.paths[scene_.ghost_paths[i]].colour = ghost_look(session.debug.ghosts, i, theme_).colour;
     scene_.data.revision = scene_.data.image_revision = revision;
     sight_ = sight_of(scene_.data);
     view_shown_ = session.current;
     revision_ = session.revision;
     run_ = session.run.get();
+    baseline_ = session.baseline.get();
     layers_drawn_ = layers_;
     if (scene_.data.current) follow(view_, *scene_.data.current);
   }
 
-  /// The paths as they are laid out here: seen along the axis in which they reach least, and as numbers.
+  /// The paths as they are laid out here: from the side that shows most of them, and as numbers.
   [[nodiscard]] std::vector<SaveOffer> offers(ThemeName theme) const {
-    std::vector<std::array<std::vector<double>, 3>> paths(scene_.data.paths.size());
-    std::array<std::vector<double>, 3> all;
+    std::vector<std::array<std::vector<double>, 3>> positions(scene_.data.paths.size());
+    std::vector<PlotPath> paths;
     Table table{{"path", "frame", "time (s)", "x (m)", "y (m)", "z (m)"}, {}};
-    for (std::size_t p = 0; p < paths.size(); ++p)
-      for (std::size_t i = 0; i < scene_.data.paths[p].positions.size(); ++i) {
-        const Eigen::Vector3d at = scene_.data.paths[p].positions[i].cast<double>();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          paths[p][axis].push_back(at[static_cast<Eigen::Index>(axis)]);
-          all[axis].push_back(paths[p][axis].back());
-        }
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+      const ScenePath& path = scene_.data.paths[p];
+      for (std::size_t i = 0; i < path.positions.size(); ++i) {
+        const Eigen::Vector3d at = path.positions[i].cast<double>();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          positions[p][axis].push_back(at[static_cast<Eigen::Index>(axis)]);
         const bool known = i < scene_.frames_of_path[p].size();
-        table.rows.push_back({scene_.data.paths[p].name,
-                              known ? fmt::format("{}", scene_.frames_of_path[p][i].index) : std::string(),
-                              known ? fmt::format("{}", scene_.frames_of_path[p][i].seconds) : std::string(),
-                              fmt::format("{}", at.x()), fmt::format("{}", at.y()),
-                              fmt::format("{}", at.z())});
+        table.rows.push_back(
+            {path.name, known ? fmt::format("{}", scene_.frames_of_path[p][i].index) : std::string(),
+             known ? fmt::format("{}", scene_.frames_of_path[p][i].seconds) : std::string(),
+             fmt::format("{}", at.x()), fmt::format("{}", at.y()), fmt::format("{}", at.z())});
       }
-    std::array<AxisRange, 3> extents;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      extents[axis] = range_of(all[axis], 0.05, AxisScale::kLinear);
-    std::array<std::size_t, 3> axes{0, 1, 2};
-    std::stable_sort(axes.begin(), axes.end(),
-                     [&](std::size_t a, std::size_t b) { return extents[a].span() > extents[b].span(); });
-    const std::size_t across = std::min(axes[0], axes[1]), up = std::max(axes[0], axes[1]);
-    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
-    Plot plot{.x_label = kNames[across], .x_unit = "m", .y_label = kNames[up], .y_unit = "m"};
-    plot.y_from_zero = false;
-    plot.equal_scale = true;
-    plot.x_limits = extents[across];
-    for (std::size_t p = 0; p < paths.size(); ++p) {
       const auto ghost = std::find(scene_.ghost_paths.begin(), scene_.ghost_paths.end(), p);
       const SeriesStyle style =
           ghost == scene_.ghost_paths.end()
-              ? (scene_.data.paths[p].dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
-              : ghost_look(static_cast<std::size_t>(ghost - scene_.ghost_paths.begin()), theme).line;
-      plot.series.push_back({scene_.data.paths[p].name, paths[p][across], paths[p][up],
-                             path_colour(scene_.data.paths[p], theme), style});
+              ? (path.dash_m > 0.0 ? SeriesStyle::kDashed : SeriesStyle::kLine)
+              : ghost_lines_[static_cast<std::size_t>(ghost - scene_.ghost_paths.begin())];
+      paths.push_back({path.name, &positions[p], path_colour(path, theme), style});
     }
     SaveOffer poses = offer_of("poses", std::move(table));
     poses.what = "its poses";
-    return {offer_of("trajectory", plot), std::move(poses)};
+    return {offer_of("trajectory", path_plot(paths).plot), std::move(poses)};
   }
 
   void draw_controls(const UiFrame& frame, const SessionView& session) {
@@ -147,12 +144,31 @@ class TrajectoryPanel final : public NamedPanel {
       controls.toggle("Errors", layers_.errors, "Lines from each pose to where it truly was");
   }
 
+  /// Whether the names of the paths cover no more than a corner of the picture.
+  [[nodiscard]] bool has_room_for_legend(const UiFrame& frame) const {
+    constexpr float kMostHeight = 0.5F, kBelow = 60.0F;  // of the room; design px of what stands below
+    const float line = frame.fonts.small->FontSize + 4.0F * frame.scale;
+    const auto lines = static_cast<float>(scene_legend(scene_.data, frame.theme.name).size());
+    return line * lines <= kMostHeight * (ImGui::GetContentRegionAvail().y - kBelow * frame.scale);
+  }
+
+  /// The paths' names below the picture, but for those of ghosts, which stand there anyway.
+  void add_path_legend(const UiFrame& frame, Footer& footer) const {
+    std::vector<LegendEntry> paths;
+    for (const SceneLegendEntry& entry : scene_legend(scene_.data, frame.theme.name)) {
+      if (entry.name.starts_with("ghost: ")) continue;
+      const Sign sign = entry.width_px <= 0.0F ? Sign::kCircle : entry.broken ? Sign::kDashed : Sign::kLine;
+      paths.push_back({entry.name, entry.colour, sign});
+    }
+    footer.legend.insert(footer.legend.begin(), paths.begin(), paths.end());
+  }
+
   [[nodiscard]] static std::vector<LegendEntry> ghost_legend(const UiFrame& frame,
                                                              const SessionView& session) {
     std::vector<LegendEntry> legend;
     for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
       const GhostView& ghost = session.debug.ghosts[i];
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       const std::string parts =
           ghost.diverged ? fmt::format(", parts at frame {}", *ghost.diverged) : ", same way so far";
       legend.push_back({shortened(ghost.name) + parts, look.colour, look.sign});
@@ -167,7 +183,7 @@ class TrajectoryPanel final : public NamedPanel {
     for (std::size_t i = 0; i < scene_.ghost_paths.size() && i < session.debug.ghosts.size(); ++i) {
       const GhostView& ghost = session.debug.ghosts[i];
       const std::size_t path = scene_.ghost_paths[i];
-      const RunLook look = ghost_look(i, frame.theme.name);
+      const RunLook look = ghost_look(session.debug.ghosts, i, frame.theme.name);
       const auto sign_at = [&](int wanted, float radius) {
         const auto& frames = scene_.frames_of_path[path];
         const auto found =
@@ -252,6 +268,8 @@ class TrajectoryPanel final : public NamedPanel {
   std::weak_ptr<const FrameView> view_shown_;
   std::uint64_t revision_ = 0;
   const void* run_ = nullptr;
+  const RunView* baseline_ = nullptr;
+  std::vector<SeriesStyle> ghost_lines_;                        // as plots draw them
   std::vector<std::pair<const RunView*, std::size_t>> ghosts_;  // with how many records
   ThemeName theme_ = ThemeName::kDark;
 };

@@ -41,6 +41,16 @@ std::vector<AxisTick> linear_ticks(const AxisRange& range, int most) {
     return std::floor(range.high / s + 1e-9) - std::ceil(range.low / s - 1e-9) + 1;
   };
   while (count(step) > most) step = round_step(step * 1.5);
+  // One tick alone tells no scale: a low plot of 0 to 495 has 0 and 400.
+  if (most > 1 && count(step) < 2) {
+    double finer = step;
+    for (int i = 0; i < 3 && count(finer) < 2; ++i) finer = round_step(finer / 2.6);
+    for (int times = 1; times <= 4; ++times)
+      if (const double some = count(times * finer); some >= 2 && some <= most) {
+        step = times * finer;
+        break;
+      }
+  }
   const double first = std::ceil(range.low / step - 1e-9);
   for (int i = 0; i < static_cast<int>(count(step)); ++i) {
     // Whole multiples, not sums: a sum would miss zero by rounding.

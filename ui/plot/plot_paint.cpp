@@ -6,6 +6,7 @@
 
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
+#include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {
@@ -251,19 +252,36 @@ void PlotPaint::heading(const Plot& plot, ImVec2 outer_low, ImVec2 outer_high) c
   const float label_width = text_size(label).x;
   text({outer_low.x + 2.0F, outer_low.y}, label, to_u32(frame_.theme.text_dim));
   if (!plot.legend) return;
-  float total = 0.0F;
-  const float step = (kSwatchLength + 6.0F) * frame_.scale;
-  for (const PlotSeries& series : plot.series) {
-    if (!series.name.empty()) total += step + text_size(series.name).x + 2.0F * gap;
+  struct Name {
+    const PlotSeries* series;
+    float width;  // px
+  };
+  std::vector<Name> names;
+  for (const PlotSeries& series : plot.series)
+    if (!series.name.empty()) names.push_back({&series, text_size(series.name).x});
+  const float step = (kSwatchLength + 6.0F) * frame_.scale + 2.0F * gap;
+  const float room = outer_high.x - outer_low.x - label_width - 2.0F * gap;
+  const auto needed = [&](float longest) {
+    float sum = 0.0F;
+    for (const Name& name : names) sum += step + std::min(name.width, longest);
+    return sum;
+  };
+  // Where there is no room for all, the longest names are cut; then those drawn first go, as others lie over
+  // them: what is drawn last is the run itself.
+  const float least = 2.5F * frame_.fonts.small->FontSize;
+  float longest = 1e6F;
+  if (needed(longest) > room) {
+    while (!names.empty() && needed(least) > room) names.erase(names.begin());
+    for (longest = 40.0F * least; longest > least && needed(longest) > room;) longest -= 2.0F;
   }
-  float left = std::max(outer_high.x - total, outer_low.x + label_width + 2.0F * gap);
-  for (const PlotSeries& series : plot.series) {
-    if (series.name.empty()) continue;
-    const ImVec2 extent = text_size(series.name);
-    if (left + step + extent.x > outer_high.x) return;
-    swatch({left, std::round(outer_low.y + 0.5F * extent.y)}, series);
-    text({left + step, outer_low.y}, series.name, to_u32(frame_.theme.text));
-    left += step + extent.x + 2.0F * gap;
+  float left = outer_high.x - needed(longest);
+  for (const Name& name : names) {
+    const float width = std::min(name.width, longest);
+    swatch({left, std::round(outer_low.y + 0.5F * frame_.fonts.small->FontSize)}, *name.series);
+    text({left + step - 2.0F * gap, outer_low.y},
+         name.width > width ? cut_to(*frame_.fonts.small, name.series->name, width) : name.series->name,
+         to_u32(frame_.theme.text));
+    left += step + width;
   }
 }
 

@@ -17,9 +17,10 @@ struct ScenePath {
   Role role = Role::kEstimate;
   std::vector<Eigen::Vector3f> positions{};  ///< m, world
   float width_px = 2.5F;
-  bool pickable = false;        ///< its positions answer to the mouse
-  std::optional<Rgb> colour{};  ///< instead of its role's
-  double dash_m = 0.0;          ///< length of dashes and of the gaps between; 0 = unbroken
+  bool pickable = false;         ///< its positions answer to the mouse
+  std::optional<Rgb> colour{};   ///< instead of its role's
+  double dash_m = 0.0;           ///< length of dashes and of the gaps between; 0 = unbroken
+  bool named_elsewhere = false;  ///< as below the picture
 };
 
 /// The colour a path is drawn in.
@@ -56,6 +57,7 @@ struct SceneData {
   FrustumShape frustum;
   Eigen::Vector3d up{0.0, 0.0, 1.0};  ///< unit; the grid is perpendicular to it
   double ground_m = 0.0;              ///< the grid's height along `up`
+  bool show_legend = true;  ///< over the picture; where it would cover too much of it, it stands elsewhere
   bool show_grid = true;
   bool show_axes = true;
 

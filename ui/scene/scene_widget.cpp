@@ -30,36 +30,23 @@ class Overlay {
 
   /// As many lines as there is room for. @returns its lower right corner
   ImVec2 legend(const SceneData& scene) const {
-    struct Entry {
-      std::string name;
-      Rgb colour;
-      float width_px;  ///< of its line; 0 for a dot
-      bool broken = false;
-    };
-    std::vector<Entry> entries;
-    const ThemeName theme = frame_.theme.name;
-    for (const ScenePath& path : scene.paths) {
-      if (!path.name.empty())
-        entries.push_back(
-            {path.name, path_colour(path, theme), std::max(2.0F, path.width_px), path.dash_m > 0.0});
-    }
-    const auto removed = [](const ScenePoint& point) { return point.removed; };
-    if (std::any_of(scene.points.begin(), scene.points.end(), removed)) {
-      entries.push_back({"removed points", role_colour(Role::kRemoved, theme), 0.0F});
-    }
+    std::vector<SceneLegendEntry> entries = scene_legend(scene, frame_.theme.name);
     const float font = frame_.fonts.small->FontSize, line = font + 4.0F * scale_;
     const ImVec2 corner{low_.x + 8.0F * scale_, low_.y + 8.0F * scale_};
     const float room = std::max(high_.y - corner.y - 12.0F * scale_, 0.0F);
-    entries.resize(std::min(entries.size(), static_cast<std::size_t>(room / line)));
+    const auto most = static_cast<std::size_t>(room / line);
+    if (entries.size() > most)
+      std::erase_if(entries, [](const SceneLegendEntry& entry) { return entry.elsewhere; });
+    entries.resize(std::min(entries.size(), most));
     if (entries.empty()) return corner;
     float widest = 0.0F;
-    for (const Entry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
+    for (const SceneLegendEntry& entry : entries) widest = std::max(widest, extent_of(entry.name).x);
     const ImVec2 end{corner.x + widest + 46.0F * scale_,
                      corner.y + line * static_cast<float>(entries.size()) + 8.0F * scale_};
     backdrop(corner, end);
     const float left = corner.x + 8.0F * scale_;
     float top = corner.y + 5.0F * scale_;
-    for (const Entry& entry : entries) {
+    for (const SceneLegendEntry& entry : entries) {
       const float middle = std::round(top + 0.5F * font);
       const ImU32 colour = to_u32(entry.colour);
       if (entry.width_px > 0.0F && entry.broken)
@@ -254,7 +241,7 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
 
   const Overlay overlay(frame, low, high);
   list.PushClipRect(low, high, true);
-  const ImVec2 legend = overlay.legend(scene);
+  const ImVec2 legend = scene.show_legend ? overlay.legend(scene) : low;
   if (!scene.errors.empty()) overlay.error_scale(scene.error_scale_m);
   overlay.scale_bar(2.0 * view.distance * std::tan(0.5 * view.fov_y) / response.viewport.height, legend);
   overlay.axes(view, !scene.errors.empty());
@@ -265,6 +252,18 @@ SceneResponse SceneWidget::draw(const UiFrame& frame, const char* id, const Scen
   }
   list.PopClipRect();
   return response;
+}
+
+std::vector<SceneLegendEntry> scene_legend(const SceneData& scene, ThemeName theme) {
+  std::vector<SceneLegendEntry> entries;
+  for (const ScenePath& path : scene.paths)
+    if (!path.name.empty())
+      entries.push_back({path.name, path_colour(path, theme), std::max(2.0F, path.width_px),
+                         path.dash_m > 0.0, path.named_elsewhere});
+  const auto removed = [](const ScenePoint& point) { return point.removed; };
+  if (std::any_of(scene.points.begin(), scene.points.end(), removed))
+    entries.push_back({"removed points", role_colour(Role::kRemoved, theme), 0.0F});
+  return entries;
 }
 
 double scale_bar_length(double metres_per_pixel, double longest_px) {

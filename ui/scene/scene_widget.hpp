@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ui/scene/scene_view.hpp"
 #include "ui/theme/palette.hpp"
@@ -34,6 +35,16 @@ struct SceneResponse {
     return {panel_min.x + static_cast<float>(pixel.x()), panel_min.y + static_cast<float>(pixel.y())};
   }
 };
+
+/// What tells one kind of thing in a scene from another.
+struct SceneLegendEntry {
+  std::string name;
+  Rgb colour;
+  float width_px = 0.0F;  ///< of its line; 0 for a dot
+  bool broken = false;
+  bool elsewhere = false;  ///< the first to go where there is no room for all
+};
+[[nodiscard]] std::vector<SceneLegendEntry> scene_legend(const SceneData& scene, ThemeName theme);
 
 /// The trajectory view as a widget: left drag orbits, right or middle drag (or Shift and left) pans, the
 /// wheel zooms about the cursor, double click fits everything. With legend, error scale, scale bar and the

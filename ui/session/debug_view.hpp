@@ -29,9 +29,10 @@ struct GhostView {
   bool busy = false;                   ///< still processing
   std::shared_ptr<const RunView> run;  ///< never null
   std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null while not processed
-  std::optional<int> diverged;  ///< first frame whose record, or of another program's run whose motion,
-                                ///< differs from the session's own run
-  bool outside = false;         ///< another program's, in a world of its own
+  std::optional<int> diverged;        ///< first frame whose record, or of another program's run whose motion,
+                                      ///< differs from the session's own run
+  bool outside = false;               ///< another program's, in a world of its own
+  std::optional<std::size_t> look{};  ///< which of the looks of ghosts it has; nothing: that of its place
 };
 
 /// A ghost that begins at a frame the session's run has not come to yet.

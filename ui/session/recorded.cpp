@@ -30,7 +30,7 @@ void Session::open_beside() {
     Ghost ghost{.name = run_name(*recorded),
                 .run = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, recorded))};
     compare(ghost);
-    ghosts_.push_back(std::move(ghost));
+    add(std::move(ghost));
   }
 }
 

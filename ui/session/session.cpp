@@ -164,7 +164,8 @@ DebugView Session::debug_view() {
                             .run = ghost.run_view,
                             .current = ghost.current,
                             .diverged = ghost.diverged,
-                            .outside = !ghost.run->track().outside().empty()});
+                            .outside = !ghost.run->track().outside().empty(),
+                            .look = ghost.look});
   return debug;
 }
 

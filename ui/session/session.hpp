@@ -93,6 +93,7 @@ class Session {
     std::string name;
     std::unique_ptr<ShownRun> run;
     std::shared_ptr<const RunView> run_view{};   // as published last
+    std::size_t look = 0;                        // keeps its colour when others go
     std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
     std::optional<int> diverged{};
     int compared = 0;  // frames
@@ -158,6 +159,7 @@ class Session {
   void preview_step();
   void advance(Ghost& ghost);
   void compare(Ghost& ghost);
+  void add(Ghost ghost);
   void begin_waiting_ghosts();
   void open_beside();
   void update_breakpoints();

@@ -200,7 +200,7 @@ void Session::carry_out(const request::AddGhost& wanted) {
                                                 run_->track().branch(from, wanted.config, run_->reader()))};
   compare(ghost);
   if (current_->index < ghost.run->track().processed()) ghost.current = current_;
-  ghosts_.push_back(std::move(ghost));
+  add(std::move(ghost));
 }
 
 void Session::carry_out(const request::RemoveGhost& wanted) {

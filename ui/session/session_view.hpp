@@ -21,6 +21,7 @@ struct SessionView {
   std::string title;  ///< the sequence's name
   Camera camera;
   Config config;
+  bool own_run = true;                       ///< false where another run stands in its place (as_run())
   int frame_count = 0;                       ///< of the sequence
   int processed = 0;                         ///< frames with a record
   bool playing = false, busy = false;        ///< playing; the worker has something to do

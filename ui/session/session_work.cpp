@@ -104,6 +104,15 @@ void Session::advance(Ghost& ghost) {
   if (index == current_->index) ghost.current = ghost.run->frame_view(index);
 }
 
+void Session::add(Ghost ghost) {
+  // The first look that no other ghost has.
+  const auto taken = [&](std::size_t look) {
+    return std::any_of(ghosts_.begin(), ghosts_.end(), [&](const Ghost& one) { return one.look == look; });
+  };
+  while (taken(ghost.look)) ++ghost.look;
+  ghosts_.push_back(std::move(ghost));
+}
+
 void Session::compare(Ghost& ghost) {
   const auto &own = run_->track().records(), &other = ghost.run->track().records();
   const bool outside = !ghost.run->track().outside().empty() || !run_->track().outside().empty();

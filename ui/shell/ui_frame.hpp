@@ -15,7 +15,9 @@ namespace stillpoint {
 class EventLog;
 class Gl;
 class PanelChoices;
+class PictureStrips;
 struct Fonts;
+struct RunsShown;
 struct Theme;
 struct UiPace;
 
@@ -47,6 +49,8 @@ struct UiFrame {
   const UiPace* pace = nullptr;               ///< how fast the interface is; null where nobody measures
   const EventLog* log = nullptr;              ///< what was said; null where nothing is
   PanelChoices* choices = nullptr;            ///< of the panel being drawn; null where none are kept
+  RunsShown* runs = nullptr;                  ///< which runs pictures show; null: the session's own
+  PictureStrips* strips = nullptr;            ///< while pictures of several runs are drawn; null mostly
   std::optional<FileOffer>* offer = nullptr;  ///< where what is to be saved is put; null where nothing can be
   bool busy = false;                          ///< work goes on beside the interface: its pace counts
   Look wanted_look{};                         ///< from the next frame on

@@ -9,6 +9,7 @@
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
 #include "ui/theme/theme.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -105,10 +106,10 @@ void draw_numbers(const UiFrame& frame, const ImageResponse& response, const cv:
 }
 
 void draw_absent(const UiFrame& frame, const ImageResponse& response, const std::string& text) {
-  const float wrap = 0.8F * (response.panel_max.x - response.panel_min.x);
+  const ImVec2 low = response.clip_min, high = response.clip_max;
+  const float wrap = std::max(0.8F * (high.x - low.x), 1.0F);
   const ImVec2 extent = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
-  const ImVec2 corner{0.5F * (response.panel_min.x + response.panel_max.x - extent.x),
-                      0.5F * (response.panel_min.y + response.panel_max.y - extent.y)};
+  const ImVec2 corner{0.5F * (low.x + high.x - extent.x), 0.5F * (low.y + high.y - extent.y)};
   ImGui::GetWindowDrawList()->AddText(frame.fonts.text, frame.fonts.text->FontSize, corner,
                                       to_u32(frame.theme.text_dim), text.c_str(), nullptr, wrap);
 }
@@ -194,35 +195,99 @@ ImVec2 ImageResponse::keypoint_to_screen(const cv::Point2f& keypoint) const {
   return to_screen({static_cast<double>(keypoint.x) + 0.5, static_cast<double>(keypoint.y) + 0.5});
 }
 
+namespace {
+
+/// The part of the display that a picture is seen in.
+void set_seen(PictureStrips::Place& place, const ImageResponse& response, const Eigen::Vector2d& image_size) {
+  const ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  place.from = std::clamp(low.x, place.low.x, place.high.x);
+  place.to = std::clamp(high.x, place.low.x, place.high.x);
+  place.top = std::clamp(low.y, place.low.y, place.high.y);
+  place.bottom = std::clamp(high.y, place.low.y, place.high.y);
+}
+
+/// The button under a picture, and what the mouse does to it. @returns its place among the strips, if any
+PictureStrips::Place* take_place(const UiFrame& frame, const char* id, const ImageContent& content,
+                                 ImageView& view, const Eigen::Vector2d& image_size,
+                                 ImageResponse& response) {
+  const ImVec2 low = response.panel_min, high = response.panel_max;
+  const Eigen::Vector2d panel_size = to_vector(high) - to_vector(low);
+  PictureStrips* strips = frame.strips;
+  // A pass that draws pictures alone has nothing else that can be clicked, and is clipped for it.
+  if (strips != nullptr) ImGui::PushClipRect(low, high, !strips->pictures_alone());
+  ImGui::InvisibleButton(id, {high.x - low.x, high.y - low.y},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  if (strips != nullptr) ImGui::PopClipRect();
+  response.hovered = ImGui::IsItemHovered();
+  const bool present = content.texture != nullptr && !content.texture->empty();
+  PictureStrips::Place* place = strips == nullptr ? nullptr : &strips->add(id, low, high);
+  bool is_dividers = false;
+  if (place != nullptr) {
+    response.map = ImageMap(view, image_size, panel_size);
+    set_seen(*place, response, image_size);
+    place->hovered = response.hovered;
+    is_dividers = strips->drag(frame, *place);
+  }
+  if (present && !is_dividers) handle_mouse(view, content.drawn_on, image_size, panel_size, low, response);
+  response.map = ImageMap(view, image_size, panel_size);
+  if (place != nullptr) {
+    set_seen(*place, response, image_size);
+    place->clicked = response.clicked, place->right_clicked = response.right_clicked;
+  }
+  return place;
+}
+
+/// What of a picture with strips is the strip's at hand.
+void confine_to_strip(PictureStrips& strips, PictureStrips::Place& place, ImageResponse& response) {
+  const auto [from, to] = strips.edges(place);
+  const float mouse = ImGui::GetIO().MousePos.x;
+  const bool here = mouse >= from && mouse < to;
+  response.clip_min.x = std::max(response.clip_min.x, from);
+  response.clip_max.x = std::max(std::min(response.clip_max.x, to), response.clip_min.x);
+  response.clips_anew = strips.pictures_alone();
+  response.hovered = place.hovered && here;
+  response.clicked = place.clicked && here && strips.takes_clicks();
+  response.right_clicked = place.right_clicked && here;
+}
+
+}  // namespace
+
 ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageContent& content, ImageView& view,
                          ImVec2 size) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   if (size.x <= 0.0F) size.x = available.x;
   if (size.y <= 0.0F) size.y = available.y;
   size = {std::max(size.x, 16.0F), std::max(size.y, 16.0F)};
-  const ImVec2 low = ImGui::GetCursorScreenPos();
-  const ImVec2 high{low.x + size.x, low.y + size.y};
   const bool present = content.texture != nullptr && !content.texture->empty();
   const Eigen::Vector2d image_size =
       present ? Eigen::Vector2d(content.texture->width(), content.texture->height())
               : Eigen::Vector2d(4.0, 3.0);
-  const Eigen::Vector2d panel_size = to_vector(size);
-
-  ImGui::InvisibleButton(id, size,
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
   ImageResponse response;
-  if (present) handle_mouse(view, content.drawn_on, image_size, panel_size, low, response);
-  response.map = ImageMap(view, image_size, panel_size);
-  response.panel_min = low;
-  response.panel_max = high;
-  response.hovered = ImGui::IsItemHovered();
+  response.panel_min = ImGui::GetCursorScreenPos();
+  response.panel_max = {response.panel_min.x + size.x, response.panel_min.y + size.y};
+  PictureStrips::Place* place = frame.strips == nullptr ? nullptr : frame.strips->find(id);
+  if (place != nullptr) {
+    response.panel_min = place->low, response.panel_max = place->high;
+    response.map = ImageMap(view, image_size, to_vector(response.panel_max) - to_vector(response.panel_min));
+    ImGui::Dummy(size);
+  } else if (frame.strips != nullptr && !frame.strips->makes_places()) {
+    // A picture that the first strip has no like of is shown nowhere.
+    response.panel_max = response.clip_min = response.clip_max = response.panel_min;
+    ImGui::Dummy(size);
+    return response;
+  } else {
+    place = take_place(frame, id, content, view, image_size, response);
+  }
+  response.clip_min = response.panel_min, response.clip_max = response.panel_max;
+  if (place != nullptr) confine_to_strip(*frame.strips, *place, response);
+  if (place != nullptr && present) frame.strips->note_drawn(*place);
 
   push_clip(response);
   if (present && is_opaque(content.texture->imgui_id()))
     draw_ground_beside(frame, response, image_size);
   else
-    draw_ground(frame, low, high);
+    draw_ground(frame, response.panel_min, response.panel_max);
   if (present) {
     draw_pictures(content, response, image_size);
     if (content.values != nullptr && !content.values->empty() &&
@@ -234,7 +299,7 @@ ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageConten
   }
   pop_clip();
   if (present && response.hovered) {
-    const Eigen::Vector2d cursor = to_vector(ImGui::GetIO().MousePos) - to_vector(low);
+    const Eigen::Vector2d cursor = to_vector(ImGui::GetIO().MousePos) - to_vector(response.panel_min);
     response.pixel = response.map.pixel_at(cursor);
     if (response.pixel) response.image_point = response.map.to_image(cursor);
   }
@@ -242,7 +307,14 @@ ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageConten
 }
 
 void push_clip(const ImageResponse& response) {
-  ImGui::GetWindowDrawList()->PushClipRect(response.panel_min, response.panel_max, true);
+  // A strip is cut from the window anew: passes that draw pictures alone are clipped everywhere else.
+  const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  const ImVec2 from{std::max(response.clip_min.x, low.x), std::max(response.clip_min.y, low.y)};
+  const ImVec2 to{std::min(response.clip_max.x, low.x + size.x),
+                  std::min(response.clip_max.y, low.y + size.y)};
+  ImGui::GetWindowDrawList()->PushClipRect(response.clips_anew ? from : response.clip_min,
+                                           response.clips_anew ? to : response.clip_max,
+                                           !response.clips_anew);
 }
 
 void pop_clip() { ImGui::GetWindowDrawList()->PopClipRect(); }

@@ -41,6 +41,9 @@ struct ImageResponse {
   std::optional<Eigen::Vector2i> pixel;        ///< under the mouse
   bool clicked = false;                        ///< left, pressed and released in place
   bool right_clicked = false;                  ///< the same of the right button
+  ImVec2 clip_min,
+      clip_max;             ///< px, of the display: what is seen of the panel, a strip where there are strips
+  bool clips_anew = false;  ///< … which lies in what is clipped otherwise
 
   /// Image coordinates to the display's.
   [[nodiscard]] ImVec2 to_screen(const Eigen::Vector2d& image) const;
@@ -49,7 +52,8 @@ struct ImageResponse {
 };
 
 /// Draws an image into the given size (0 takes what is left) at ImGui's cursor; wheel zooms about the cursor,
-/// drag with any button pans, double click fits. Afterwards, draw on it between push_clip and pop_clip.
+/// drag with any button pans, double click fits. Afterwards, draw on it between push_clip and pop_clip. Where
+/// the frame has strips, it is drawn into the strip at hand.
 ImageResponse draw_image(const UiFrame& frame, const char* id, const ImageContent& content, ImageView& view,
                          ImVec2 size = {0, 0});
 

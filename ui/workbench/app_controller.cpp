@@ -260,6 +260,7 @@ void AppController::take_opened() {
     else if (opened.configured != configured_)
       session_->request_config(options_.config);
     open_ = opened.sequence;
+    workbench_.set_runs(open_.runs);
     open_.where = lasting_name(open_.where);
     open_.settings = changed_settings(options_.config);
     remember(options_.settings.recent, open_);
@@ -321,6 +322,7 @@ RecentSequence AppController::as_left() const {
   left.settings = changed_settings(options_.config);
   const auto view = session_->view();
   left.frame = view->current->index;
+  left.runs = workbench_.runs();
   left.ghosts.clear();
   for (const GhostView& ghost : view->debug.ghosts)
     if (!ghost.outside) left.ghosts.push_back({ghost.name, changed_settings(ghost.config), ghost.from});

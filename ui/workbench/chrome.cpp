@@ -231,6 +231,10 @@ void Workbench::draw_verdict() {
   } else {
     put("This frame has not been processed yet.", theme.text_dim);
   }
+  // What is read here while playing is not of every frame that went by.
+  if (pace_ && pace_->dropped > 0)
+    put(fmt::format("{} frame{} passed over unseen", pace_->dropped, pace_->dropped == 1 ? "" : "s"),
+        role_colour(Role::kWarning, theme.name));
   ImGui::PopFont();
   ImGui::SetCursorScreenPos({0.0F, low.y + height});
 }

@@ -14,9 +14,9 @@ namespace {
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
 
-constexpr std::array<const char*, 16> kFacts{
-    "frame",   "frames", "processed", "playing",   "dropped",   "status",  "title",      "method",
-    "message", "panels", "maximised", "theme",     "shortcuts", "palette", "log.errors", "choices"};
+constexpr std::array<const char*, 17> kFacts{
+    "frame",  "frames",    "processed", "playing",   "dropped", "status",     "title",   "method", "message",
+    "panels", "maximised", "theme",     "shortcuts", "palette", "log.errors", "choices", "runs"};
 
 }  // namespace
 
@@ -50,6 +50,14 @@ std::optional<std::string> Workbench::fact(const std::string& what, const Sessio
       for (const auto& [control, value] : choices.changed())
         text += fmt::format("{}{}: {}={}", text.empty() ? "" : ", ", panel, control, value);
     return text.empty() ? none : text;
+  }
+  if (what == "runs") {
+    if (session == nullptr || runs_.pictures == RunPictures::alone) return none;
+    std::string text = to_string(runs_.pictures);
+    const auto flipped = runs_.flipped(*session);
+    for (const ListedRun& run : runs_.chosen_of(*session))
+      text += fmt::format(" {}{}", run.name, flipped && flipped->name == run.name ? "*" : "");
+    return text;
   }
   if (what == "dropped") return std::to_string(pace_ ? pace_->dropped : last_dropped_);
   if (what == "log.errors") return std::to_string(log_.errors());

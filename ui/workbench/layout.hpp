@@ -20,7 +20,8 @@ struct LayoutNode {
   Division division = Division::kColumns;
   std::vector<LayoutNode> children{};
   std::map<std::string, std::string> choices{};  ///< of the panel's controls, as PanelChoices has them
-  double share = 1.0;                            ///< of the parent's extent; siblings' shares add up to 1
+  bool front = false;  ///< of panels that share a place for want of room, this is the one seen
+  double share = 1.0;  ///< of the parent's extent; siblings' shares add up to 1
 
   [[nodiscard]] bool is_panel() const { return children.empty(); }
   bool operator==(const LayoutNode&) const = default;

@@ -19,6 +19,7 @@ Json node_to_json(const LayoutNode& node) {
   json["share"] = node.share;
   if (node.is_panel()) {
     json["panel"] = node.panel;
+    if (node.front) json["front"] = true;
     for (const auto& [control, value] : node.choices) json["choices"][control] = value;
   } else {
     Json children = Json::array();
@@ -43,6 +44,8 @@ class LayoutReader {
     LayoutNode node;
     if (json.contains("panel")) {
       node.panel = read_panel(json["panel"]);
+      if (json.contains("front") && !json["front"].is_boolean()) refuse("\"front\" must be true or false");
+      node.front = json.value("front", false);
       if (json.contains("choices")) read_choices(json["choices"], node);
     } else {
       const bool columns = json.contains("columns");

@@ -29,7 +29,7 @@ void Workbench::draw_shortcuts() {
   if (!shortcuts_open_) return;
   const float scale = frame_->scale;
   ImGui::SetNextWindowFocus();
-  if (begin_overlay(*frame_, "##keys", {920.0F * scale, 640.0F * scale}, 0.08F)) {
+  if (begin_overlay(*frame_, "##keys", {920.0F * scale, 700.0F * scale}, 0.06F)) {
     ImGui::PushFont(frame_->fonts.heading);
     ImGui::TextUnformatted("Keys");
     ImGui::PopFont();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <utility>
 
 #include "core/motion/methods.hpp"
 #include "ui/panels/parameter_rows.hpp"
@@ -110,7 +111,8 @@ void Workbench::draw_palette() {
   const float scale = frame_->scale, height = 420.0F * scale;
   if (palette_.opened_now) ImGui::SetNextWindowFocus();
   if (begin_overlay(*frame_, "##palette", {620.0F * scale, height}, 0.12F)) {
-    if (palette_.opened_now) ImGui::SetKeyboardFocusHere();
+    // Enter takes the keyboard from the field; where it did nothing, typing goes on.
+    if (std::exchange(palette_.takes_keys, false) || palette_.opened_now) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0F);
     if (ImGui::InputTextWithHint("##query", "What to do, a frame's number, a method, a preset, a parameter",
                                  palette_.query, sizeof palette_.query))
@@ -147,7 +149,10 @@ void Workbench::draw_palette_list() {
   }
   if (count == 0) ImGui::TextDisabled("Nothing has such a name.");
   ImGui::EndChild();
-  if (!run) return;
+  if (!run) {
+    palette_.takes_keys = entered;
+    return;
+  }
   palette_.open = false;
   run();
 }
@@ -163,6 +168,7 @@ std::vector<PaletteRow> Workbench::palette_rows() {
     rows.push_back(std::move(row));
   }
   if (session_ == nullptr || !host_.request) return rows;
+  add_picture_rows(rows);
   add_run_rows(rows);
   add_parameter_rows(rows);
   return rows;

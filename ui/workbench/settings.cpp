@@ -29,6 +29,28 @@ std::optional<std::string> read_whole(const fs::path& path) {
   return text.str();
 }
 
+Json to_json(const RunsShown& runs) {
+  return {{"pictures", to_string(runs.pictures)},
+          {"chosen", runs.chosen},
+          {"flipped_to", runs.flipped_to},
+          {"hidden", runs.hidden},
+          {"dividers", runs.dividers}};
+}
+
+RunsShown runs_from(const Json& json) {
+  RunsShown runs{.pictures = run_pictures(json.value("pictures", "")),
+                 .chosen = json.value("chosen", std::vector<std::string>{}),
+                 .flipped_to = json.value("flipped_to", ""),
+                 .hidden = json.value("hidden", std::vector<std::string>{}),
+                 .dividers = json.value("dividers", std::vector<float>{})};
+  // Whoever wrote the file: strips go from left to right.
+  const bool in_order = std::is_sorted(runs.dividers.begin(), runs.dividers.end()) &&
+                        std::all_of(runs.dividers.begin(), runs.dividers.end(),
+                                    [](float share) { return share >= 0.0F && share <= 1.0F; });
+  if (!in_order) runs.dividers.clear();
+  return runs;
+}
+
 Settings from_json(const Json& json, const fs::path& path, const std::vector<std::string>& known) {
   Settings settings;
   settings.look.theme = parse_theme(json.value("theme", "dark"));
@@ -43,6 +65,7 @@ Settings from_json(const Json& json, const fs::path& path, const std::vector<std
                                .reading = one.value("reading", std::vector<std::string>{}),
                                .settings = one.value("settings", std::vector<std::string>{}),
                                .frame = std::max(one.value("frame", 1), 0)});
+    if (one.contains("runs")) settings.recent.back().runs = runs_from(one["runs"]);
     for (const Json& ghost : one.value("ghosts", Json::array()))
       settings.recent.back().ghosts.push_back({ghost.at("name").get<std::string>(),
                                                ghost.value("settings", std::vector<std::string>{}),
@@ -96,6 +119,7 @@ void write_settings(const fs::path& path, const Settings& settings) {
         {"where", one.where}, {"reading", one.reading}, {"settings", one.settings}, {"frame", one.frame}};
     for (const KeptGhost& ghost : one.ghosts)
       kept["ghosts"].push_back({{"name", ghost.name}, {"settings", ghost.settings}, {"from", ghost.from}});
+    if (!(one.runs == RunsShown{})) kept["runs"] = to_json(one.runs);
     json["recent"].push_back(std::move(kept));
   }
   if (settings.layout) json["layout"] = Json::parse(to_json(*settings.layout));

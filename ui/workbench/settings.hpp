@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ui/session/shown_runs.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/workbench/layout.hpp"
 
@@ -26,7 +27,8 @@ struct RecentSequence {
   std::vector<std::string> settings;  ///< constants other than the defaults, "run.method=paper", …
   int frame = 1;                      ///< the one shown last
   std::vector<KeptGhost>
-      ghosts{};  ///< runs beside it, but for other programs', which are a matter of reading
+      ghosts{};      ///< runs beside it, but for other programs', which are a matter of reading
+  RunsShown runs{};  ///< which of them pictures show
   bool operator==(const RecentSequence&) const = default;
 };
 

@@ -12,6 +12,7 @@
 #include "core/run/saved_map.hpp"
 #include "core/run/sweep.hpp"
 #include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_pictures.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
 
@@ -70,7 +71,7 @@ void draw_panel_body(UiFrame& frame, const SessionView& session, Panel& panel, c
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5.0F * frame.scale, 2.0F * frame.scale});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {5.0F * frame.scale, 3.0F * frame.scale});
   }
-  if (visible) panel.draw(frame, session, wanted);
+  if (visible) draw_by_runs(frame, session, panel, wanted);
   if (compact) {
     ImGui::PopStyleVar(2);
     ImGui::PopFont();
@@ -113,6 +114,8 @@ LayoutNode Workbench::layout() const {
   for_each_panel(layout, [this](LayoutNode& tile) {
     const auto chosen = choices_.find(tile.panel);
     tile.choices = chosen == choices_.end() ? PanelChoices::Words() : chosen->second.changed();
+    tile.front =
+        std::find(fronts_.begin(), fronts_.end(), tile.panel) != fronts_.end() && !is_behind(tile.panel);
   });
   return layout;
 }
@@ -120,6 +123,7 @@ LayoutNode Workbench::layout() const {
 void Workbench::set_layout(LayoutNode layout) {
   for_each_panel(layout, [this](const LayoutNode& tile) {
     if (!tile.choices.empty()) choices_[tile.panel].want(tile.choices);
+    if (tile.front) bring_to_front(tile.panel);
   });
   for (const std::string& name : panels_of(layout))
     if (find_panel(name) == nullptr) remove_panel(layout, name);
@@ -147,6 +151,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   look_ = frame.wanted_look;
   follow_session();
   frame.log = &log_;
+  frame.runs = &runs_;
   frame.busy = !opening_.empty() || (session != nullptr && session->busy);
   if (const auto before = std::exchange(before_frame_, {})) before();
   frame.offer = &offered_;
@@ -185,6 +190,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
   compare_frames_ = false;
   previewed_.reset();
+  visible_.clear();
   frame_ = nullptr;
   session_ = nullptr;
   if (const auto after = std::exchange(after_frame_, {})) after();
@@ -295,13 +301,21 @@ void Workbench::draw_tile(const PlacedPanel& tile) {
   draw_tile_heading(*panel, tile, heading);
   PanelActions wanted;
   frame_->choices = &choices_[name];
-  const SessionView& session = view_of(name);
+  const SessionView& session = visible(view_of(name), *panel);
   const bool preview = panel->previews() && shows_preview(session);
   draw_panel_body(*frame_, preview ? previewed(session) : session, *panel, below_heading(rect, heading),
                   wanted);
   frame_->choices = nullptr;
   ImGui::PopID();
   carry_out(wanted);
+}
+
+const SessionView& Workbench::visible(const SessionView& session, const Panel& panel) {
+  // Pictures show the runs that are ticked for them, hidden elsewhere or not.
+  if (runs_.hidden.empty() || panel.lists_runs() || panel.shows_a_run()) return session;
+  std::unique_ptr<const SessionView>& kept = visible_[&session];
+  if (!kept) kept = std::make_unique<const SessionView>(without_hidden(session, runs_));
+  return *kept;
 }
 
 const SessionView& Workbench::previewed(const SessionView& session) {

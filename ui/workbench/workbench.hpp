@@ -12,6 +12,7 @@
 #include "ui/panels/panel_command.hpp"
 #include "ui/session/actions.hpp"
 #include "ui/session/session_view.hpp"
+#include "ui/session/shown_runs.hpp"
 #include "ui/shell/canvas.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/workbench/layout.hpp"
@@ -58,6 +59,10 @@ class Workbench {
   /// The same with choices for its controls.
   static void draw_alone(UiFrame& frame, const SessionView& session, Panel& panel, PanelChoices& choices);
 
+  /// Which runs pictures show, and how.
+  [[nodiscard]] const RunsShown& runs() const { return runs_; }
+  void set_runs(RunsShown runs) { runs_ = std::move(runs); }
+
   /// The tiles, with what is chosen in each panel.
   [[nodiscard]] LayoutNode layout() const;
   void set_layout(LayoutNode layout);
@@ -96,6 +101,7 @@ class Workbench {
  private:
   struct Palette {
     bool open = false, opened_now = false;
+    bool takes_keys = false;  ///< its field is given the keyboard again
     char query[128] = "";
     int chosen = 0;
   };
@@ -113,6 +119,7 @@ class Workbench {
   void add_layout_actions();
   void add_debug_actions();
   void add_mark_actions();
+  void add_run_actions();
   void go_to(int frame);
   void step(int by);
   void ask(SessionRequest request);
@@ -142,6 +149,7 @@ class Workbench {
   void next_tab();
   [[nodiscard]] bool is_behind(const std::string& panel) const;
   [[nodiscard]] const SessionView& previewed(const SessionView& session);
+  [[nodiscard]] const SessionView& visible(const SessionView& session, const Panel& panel);
   void draw_tile_heading(Panel& panel, const PlacedPanel& tile, float height);
   void draw_tabs(const PlacedPanel& tile, float height, float width);
   void draw_tile_menu(const std::string& name);
@@ -149,6 +157,7 @@ class Workbench {
   void draw_palette_list();
   [[nodiscard]] std::vector<PaletteRow> palette_rows();
   void add_run_rows(std::vector<PaletteRow>& rows);
+  void add_picture_rows(std::vector<PaletteRow>& rows);
   void add_parameter_rows(std::vector<PaletteRow>& rows);
   void show_parameter(const std::string& key);
   void draw_shortcuts();
@@ -180,6 +189,7 @@ class Workbench {
   EventLog log_;
   std::string opening_, last_trouble_;
   std::map<std::string, PanelChoices> choices_;
+  RunsShown runs_;
   std::map<std::string, LayoutRect> tiles_;  ///< of the last frame drawn
   std::vector<PlacedPanel> places_;          ///< … with the tabs that share them
   std::vector<std::string> fronts_;          ///< tabs that were brought to the front, the last at the end
@@ -212,7 +222,8 @@ class Workbench {
   const SessionView* session_ = nullptr;
   std::shared_ptr<const SessionView> turning_to_;  // what tiles take to in turn; null: all have the session
   std::unique_ptr<const SessionView> previewed_;   // as panels of the frame shown draw its preview
-  bool compare_frames_ = false;                    // whether a panel drawn wants the frame before
+  std::map<const SessionView*, std::unique_ptr<const SessionView>> visible_;  // without hidden runs
+  bool compare_frames_ = false;                       // whether a panel drawn wants the frame before
   std::function<void()> before_frame_, after_frame_;  // what would change the layout while it is drawn
 
   /// What a tile shows while others have their turn.

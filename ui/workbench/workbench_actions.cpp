@@ -48,6 +48,7 @@ void Workbench::add_actions() {
                 }});
   add_playback_actions();
   add_debug_actions();
+  add_run_actions();
   add_view_actions();
   add_layout_actions();
   add_panel_actions();

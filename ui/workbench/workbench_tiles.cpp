@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "ui/panels/panel_kit.hpp"
+#include "ui/panels/run_look.hpp"
+#include "ui/panels/run_pictures.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 
@@ -45,9 +47,13 @@ void Workbench::draw_tile_heading(Panel& panel, const PlacedPanel& tile, float h
   const LayoutRect& rect = tile.rect;
   const float button = height - 4.0F * frame_->scale, margin = 9.0F * frame_->scale;
   const float buttons = 2.0F * button + 6.0F * frame_->scale;
-  if (panel.previews() && shows_preview(view_of(panel.name())))
-    draw_preview_badge(*frame_,
-                       {rect.x + rect.width - buttons - 4.0F * frame_->scale, rect.y + 4.0F * frame_->scale});
+  const ImVec2 badge{rect.x + rect.width - buttons - 4.0F * frame_->scale, rect.y + 4.0F * frame_->scale};
+  const SessionView& session = view_of(panel.name());
+  if (panel.previews() && shows_preview(session))
+    draw_badge(*frame_, badge, "Preview", role_colour(Role::kWarning, frame_->theme.name));
+  else if (is_by_runs(*frame_, session, panel))
+    if (const auto flipped = runs_.flipped(session))
+      draw_badge(*frame_, badge, shortened(flipped->name, 18), run_colour(*flipped, frame_->theme.name));
   if (tile.tabs.empty()) {
     ImGui::PushFont(frame_->fonts.strong);
     draw_clipped_text({rect.x + margin, rect.y + 0.5F * (height - ImGui::GetFontSize())}, panel.title(),

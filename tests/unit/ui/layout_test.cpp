@@ -208,6 +208,28 @@ TEST(LayoutJson, ChoicesOfPanelsComeBack) {
   EXPECT_THROW((void)parse_layout(R"({"panel": "a", "choices": {"x": 1}})", "f", known), InputError);
 }
 
+TEST(LayoutJson, TheTabInFrontComesBack) {
+  const std::vector<std::string> known{"a", "b"};
+  const LayoutNode layout =
+      parse_layout(R"({"columns": [{"panel": "a"}, {"panel": "b", "front": true}]})", "f", known);
+  EXPECT_FALSE(layout.children[0].front);
+  EXPECT_TRUE(layout.children[1].front);
+  EXPECT_EQ(parse_layout(to_json(layout), "f", known), layout);
+  EXPECT_THROW((void)parse_layout(R"({"panel": "a", "front": 1})", "f", known), InputError);
+}
+
+TEST(PanelChoices, AMirrorTakesAllThatIsShown) {
+  PanelChoices choices;
+  choices.note("Errors", "off");
+  choices.note_passing("round", "2");
+  PanelChoices mirror = choices.mirrored();
+  EXPECT_TRUE(mirror.mirrors());
+  EXPECT_EQ(mirror.take("Errors", "on"), "off");
+  EXPECT_EQ(mirror.take("round", "3"), "2");
+  // What passes is no choice of a person's.
+  EXPECT_TRUE(choices.changed().empty());
+}
+
 TEST(PanelChoices, KeepWhatIsNotAsThePanelHasIt) {
   PanelChoices choices;
   EXPECT_FALSE(choices.take("Errors", "on"));

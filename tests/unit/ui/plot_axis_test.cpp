@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ui/plot/path_plot.hpp"
 #include "ui/plot/plot_view.hpp"
 
 namespace stillpoint {
@@ -43,6 +44,17 @@ TEST(LinearTicksTest, NeverMoreThanAskedAndAlwaysInside) {
       }
     }
   }
+}
+
+TEST(LinearTicksTest, AScaleTakesTwo) {
+  EXPECT_THAT(labels(linear_ticks({0.0, 495.0}, 2)), ElementsAre("0", "400"));
+  EXPECT_THAT(labels(linear_ticks({0.0, 0.49}, 2)), ElementsAre("0", "0.4"));
+  for (double high = 1.0; high < 20.0; high *= 1.03)
+    for (int most = 2; most < 5; ++most) {
+      const auto ticks = linear_ticks({0.0, high}, most);
+      EXPECT_GE(ticks.size(), 2U) << high << ", " << most;
+      EXPECT_LE(static_cast<int>(ticks.size()), most) << high;
+    }
 }
 
 TEST(LinearTicksTest, NoneForARangeThatIsNone) {
@@ -152,6 +164,20 @@ TEST(NearestIndexTest, FindsTheNearest) {
   EXPECT_EQ(nearest_index(x, 3.0), 2U);
   EXPECT_EQ(nearest_index(x, 99.0), 2U);
   EXPECT_EQ(nearest_index({}, 1.0), std::nullopt);
+}
+
+TEST(PathPlot, ShowsTheTwoAxesInWhichPathsReachFurthest) {
+  // One path goes along z, the other along x; neither goes far in y.
+  const std::array<std::vector<double>, 3> along_z{{{0.0, 0.1}, {0.0, 0.2}, {-3.0, 3.0}}},
+      along_x{{{0.0, 4.0}, {0.0, 0.1}, {0.0, 0.0}}};
+  const std::vector<PlotPath> paths{{"a", &along_z, {}}, {"b", &along_x, {}}};
+  const PathPlot made = path_plot(paths);
+  EXPECT_STREQ(made.across, "x");
+  EXPECT_STREQ(made.up, "z");
+  ASSERT_EQ(made.plot.series.size(), 2U);
+  EXPECT_EQ(made.plot.series[0].y.back(), 3.0);
+  EXPECT_EQ(made.plot.series[1].x.back(), 4.0);
+  EXPECT_TRUE(made.plot.equal_scale);
 }
 
 }  // namespace

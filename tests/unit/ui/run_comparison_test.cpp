@@ -129,5 +129,16 @@ TEST(RunLooks, LongNamesAreCutBetweenLetters) {
   EXPECT_EQ(shortened("abcöde", 4), "abc…");
 }
 
+TEST(PoseText, AnotherWorldsPosesAreNotToldApart) {
+  FrameDifference difference;
+  EXPECT_EQ(pose_text(difference, "a", false), "Both poses are the same.");
+  difference.translation_m = 1.5;
+  difference.rotation_deg = 2.0;
+  EXPECT_EQ(pose_text(difference, "a", false), "Poses differ by 1500.00 mm and 2.000 °.");
+  const std::string outside = pose_text(difference, "orb3", true);
+  EXPECT_EQ(outside.find("1500"), std::string::npos) << outside;
+  EXPECT_NE(outside.find("orb3's poses are of a world of its own"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace stillpoint

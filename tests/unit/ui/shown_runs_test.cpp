@@ -1,0 +1,139 @@
+#include "ui/session/shown_runs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace stillpoint {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+GhostView ghost_run(const std::string& name, int frame, bool outside = false) {
+  auto run = std::make_shared<RunView>();
+  run->name = name;
+  GhostView view;
+  view.name = name;
+  view.run = run;
+  view.outside = outside;
+  if (frame < 0) return view;
+  auto current = std::make_shared<FrameView>();
+  current->index = frame;
+  view.current = current;
+  return view;
+}
+
+/// A run at frame 3 with its baseline, a ghost that is there, one on its way, and another program's path.
+SessionView session_of_runs() {
+  SessionView view;
+  auto run = std::make_shared<RunView>(), baseline = std::make_shared<RunView>();
+  run->name = "paper";
+  baseline->name = "none";
+  auto current = std::make_shared<FrameView>();
+  current->index = 3;
+  view.run = run;
+  view.baseline = baseline;
+  view.current = current;
+  view.config.run.method = "paper";
+  view.debug.ghosts = {ghost_run("method none", 3), ghost_run("paper", -1), ghost_run("orb3", 3, true)};
+  view.debug.ghosts[0].config.run.method = "none";
+  return view;
+}
+
+std::vector<std::string> names_of_runs(const std::vector<ListedRun>& runs) {
+  std::vector<std::string> all;
+  for (const ListedRun& run : runs) all.push_back(run.name);
+  return all;
+}
+
+TEST(ShownRuns, AreOneListWithNamesOfTheirOwn) {
+  const std::vector<ListedRun> runs = listed_runs(session_of_runs());
+  EXPECT_THAT(names_of_runs(runs), ElementsAre("paper", "baseline none", "method none", "paper (2)", "orb3"));
+  EXPECT_THAT(runs[0].no_pictures, IsEmpty());
+  EXPECT_THAT(runs[1].no_pictures, HasSubstr("Compare with method none"));
+  EXPECT_THAT(runs[2].no_pictures, IsEmpty());
+  EXPECT_THAT(runs[3].no_pictures, HasSubstr("has not come to frame 3"));
+  EXPECT_THAT(runs[4].no_pictures, HasSubstr("another program's trajectory"));
+}
+
+TEST(ShownRuns, OutsideRunsWithMasksHavePictures) {
+  SessionView view = session_of_runs();
+  auto current = std::make_shared<FrameView>(*view.debug.ghosts[2].current);
+  current->mask = cv::Mat(4, 4, CV_8UC1, cv::Scalar(255));
+  view.debug.ghosts[2].current = current;
+  EXPECT_THAT(listed_runs(view)[4].no_pictures, IsEmpty());
+}
+
+TEST(ShownRuns, AreThoseWithPicturesUntilSomebodyChooses) {
+  const SessionView view = session_of_runs();
+  RunsShown shown;
+  EXPECT_THAT(names_of_runs(shown.chosen_of(view)), ElementsAre("paper", "method none", "paper (2)"));
+  shown.toggle(view, "paper (2)");
+  shown.toggle(view, "orb3");
+  EXPECT_THAT(names_of_runs(shown.chosen_of(view)), ElementsAre("paper", "method none", "orb3"));
+  shown.toggle(view, "orb3");
+  EXPECT_THAT(names_of_runs(shown.chosen_of(view)), ElementsAre("paper", "method none"));
+  // A run that is gone is passed over, and is there again when it is.
+  SessionView without = view;
+  without.debug.ghosts.clear();
+  EXPECT_THAT(names_of_runs(shown.chosen_of(without)), ElementsAre("paper"));
+  EXPECT_EQ(shown.chosen.size(), 2U);
+}
+
+TEST(ShownRuns, FlipFromOneToTheNextAndRound) {
+  const SessionView view = session_of_runs();
+  RunsShown shown;
+  EXPECT_FALSE(shown.flipped(view));
+  std::vector<std::string> seen;
+  for (int i = 0; i < 4; ++i) {
+    shown.flip(view, 1);
+    seen.push_back(shown.flipped(view)->name);
+  }
+  EXPECT_THAT(seen, ElementsAre("method none", "paper (2)", "paper", "method none"));
+  shown.flip(view, -1);
+  EXPECT_EQ(shown.flipped(view)->name, "paper");
+  shown.flipped_to = "gone";
+  EXPECT_EQ(shown.flipped(view)->name, "paper");
+}
+
+TEST(ShownRuns, StandInTheSessionsPlace) {
+  const SessionView view = session_of_runs();
+  const std::vector<ListedRun> runs = listed_runs(view);
+  const SessionView other = as_run(view, runs[2]);
+  EXPECT_EQ(other.config.run.method, "none");
+  EXPECT_EQ(other.run, view.debug.ghosts[0].run);
+  EXPECT_EQ(other.current, view.debug.ghosts[0].current);
+  EXPECT_EQ(as_run(view, runs[0]).config.run.method, "paper");
+}
+
+TEST(ShownRuns, DividersFitTheStrips) {
+  RunsShown shown;
+  shown.fit_dividers(3);
+  EXPECT_THAT(shown.dividers, ElementsAre(1.0F / 3.0F, 2.0F / 3.0F));
+  shown.dividers = {0.2F, 0.9F};
+  shown.fit_dividers(3);
+  EXPECT_THAT(shown.dividers, ElementsAre(0.2F, 0.9F));
+  shown.fit_dividers(1);
+  EXPECT_THAT(shown.dividers, IsEmpty());
+}
+
+TEST(ShownRuns, HiddenOnesLeaveTheOthersTheirLooks) {
+  const SessionView view = session_of_runs();
+  RunsShown shown;
+  shown.toggle_hidden("method none");
+  shown.toggle_hidden("baseline none");
+  shown.toggle_hidden("paper");  // the session's own stays
+  const SessionView seen = without_hidden(view, shown);
+  EXPECT_EQ(seen.baseline, nullptr);
+  ASSERT_EQ(seen.debug.ghosts.size(), 2U);
+  EXPECT_EQ(seen.debug.ghosts[0].run, view.debug.ghosts[1].run);
+  EXPECT_EQ(seen.debug.ghosts[0].look, 1U);
+  EXPECT_EQ(seen.debug.ghosts[1].look, 2U);
+  EXPECT_EQ(seen.run, view.run);
+  shown.toggle_hidden("method none");
+  EXPECT_EQ(without_hidden(view, shown).debug.ghosts.size(), 3U);
+}
+
+}  // namespace
+}  // namespace stillpoint
