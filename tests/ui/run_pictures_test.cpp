@@ -7,6 +7,15 @@
 #include <algorithm>
 #include <set>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
+#include "core/run/frame_scores.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/ui/panel_stage.hpp"
 #include "tests/ui/session_example.hpp"

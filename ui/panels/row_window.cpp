@@ -1,5 +1,8 @@
 #include "ui/panels/row_window.hpp"
 
+#include "ui/shell/ui_frame.hpp"
+#include "ui/theme/theme.hpp"
+
 namespace stillpoint {
 
 std::size_t draw_row_bar(const UiFrame& frame, const RowWindow& window, std::size_t rows, ImVec2 corner,

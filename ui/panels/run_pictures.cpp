@@ -2,6 +2,12 @@
 
 #include <algorithm>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
 #include "ui/panels/panel_choices.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/view/picture_strips.hpp"

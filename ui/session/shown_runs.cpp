@@ -4,6 +4,13 @@
 
 #include <algorithm>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
+
 namespace stillpoint {
 namespace {
 
