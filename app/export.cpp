@@ -11,6 +11,7 @@
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/run/condition.hpp"
 #include "core/sequence/excerpt.hpp"
 
@@ -39,6 +40,7 @@ void export_sequence(const ExportArguments& arguments) {
   fmt::print("{} frames written to {}\n", exported.written, arguments.out);
   if (!exported.unreadable.empty())
     fmt::print("cannot be read, and have places without images: {}\n", frames_text(exported.unreadable));
+  if (exported.too_far > 0) fmt::print("{}\n", too_far_told(exported.too_far, exported.depth_units));
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
   file.finish(run.recorded->run, run.recorded->ground_truth);
   name.finish();
   fmt::print("{} frames, {} messages written to {}\n", records.size(), file.messages(), to);
+  if (!file.too_far().empty()) fmt::print("{}\n", file.too_far());
 }
 
 }  // namespace stillpoint

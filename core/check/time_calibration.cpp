@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/check/timed_adjustment.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/with_camera.hpp"
 
@@ -36,8 +37,7 @@ class KeepingDepth final : public WithCamera {
   [[nodiscard]] Frame read(int index) const override {
     Frame frame = WithCamera::read(index);
     if (frame.has_depth()) {
-      Kept kept{{}, frame.depth_timestamp};
-      frame.depth.convertTo(kept.depth, CV_16UC1, kKeptDepthUnits);
+      Kept kept{stored_depth(frame.depth, kKeptDepthUnits).image, frame.depth_timestamp};
       const std::lock_guard lock(mutex_);
       kept_[index] = std::move(kept);
     }

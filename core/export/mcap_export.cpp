@@ -14,6 +14,7 @@
 #include "core/export/foxglove_messages.hpp"
 #include "core/export/mcap_writer.hpp"
 #include "core/media/image_codec.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
@@ -233,6 +234,8 @@ McapExport::~McapExport() = default;
 
 std::uint64_t McapExport::messages() const { return channels_->file.messages(); }
 
+std::string McapExport::too_far() const { return too_far_told(too_far_, kMillimetres); }
+
 void McapExport::add(const Frame& frame, const FrameRecord& record, const cv::Mat& mask,
                      const std::vector<const Layer*>& layers) {
   const std::uint64_t time = nanoseconds(record.timestamp);
@@ -247,9 +250,9 @@ void McapExport::add(const Frame& frame, const FrameRecord& record, const cv::Ma
     channels_->image("/camera/colour", time, "jpeg",
                      as_text(encode_jpeg(frame.colour.empty() ? frame.gray : frame.colour, kJpegQuality)));
   if (frame.has_depth()) {
-    cv::Mat millimetres;
-    frame.depth.convertTo(millimetres, CV_16U, kMillimetres);
-    channels_->raw("/camera/depth", time, "16UC1", millimetres);
+    const StoredDepth millimetres = stored_depth(frame.depth, kMillimetres);
+    too_far_ += millimetres.too_far;
+    channels_->raw("/camera/depth", time, "16UC1", millimetres.image);
   }
   if (!mask.empty()) channels_->image("/camera/mask", time, "png", as_text(encode_png(mask, 1)));
   for (const Layer* layer : layers) {

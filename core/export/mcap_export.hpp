@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,8 @@ class McapExport {
   void finish(const RunResult& run, const Trajectory& ground_truth);
 
   [[nodiscard]] std::uint64_t messages() const;
+  /// What to tell of depth that millimetres in 16 bits cannot hold; "" where there is none.
+  [[nodiscard]] std::string too_far() const;
 
  private:
   struct Channels;
@@ -56,6 +59,7 @@ class McapExport {
   Camera camera_;
   std::vector<FeatureRecord> features_before_;
   std::vector<std::uint64_t> times_;  // ns, of the frames
+  std::int64_t too_far_ = 0;          // pixels
   bool calibrated_ = false;
 };
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/odometry/frame_result.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/records_file.hpp"
@@ -42,10 +43,14 @@ std::string stopped(const fs::path& folder) {
   return fmt::format("Stopped; nothing is left in {}.", folder.string());
 }
 
-std::string told_unreadable(const ExportedFrames& exported) {
-  if (exported.unreadable.empty()) return "";
-  return fmt::format("; cannot be read, and have places without images: {}",
-                     frames_text(exported.unreadable));
+/// What of the frames is not in the files, after a semicolon.
+std::string told_missing(const ExportedFrames& exported) {
+  std::string told;
+  if (!exported.unreadable.empty())
+    told =
+        fmt::format("; cannot be read, and have places without images: {}", frames_text(exported.unreadable));
+  if (exported.too_far > 0) told += "; " + too_far_told(exported.too_far, exported.depth_units);
+  return told;
 }
 
 /// Runs over a sequence and leaves a run's folder. @returns the run's hash; nothing when it was stopped
@@ -78,8 +83,7 @@ std::string export_selection(const FrameSource& source, const std::vector<int>& 
     remove_sequence(folder);
     return stopped(folder);
   }
-  return fmt::format("{} frames written to {}{}", exported.written, folder.string(),
-                     told_unreadable(exported));
+  return fmt::format("{} frames written to {}{}", exported.written, folder.string(), told_missing(exported));
 }
 
 std::string export_session(const SessionToExport& session, const fs::path& folder,
@@ -109,7 +113,7 @@ std::string export_session(const SessionToExport& session, const fs::path& folde
     return stopped(folder);
   }
   std::string told = fmt::format("{} frames, their run and the marks written to {}{}", exported.written,
-                                 folder.string(), told_unreadable(exported));
+                                 folder.string(), told_missing(exported));
   if (!session.run_hash.empty() && *hash != session.run_hash)
     told += fmt::format("; the run over them is another one: {} instead of {}", *hash, session.run_hash);
   return told;

@@ -62,7 +62,9 @@ std::shared_ptr<const FrameView> hold(FrameView view, std::optional<FrameRecord>
 }
 
 void ShownRun::process(const Frame& frame) {
-  FrameResult result = track_.process_next([&frame](int) { return frame; });
+  // A recorded run is shown the frames before, too, which it was not shown yet.
+  FrameResult result =
+      track_.process_next([&](int index) { return index == frame.index ? frame : frames_->read(index); });
   view_.reset();
   keep({frame.index, std::move(result.motion), std::move(result.mask), std::move(result.engine)});
 }

@@ -35,7 +35,10 @@ ExportedFrames export_frames(const FrameSource& source, const std::vector<int>& 
                              const std::atomic<bool>* stop) {
   const WrittenSequence written = write_sequence(
       Excerpt(source, frames), folder, {.force = force, .threads = 2, .progress = progress, .stop = stop});
-  ExportedFrames exported{.written = written.frames, .unreadable = {}};
+  ExportedFrames exported{.written = written.frames,
+                          .unreadable = {},
+                          .too_far = written.too_far,
+                          .depth_units = written.depth_units};
   for (const int at : written.unreadable) exported.unreadable.push_back(frames[static_cast<std::size_t>(at)]);
   return exported;
 }

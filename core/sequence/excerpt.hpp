@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -42,6 +43,8 @@ class Excerpt : public FrameSource {
 struct ExportedFrames {
   int written = 0;
   std::vector<int> unreadable;  ///< of the source's: they keep their places, without images
+  std::int64_t too_far = 0;     ///< pixels whose depth 16 bits cannot hold: written as not measured
+  double depth_units = 0.0;     ///< a metre, as stored
 };
 
 /// Writes some frames of a sequence as a TUM RGB-D folder (write_sequence) that shows a method the same

@@ -75,8 +75,9 @@ DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected, con
     ++survey.fit;
     survey.in_metres = read.in_metres;
     if (read.in_metres) {
+      // Clipped first: OpenCV makes 0 of what is beyond 2^31.
+      cv::min(read.image, (kNoMeasurement - 1) / kMetresSurveyScale, read.image);
       read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
-      cv::min(read.image, kNoMeasurement - 1, read.image);
     }
     constexpr int kStride = 3;
     for (int y = 0; y < read.image.rows; y += kStride)

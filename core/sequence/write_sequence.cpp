@@ -18,6 +18,7 @@
 
 #include "core/error.hpp"
 #include "core/media/image_codec.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/rgbd/rgbd_recording.hpp"
@@ -152,6 +153,7 @@ std::string image_name(double stamp) { return fmt::format("{:.6f}.png", stamp); 
 struct WrittenFrame {
   bool readable = false;
   std::optional<double> depth_stamp;  // s, when the depth image was taken; nothing where there is none
+  int too_far = 0;                    // pixels
 };
 
 void write_pair(const FrameSource& source, const Frame& frame, const fs::path& folder,
@@ -166,13 +168,13 @@ void write_pair(const FrameSource& source, const Frame& frame, const fs::path& f
 WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& folder,
                          const WriteOptions& options) {
   const Frame frame = source.read(index);
-  WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}};
+  WrittenFrame written{.readable = frame.readable(), .depth_stamp = {}, .too_far = 0};
   const std::string name = image_name(source.timestamp(index));
   if (source.has_masks())
     if (const FrameTruth truth = source.truth(index); !truth.moving.empty())
       write_png(folder / "mask" / name, truth.moving);
   if (options.rgbd != nullptr) {
-    write_rgbd_frame(*options.rgbd, source, frame, folder);
+    written.too_far = write_rgbd_frame(*options.rgbd, source, frame, folder);
     return written;
   }
   if (options.layout != SequenceLayout::tum) {
@@ -181,9 +183,9 @@ WrittenFrame write_frame(const FrameSource& source, int index, const fs::path& f
   }
   if (frame.readable()) write_png(folder / "rgb" / name, frame.colour.empty() ? frame.gray : frame.colour);
   if (!frame.has_depth()) return written;
-  cv::Mat stored;
-  frame.depth.convertTo(stored, CV_16U, source.camera().depth_scale);  // rounds to nearest
-  write_png(folder / "depth" / image_name(frame.depth_timestamp), stored);
+  const StoredDepth stored = stored_depth(frame.depth, source.camera().depth_scale);
+  write_png(folder / "depth" / image_name(frame.depth_timestamp), stored.image);
+  written.too_far = stored.too_far;
   written.depth_stamp = frame.depth_timestamp;
   return written;
 }
@@ -353,9 +355,15 @@ WrittenSequence write_sequence(const FrameSource& source, const fs::path& folder
   try {
     prepare(source, place, own);
     const std::vector<WrittenFrame> frames = write_frames(source, place, own);
-    WrittenSequence written{.frames = static_cast<int>(frames.size()), .unreadable = {}};
-    for (int i = 0; i < written.frames; ++i)
+    WrittenSequence written{
+        .frames = static_cast<int>(frames.size()),
+        .unreadable = {},
+        .too_far = 0,
+        .depth_units = own.rgbd != nullptr ? own.rgbd->files.units : source.camera().depth_scale};
+    for (int i = 0; i < written.frames; ++i) {
       if (!frames[static_cast<std::size_t>(i)].readable) written.unreadable.push_back(i);
+      written.too_far += frames[static_cast<std::size_t>(i)].too_far;
+    }
     if (frames.empty()) {
       remove_sequence(place);
       return written;

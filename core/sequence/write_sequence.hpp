@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -35,6 +36,8 @@ struct WriteOptions {
 struct WrittenSequence {
   int frames = 0;               ///< fewer than the source has when it was stopped
   std::vector<int> unreadable;  ///< of these: the lists name their images, which are not there
+  std::int64_t too_far = 0;     ///< pixels whose depth 16 bits cannot hold: written as not measured
+  double depth_units = 0.0;     ///< a metre, as stored
 };
 
 /// Writes a sequence as a folder, RGB-D in TUM RGB-D layout: `rgb/`, `depth/` (16 bit), `mask/` (255 =

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/media/image_codec.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/out_folder.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
@@ -28,14 +29,6 @@ void write_image(const fs::path& path, const cv::Mat& image) {
       path.extension() == ".jpg" ? encode_jpeg(image, kQuality) : encode_camera_png(image);
   if (bytes.empty()) throw InputError(fmt::format("{} cannot be packed", path.string()));
   write_text_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
-
-/// Depth in metres as a layout stores it.
-cv::Mat stored_depth(const RgbdFiles& files, const cv::Mat& metres) {
-  cv::Mat stored;
-  metres.convertTo(stored, CV_16U, files.units);  // rounds to nearest
-  stored.setTo(files.none, stored == 0);
-  return stored;
 }
 
 /// Whether a name is of a pattern with one `*` or none.
@@ -67,21 +60,25 @@ DepthCamera miniature_depth_camera() {
   return depth;
 }
 
-void write_rgbd_frame(const RgbdLayout& layout, const FrameSource& source, const Frame& frame,
-                      const fs::path& folder) {
-  const RgbdNames names = layout.files.names(frame.index, frame.timestamp);
+int write_rgbd_frame(const RgbdLayout& layout, const FrameSource& source, const Frame& frame,
+                     const fs::path& folder) {
+  const RgbdFiles& files = layout.files;
+  const RgbdNames names = files.names(frame.index, frame.timestamp);
   if (frame.readable()) write_image(folder / names.colour, frame.colour.empty() ? frame.gray : frame.colour);
-  if (!layout.files.own_depth_camera) {
-    if (frame.has_depth()) write_image(folder / names.depth, stored_depth(layout.files, frame.depth));
-    return;
+  cv::Mat depth = frame.depth;
+  if (files.own_depth_camera) {
+    const auto* const scene = dynamic_cast<const FilmedScene*>(&source);
+    if (scene == nullptr)
+      throw InputError(fmt::format(
+          "{}: layout {} has a depth camera of its own, by which only a generated sequence is filmed",
+          source.name(), layout.name));
+    depth = scene->depth_seen_by(miniature_depth_camera(), frame.index);
+  } else if (!frame.has_depth()) {
+    return 0;
   }
-  const auto* const scene = dynamic_cast<const FilmedScene*>(&source);
-  if (scene == nullptr)
-    throw InputError(fmt::format(
-        "{}: layout {} has a depth camera of its own, by which only a generated sequence is filmed",
-        source.name(), layout.name));
-  write_image(folder / names.depth,
-              stored_depth(layout.files, scene->depth_seen_by(miniature_depth_camera(), frame.index)));
+  const StoredDepth stored = stored_depth(depth, files.units, files.none);
+  write_image(folder / names.depth, stored.image);
+  return stored.too_far;
 }
 
 void make_rgbd_folders(const RgbdLayout& layout, const fs::path& folder) {

@@ -46,10 +46,11 @@ struct RgbdFiles {
 [[nodiscard]] DepthCamera miniature_depth_camera();
 
 /// A frame's images in a layout. @param frame of the source
+/// @returns pixels whose depth 16 bits cannot hold: they are written as not measured
 /// @throws InputError for what cannot be written, and for a depth camera of its own where the source cannot
 /// be filmed by one
-void write_rgbd_frame(const RgbdLayout& layout, const FrameSource& source, const Frame& frame,
-                      const std::filesystem::path& folder);
+int write_rgbd_frame(const RgbdLayout& layout, const FrameSource& source, const Frame& frame,
+                     const std::filesystem::path& folder);
 
 /// Makes the folders that a layout's images lie in.
 void make_rgbd_folders(const RgbdLayout& layout, const std::filesystem::path& folder);

@@ -94,6 +94,23 @@ TEST_P(RecordedSession, ARunThatWasStoppedGoesOnAsIfItHadNotBeen) {
   EXPECT_EQ(run_hash(records), run_hash(run_sequence(*source_, config_).records));
 }
 
+TEST_P(RecordedSession, ARunBesideThatWasStoppedGoesOnAsIfItHadNotBeen) {
+  const OpenedRun run = recorded(4);
+  SessionOptions options;
+  options.beside = {run.recorded};
+  Session session(source_, config_, options);
+  session.go_to(kFrames - 1);
+  const auto view = session.view();
+  ASSERT_EQ(view->debug.ghosts.size(), 1U);
+  const GhostView& ghost = view->debug.ghosts[0];
+  ASSERT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_FALSE(ghost.diverged.has_value());
+  for (std::size_t i = 0; i < ghost.run->records.size(); ++i)
+    EXPECT_EQ(ghost.run->records[i].world_from_camera.matrix(),
+              view->run->records[i].world_from_camera.matrix())
+        << i;
+}
+
 TEST_P(RecordedSession, WithoutImagesNothingIsLostOrTried) {
   OpenedRun run = recorded(kFrames);
   std::filesystem::remove_all(sequence_.path());

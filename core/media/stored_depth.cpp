@@ -1,0 +1,33 @@
+#include "core/media/stored_depth.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/core/fast_math.hpp>
+
+namespace stillpoint {
+
+StoredDepth stored_depth(const cv::Mat& metres, double units, std::uint16_t none) {
+  StoredDepth stored;
+  stored.image.create(metres.size(), CV_16UC1);
+  for (int y = 0; y < metres.rows; ++y) {
+    const auto* from = metres.ptr<float>(y);
+    auto* to = stored.image.ptr<std::uint16_t>(y);
+    for (int x = 0; x < metres.cols; ++x) {
+      const double value = static_cast<double>(from[x]) * units;
+      const bool too_far = value > kMostStored + 0.5;
+      const int rounded = value > 0 && !too_far ? cvRound(value) : 0;
+      to[x] = rounded > 0 ? static_cast<std::uint16_t>(rounded) : none;
+      stored.too_far += too_far ? 1 : 0;
+    }
+  }
+  return stored;
+}
+
+std::string too_far_told(std::int64_t pixels, double units) {
+  if (pixels == 0) return "";
+  return fmt::format(
+      "{} pixels of depth are farther than the {:.1f} m that 16 bits hold, and are written as not measured",
+      pixels, kMostStored / units);
+}
+
+}  // namespace stillpoint
