@@ -16,6 +16,7 @@
 #include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/method_needs.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 
 namespace stillpoint {
@@ -67,9 +68,7 @@ Config ConfigArguments::config() const {
 
 void throw_if_no_pair(const Config& config) {
   if (const std::string why = why_no_pair(config); !why.empty()) throw InputError(why);
-  if (method_of(config).needs.outside_masks && !OutsideMasks(config).any())
-    throw InputError(fmt::format("method {} removes by masks made elsewhere: name them by --masks DIR|LIST",
-                                 config.run.method));
+  if (const std::string why = why_no_outside_masks(config); !why.empty()) throw InputError(why);
 }
 
 void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
@@ -229,17 +228,8 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
                                        where)
                          : fmt::format("{}: its depth is of no use: {}", where, why));
   }
-  if (needs.oracle && !source->has_masks()) {
-    const std::string why = source->why_not(FramePart::masks);
-    throw InputError(
-        why.empty()
-            ? fmt::format(
-                  "{}: a method that is given the ground-truth masks needs them, and there is no mask.txt",
-                  where)
-            : fmt::format("{}: a method that is given the ground-truth masks needs them, and the masks are "
-                          "of no use: {}",
-                          where, why));
-  }
+  if (needs.oracle)
+    if (const std::string why = why_no_true_masks(*source, where); !why.empty()) throw InputError(why);
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   if (needs.questioned)

@@ -98,6 +98,7 @@ void stand_beside(const SourceArguments& arguments, OpenedSource& opened) {
     if (is_run_folder(files.where) && run->origin.fingerprint != sequence_fingerprint(*opened.source))
       throw InputError(
           fmt::format("--run {}: is a run of {}, not of the frames opened", text, run->origin.name));
+    if (text != files.where) run->called = files.name;
     opened.options.beside.push_back(std::move(run));
     for (const std::string& warning : warnings)
       std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());

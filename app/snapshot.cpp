@@ -21,6 +21,7 @@
 #include "core/motion/methods.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
+#include "core/run/method_needs.hpp"
 #include "ui/session/session.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/theme/theme.hpp"
@@ -73,16 +74,19 @@ void add_compared(Session& session, const SnapshotArguments& arguments, const Co
 
 /// @throws InputError for a run that pictures are to show and there is not
 void refuse_unknown_runs(const SessionView& view, const RunsShown& runs) {
-  std::vector<std::string> known;
-  for (const ListedRun& run : listed_runs(view)) known.push_back(run.name);
+  std::vector<std::string> known, with_pictures;
+  for (const ListedRun& run : listed_runs(view)) {
+    known.push_back(run.name);
+    if (run.no_pictures.empty()) with_pictures.push_back(run.name);
+  }
   for (const std::string& name : runs.chosen)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw InputError(fmt::format("there is no run {}; there are {}", name, fmt::join(known, ", ")));
   if (runs.pictures == RunPictures::wiped && runs.chosen_of(view).size() < 2)
     throw InputError(
-        fmt::format("--wipe takes two runs at least; there are {}. --compare METHOD and --run "
-                    "NAME=FILE lay others beside",
-                    fmt::join(known, ", ")));
+        fmt::format("--wipe takes two runs with pictures at least, and of {} only {} has any. "
+                    "--compare METHOD and --run NAME=FOLDER lay others beside",
+                    fmt::join(known, ", "), fmt::join(with_pictures, ", ")));
 }
 
 /// Whether the pictures show what a method's stages made.
@@ -212,6 +216,9 @@ void snapshot(const SnapshotArguments& arguments) {
   OpenedSource place = open_source(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
   if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
+  if (!finished_run)
+    if (const std::string why = why_no_masks(place.config, *place.source); !why.empty())
+      throw InputError(why);
   const std::string& method = place.config.run.method;
   const std::string wanted = !arguments.frames.empty() ? arguments.frames : condition ? "0:" : "-1";
   std::vector<int> frames = parse_frame_ranges(wanted, place.source->size());

@@ -101,6 +101,7 @@ struct RecordedRun {
   Trajectory ground_truth;                        ///< the sequence's, as it was
   std::string hash;                               ///< run_hash of the records
   std::string outside;    ///< what another program's run is called (outside_run.hpp); empty = ours
+  std::string called;     ///< by whoever opened it; empty = as what it is of
   std::string cut_short;  ///< one sentence where the file ends early: what it holds is there without map,
                           ///< scores and adjusted poses; empty when it is whole
 
@@ -110,7 +111,7 @@ struct RecordedRun {
   [[nodiscard]] cv::Mat mask(std::size_t row) const;
 };
 
-/// What a run is called: by the program that made it, else by method and odometry.
+/// What a run is called: as whoever opened it says, by the program that made it, else by method and odometry.
 [[nodiscard]] std::string run_name(const RecordedRun& recorded);
 
 /// What is damaged among the frames of a whole file is told when they are looked at; all else at once.

@@ -212,6 +212,7 @@ FrameRecord RecordedRun::record(std::size_t row) const {
 cv::Mat RecordedRun::mask(std::size_t row) const { return unpack_mask(details->of(row).mask); }
 
 std::string run_name(const RecordedRun& recorded) {
+  if (!recorded.called.empty()) return recorded.called;
   return recorded.outside.empty() ? run_label(recorded.run.config) : recorded.outside;
 }
 

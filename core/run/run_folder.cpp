@@ -57,7 +57,7 @@ std::string frames_csv(const RunResult& run, const RunReport& report) {
 }  // namespace
 
 void prepare_run_folder(const std::filesystem::path& folder, bool force) {
-  prepare_out_folder(folder, {kSummaryName, "trajectory.txt"}, force);
+  prepare_out_folder(folder, {kSummaryName, "trajectory.txt", kRecordsName}, force);
 }
 
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,

@@ -163,6 +163,11 @@ TEST_F(BadStart, EarlierRunsAreKeptWithoutForce) {
   forced.emplace_back("--force");
   EXPECT_EQ(run_cli(forced).exit_code, 0);
   EXPECT_NE(sequence.folder.read("out/trajectory.txt"), "mine");
+  // Of a run that was killed there are the records alone, and they can be looked at.
+  std::filesystem::create_directory(sequence.path("killed"));
+  std::filesystem::copy(sequence.path("out/records.bin"), sequence.path("killed/records.bin"));
+  expect_one_sentence(run_cli({"run", sequence.path(), "--out", sequence.path("killed")}),
+                      "killed: holds earlier results (records.bin); --force overwrites them");
 }
 
 TEST_F(BadStart, EarlierTablesAreKeptWithoutForce) {

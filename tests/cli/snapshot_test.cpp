@@ -129,10 +129,20 @@ TEST_F(Snapshot, SetsRunsAgainstEachOther) {
   EXPECT_GT(cv::norm(alone, wiped, cv::NORM_INF), 50.0);
   EXPECT_GT(cv::norm(alone, flipped, cv::NORM_INF), 50.0);
   EXPECT_GT(cv::norm(wiped, flipped, cv::NORM_INF), 50.0);
-  expect_one_sentence(snapshot({"--wipe", "all", "--frames", "4", "--out", out()}), "--wipe takes two runs");
+  expect_one_sentence(
+      snapshot({"--wipe", "all", "--frames", "4", "--out", out()}),
+      "--wipe takes two runs with pictures at least, and of stillpoint, baseline none only stillpoint");
   expect_one_sentence(snapshot({"--compare", "none", "--wipe", "stillpoint,orb3", "--out", out()}),
                       "there is no run orb3; there are stillpoint, baseline none, none");
   expect_one_sentence(snapshot({"--compare", "nothing", "--out", out()}), "nothing");
+  const std::string earlier = sequence_.path("earlier");
+  ASSERT_EQ(run_cli({"run", sequence_.path(), "--method", "none", "--out", earlier}).exit_code, 0);
+  EXPECT_GT(
+      cv::norm(picture("by_name", {"--run", "mine=" + earlier, "--wipe", "paper,mine"}), alone, cv::NORM_INF),
+      50.0);
+  // Without masks these would remove nothing, under their own names.
+  expect_one_sentence(snapshot({"--compare", "masks", "--out", out()}), "--masks DIR|LIST");
+  expect_one_sentence(snapshot({"--method", "masks", "--out", out()}), "--masks DIR|LIST");
 }
 
 TEST_F(Snapshot, KeepsEarlierImagesUnlessForced) {

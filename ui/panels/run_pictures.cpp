@@ -118,6 +118,9 @@ void draw_by_runs(UiFrame& frame, const SessionView& session, Panel& panel, Pane
   if (const auto flipped = frame.runs->flipped(session))
     return draw_flipped(frame, session, panel, *flipped, actions);
   const std::vector<ListedRun> runs = frame.runs->chosen_of(session);
+  // A single run is what is seen, whichever it is.
+  if (frame.runs->pictures == RunPictures::wiped && runs.size() == 1 && runs[0].kind != ListedRun::Kind::own)
+    return draw_flipped(frame, session, panel, runs[0], actions);
   if (frame.runs->pictures != RunPictures::wiped || runs.size() < 2 || !has_pictures(panel))
     return panel.draw(frame, session, actions);
   draw_wiped(frame, session, panel, runs, actions);

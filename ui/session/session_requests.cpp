@@ -10,6 +10,7 @@
 #include "core/inspect/export_session.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
+#include "core/run/method_needs.hpp"
 #include "core/run/sweep.hpp"
 #include "ui/session/session.hpp"
 
@@ -189,6 +190,7 @@ void Session::carry_out(const request::RunAll& wanted) {
 void Session::carry_out(const request::AddGhost& wanted) {
   refuse_without_images(kNoOthers);
   refuse_out_of_range(wanted.config);
+  if (const std::string why = why_no_masks(wanted.config, *source_); !why.empty()) throw InputError(why);
   if (wanted.waits && wanted.from >= run_->track().processed() && wanted.from < source_->size()) {
     debug_.waiting.push_back({wanted.name, wanted.config, wanted.from});
     wanted_ = std::max(wanted_, wanted.from + 1);
