@@ -30,6 +30,7 @@ enum class TrailLink {
 struct TrailPoint {
   int frame = 0;
   FeatureRecord feature;
+  RecordParts measured{};  ///< what is known of the frame it is of
   TrailLink link = TrailLink::kItself;
 };
 

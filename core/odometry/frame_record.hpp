@@ -10,6 +10,7 @@
 
 #include "core/geometry/se3.hpp"
 #include "core/odometry/map_id.hpp"
+#include "core/odometry/record_parts.hpp"
 
 namespace stillpoint {
 
@@ -117,6 +118,7 @@ struct FrameRecord {
   std::string note;  ///< why it is lost, or what was wrong with its images; empty when all is well
   Pose world_from_camera = Pose::Identity();  ///< estimated, or predicted when lost
   bool estimated = false;                     ///< the pose was measured, not predicted
+  RecordParts measured{};                     ///< what of all below is known; the rest has no value
   int reference_keyframe = kNone;             ///< the keyframe this frame shares most with
   Pose camera_from_reference = Pose::Identity();
   PoseStart pose_start = PoseStart::none;

@@ -24,7 +24,10 @@ FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const 
     difference.figures.push_back({name, std::move(a), std::move(b), differs});
   };
   add("Status", std::string(to_string(here.status)), std::string(to_string(there.status)));
-  add("Keyframe", here.keyframe ? "yes" : "no", there.keyframe ? "yes" : "no");
+  const auto keyframe = [](const FrameRecord& record) {
+    return !record.measured.keyframes ? "–" : record.keyframe ? "yes" : "no";
+  };
+  if (here.measured.keyframes || there.measured.keyframes) add("Keyframe", keyframe(here), keyframe(there));
   const std::vector<double> a = figures_of_frame(run, row), b = figures_of_frame(ghost, ghost_row);
   const auto& infos = frame_figure_infos();
   for (std::size_t i = 0; i < infos.size(); ++i) {

@@ -57,8 +57,11 @@ void TimelineRows::marks(float top, float bottom) const {
                0.3F * height);
   paint_.signs(bookmarked_frames(session_.debug), Sign::kFlag, role_colour(Role::kWarning, theme), middle,
                0.42F * height);
+  const auto tells_keyframes = [](const FrameRecord& record) { return record.measured.keyframes; };
+  const auto& records = session_.run->records;
+  const bool known = std::any_of(records.begin(), records.end(), tells_keyframes);
   paint_.value(top,
-               hits.empty() ? fmt::format("{} keyframes", model_.keyframes.size())
+               hits.empty() ? (known ? fmt::format("{} keyframes", model_.keyframes.size()) : std::string())
                             : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
                frame_.theme.text);
 }
