@@ -32,7 +32,10 @@ SessionView with_trajectory(SessionView session) {
   ghost.name = "orb3";
   ghost.outside = true;
   auto run = std::make_shared<RunView>(*session.run);
-  for (FrameRecord& record : run->records) record.features.clear();
+  for (FrameRecord& record : run->records) {
+    record.features.clear();
+    record.measured = poses_alone();
+  }
   auto current = std::make_shared<FrameView>(*session.current);
   current->mask = cv::Mat();
   current->record = &run->records[static_cast<std::size_t>(current->index)];

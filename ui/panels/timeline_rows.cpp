@@ -96,11 +96,14 @@ std::string frame_report(const SessionView& session, const TimelineModel& model,
   if (const std::string remarks = remarks_on(record); !remarks.empty()) text += "\n" + remarks;
   for (const TimelineLane& lane : model.lanes) {
     const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
-    if (!std::isfinite(lane.values[*at])) continue;
-    text += fmt::format("\n{} {}", shown_name(info), lane_text(lane.values[*at], info));
+    bool known = std::isfinite(lane.values[*at]);
+    std::string line = fmt::format("\n{} {}", shown_name(info), lane_text(lane.values[*at], info));
     for (std::size_t g = 0; g < lane.ghosts.size(); ++g)
-      if (const auto there = record_of(*session.debug.ghosts[g].run, index))
-        text += fmt::format(", ghost {} {}", g + 1, lane_text(lane.ghosts[g][*there], info));
+      if (const auto there = record_of(*session.debug.ghosts[g].run, index)) {
+        known = known || std::isfinite(lane.ghosts[g][*there]);
+        line += fmt::format(", ghost {} {}", g + 1, lane_text(lane.ghosts[g][*there], info));
+      }
+    if (known) text += line;
   }
   for (const BreakpointView& one : session.debug.breakpoints)
     if (std::binary_search(one.hits.begin(), one.hits.end(), index))
