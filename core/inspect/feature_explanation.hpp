@@ -30,7 +30,6 @@ enum class TrailLink {
 struct TrailPoint {
   int frame = 0;
   FeatureRecord feature;
-  RecordParts measured{};  ///< what is known of the frame it is of
   TrailLink link = TrailLink::kItself;
 };
 
@@ -47,6 +46,7 @@ struct Margin {
 struct FeatureExplanation {
   int index = 0;  ///< among the record's features
   FeatureRecord feature;
+  RecordParts measured{};              ///< what is known of the frame that it is of
   std::string verdict;                 ///< one sentence: what became of it and why
   std::vector<std::string> because;    ///< further sentences, the method's own
   std::vector<Margin> margins;         ///< at its pixel
