@@ -294,8 +294,8 @@ TEST_F(OutsideRun, WhatItLeftOfSingleFramesHasAValueThere) {
   for (const RecordedRun& one : {run, read_records(out)}) {
     std::vector<double> inliers(kFrames, std::nan("")), mask = inliers;
     inliers[3] = 1.0, mask[0] = mask[3] = 0.0;
-    EXPECT_THAT(figure_of_run(one, "inliers"), Pointwise(testing::NanSensitiveDoubleEq(), inliers));
-    EXPECT_THAT(figure_of_run(one, "mask"), Pointwise(testing::NanSensitiveDoubleEq(), mask));
+    EXPECT_THAT(figure_of_run(one, "inliers"), testing::Pointwise(testing::NanSensitiveDoubleEq(), inliers));
+    EXPECT_THAT(figure_of_run(one, "mask"), testing::Pointwise(testing::NanSensitiveDoubleEq(), mask));
     // The program told which feature it used, not how far that was off.
     EXPECT_THAT(figure_of_run(one, "residual"), Each(IsNan()));
     EXPECT_TRUE(std::isnan(one.record(3).features.at(0).residual_px));

@@ -65,9 +65,7 @@ class StagesPanel final : public FramePanel {
     list(session);
     const FrameView& view = *session.current;
     if (stages_.empty()) {
-      draw_absent(frame, !view.frame.readable()
-                             ? missing_motion(session)
-                             : fmt::format("Frame {} has not been processed yet.", view.index));
+      draw_absent(frame, missing_motion(session));
       return;
     }
     if (frame.strips != nullptr && frame.strips->pictures_alone()) {

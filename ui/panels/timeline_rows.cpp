@@ -15,6 +15,14 @@
 #include "ui/session/data_sources.hpp"
 
 namespace stillpoint {
+namespace {
+
+bool tells_keyframes(const SessionView& session) {
+  const auto& records = session.run->records;
+  return records.empty() || records.front().measured.keyframes;
+}
+
+}  // namespace
 
 Rgb lane_colour(const FigureInfo& figure, ThemeName theme) {
   switch (figure.unit) {
@@ -57,13 +65,12 @@ void TimelineRows::marks(float top, float bottom) const {
                0.3F * height);
   paint_.signs(bookmarked_frames(session_.debug), Sign::kFlag, role_colour(Role::kWarning, theme), middle,
                0.42F * height);
-  const auto tells_keyframes = [](const FrameRecord& record) { return record.measured.keyframes; };
-  const auto& records = session_.run->records;
-  const bool known = std::any_of(records.begin(), records.end(), tells_keyframes);
-  paint_.value(top,
-               hits.empty() ? (known ? fmt::format("{} keyframes", model_.keyframes.size()) : std::string())
-                            : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
-               frame_.theme.text);
+  paint_.value(
+      top,
+      hits.empty()
+          ? (tells_keyframes(session_) ? fmt::format("{} keyframes", model_.keyframes.size()) : std::string())
+          : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
+      frame_.theme.text);
 }
 
 void TimelineRows::ghost(std::size_t index, float top, float bottom) const {
@@ -126,7 +133,8 @@ Footer timeline_footer(const UiFrame& frame, const SessionView& session, const F
     entry.name = fmt::format("{} {}", counts[i], entry.name);
     footer.legend.push_back(std::move(entry));
   }
-  footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, theme), Sign::kDiamond});
+  if (tells_keyframes(session))
+    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, theme), Sign::kDiamond});
   if (!session.debug.breakpoints.empty())
     footer.legend.push_back({"breakpoint hit", role_colour(Role::kOutlier, theme), Sign::kTriangle});
   if (!session.debug.bookmarks.empty())
