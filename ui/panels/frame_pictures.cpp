@@ -12,6 +12,7 @@
 #include "ui/gl/texture.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/theme/text.hpp"
 
 namespace stillpoint {
 namespace {

@@ -16,6 +16,7 @@
 #include "ui/shell/event_log.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {

@@ -12,7 +12,6 @@
 #include "ui/panels/panel.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
-#include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <imgui.h>
+
 #include <algorithm>
 #include <cstddef>
 
-#include "ui/shell/canvas.hpp"
-
 namespace stillpoint {
+
+struct UiFrame;
 
 /// The rows that are seen where there is no room for all.
 struct RowWindow {

@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "ui/panels/panel_kit.hpp"
-#include "ui/panels/run_look.hpp"
 #include "ui/panels/timeline_model.hpp"
 
 namespace stillpoint {
+
+struct RunLook;
 
 /// How a status is drawn: lost and unreadable frames also stand lower, so that colour is not all that tells.
 [[nodiscard]] LegendEntry look_of(FrameStatus status, ThemeName theme);

@@ -15,6 +15,7 @@
 #include "ui/panels/run_pictures.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/text.hpp"
 
 namespace stillpoint {
 namespace {
