@@ -6,7 +6,7 @@
 
 #include "core/config.hpp"
 #include "core/motion/figure_info.hpp"
-#include "core/odometry/record_parts.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 
