@@ -52,8 +52,10 @@ BenchmarkResult result_of(const RunReport& report, bool judges) {
     result.recall = report.scores.mask.recall();
     result.iou = report.scores.mask.iou();
     result.partial_recall = report.scores.partial_mask.recall();
-    result.right = report.scores.removal.removed_rightly;
-    result.wrong = report.scores.removal.removed_wrongly;
+    if (report.measured.features) {
+      result.right = report.scores.removal.removed_rightly;
+      result.wrong = report.scores.removal.removed_wrongly;
+    }
   }
   result.median_ms = report.speed.median_ms;
   result.p99_ms = report.speed.p99_ms;

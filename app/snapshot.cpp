@@ -165,8 +165,11 @@ std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
 /// Those of `frames` at which the condition holds.
 std::vector<int> frames_where(const Condition& condition, const RunView& run,
                               const std::vector<int>& frames) {
+  const FrameFigures figures(run.measured());
+  if (const auto unknown = condition.unknown_figures(figures); !unknown.empty())
+    fmt::print(stderr, "stillpoint: warning: --when: no frame has {}\n", fmt::join(unknown, ", "));
   std::vector<int> chosen;
-  for (const int frame : condition.frames(FrameFigures(run.measured())))
+  for (const int frame : condition.frames(figures))
     if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
   return chosen;
 }

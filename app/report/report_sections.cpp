@@ -26,7 +26,7 @@ std::optional<double> rmse_of(const ErrorStatistics& statistics) {
 
 /// The figures of a run that a table compares; nothing where there are none.
 struct RunFigures {
-  std::optional<double> rpe_m, rpe_deg, ate_m, rpe_frame_m, precision, recall, median_ms;
+  std::optional<double> rpe_m, rpe_deg, ate_m, rpe_frame_m, precision, recall, median_ms, p99_ms;
 };
 
 RunFigures figures_of(const RunReport& report) {
@@ -42,7 +42,10 @@ RunFigures figures_of(const RunReport& report) {
     figures.precision = report.scores.mask.precision();
     figures.recall = report.scores.mask.recall();
   }
-  figures.median_ms = report.speed.median_ms;
+  if (report.measured.times) {
+    figures.median_ms = report.speed.median_ms;
+    figures.p99_ms = report.speed.p99_ms;
+  }
   return figures;
 }
 
@@ -153,11 +156,11 @@ std::string summary_table(const ReportGroup& group, int worst) {
          cell(f.rpe_frame_m, 1000.0, 2, best_frame),
          plain(masks ? fmt::format("{} / {}", text_of(f.precision, 100.0, 1), text_of(f.recall, 100.0, 1))
                      : "–"),
-         plain(masks ? fmt::format("{} / {}", r.scores.removal.removed_rightly,
-                                   r.scores.removal.removed_wrongly)
-                     : "–"),
+         plain(masks && r.measured.features ? fmt::format("{} / {}", r.scores.removal.removed_rightly,
+                                                          r.scores.removal.removed_wrongly)
+                                            : "–"),
          cell(f.median_ms, 1.0, 1, best_ms),
-         plain(fmt::format("{:.1f}", r.speed.p99_ms)),
+         plain(text_of(f.p99_ms, 1.0, 1)),
          worst_cell(group, run, worst)});
   }
   std::string html =
@@ -188,6 +191,7 @@ std::string stage_timings(const ReportGroup& group) {
   for (const TimedStage& stage : kStages) html += fmt::format("<th>{}</th>", stage.name);
   html += "<th>Frame, mean</th></tr></thead><tbody>\n";
   for (const ReportRun& run : group.runs) {
+    if (!run.report.measured.times) continue;
     const StageTimes& ms = run.report.speed.mean;
     html += fmt::format("<tr><td>{}</td><td style=\"width:36%\"><div class=\"bar\">", escaped(run.label));
     for (const TimedStage& stage : kStages)
@@ -199,6 +203,9 @@ std::string stage_timings(const ReportGroup& group) {
     html += fmt::format("<td class=\"number\">{:.2f}</td></tr>\n", ms.total);
   }
   html += "</tbody></table></div>\n";
+  for (const ReportRun& run : group.runs)
+    if (!run.report.measured.times)
+      html += fmt::format("<p class=\"dim\">{} left no times.</p>\n", escaped(run.label));
   for (const ReportRun& run : group.runs)
     if (const double stereo = run.report.speed.mean.stereo; stereo > 0)
       html +=

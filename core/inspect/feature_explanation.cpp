@@ -54,7 +54,23 @@ std::optional<int> region_of(const cv::Mat& mask, const cv::Point2f& pixel) {
   return region > 0 ? std::optional(region) : std::nullopt;
 }
 
+/// Of another program's feature: what became of it, and nothing of why.
+std::string outside_verdict(const FeatureExplanation& explanation) {
+  switch (explanation.feature.fate) {
+    case FeatureFate::removed:
+      return "Removed by the program that made the run.";
+    case FeatureFate::unmatched:
+      return "Kept and not matched by the program that made the run.";
+    case FeatureFate::inlier:
+      return "Kept and used by the program that made the run.";
+    case FeatureFate::outlier:
+      return "Kept and not used by the program that made the run: an outlier.";
+  }
+  return {};
+}
+
 std::string verdict_of(const FeatureExplanation& explanation, const std::string& method) {
+  if (!explanation.measured.solving) return outside_verdict(explanation);
   const FeatureRecord& feature = explanation.feature;
   switch (feature.fate) {
     case FeatureFate::removed:
@@ -121,6 +137,7 @@ FeatureExplanation explain_feature(const FrameView& view, const RunView& run, co
   FeatureExplanation explanation;
   explanation.index = index;
   explanation.feature = view.record->features.at(static_cast<std::size_t>(index));
+  explanation.measured = view.record->measured;
   const bool removed = explanation.feature.fate == FeatureFate::removed;
   const PairGeometry pair = pair_geometry(view, run, camera);
   const Eigen::Vector2d pixel(explanation.feature.pixel.x, explanation.feature.pixel.y);

@@ -46,6 +46,7 @@ struct Margin {
 struct FeatureExplanation {
   int index = 0;  ///< among the record's features
   FeatureRecord feature;
+  RecordParts measured{};              ///< what is known of the frame that it is of
   std::string verdict;                 ///< one sentence: what became of it and why
   std::vector<std::string> because;    ///< further sentences, the method's own
   std::vector<Margin> margins;         ///< at its pixel

@@ -59,8 +59,13 @@ Layer direct_layer(const FrameView& view, const DirectRecord& direct) {
 }
 
 void add_feature_stages(const FrameRecord& record, std::vector<Stage>& stages) {
-  Stage& features = add_stage(stages, "features", "Features", "Finds ORB features spread over the image.");
+  if (!record.measured.features) return;
+  // What another program did is known by what it left alone.
+  Stage& features = add_stage(stages, "features", "Features",
+                              record.measured.solving ? "Finds ORB features spread over the image."
+                                                      : "The features that the program left of the frame.");
   features.ms = record.ms.features;
+  features.timed = record.measured.times;
   add_figure(features, "Found", record.features_found);
   const auto with_depth = std::count_if(record.features.begin(), record.features.end(),
                                         [](const FeatureRecord& f) { return f.depth > 0.0F; });
@@ -74,14 +79,22 @@ void add_feature_stages(const FrameRecord& record, std::vector<Stage>& stages) {
     add_figure(removal, "Removed share", 100.0 * record.features_removed / record.features_found, "%", 1);
 }
 
-void add_pose_stages(const FrameRecord& record, std::vector<Stage>& stages) {
+void add_matching(const FrameRecord& record, std::vector<Stage>& stages) {
+  if (!record.measured.matches) return;
   Stage& matching =
       add_stage(stages, "matching", "Matching", "Matches the static features to points of the local map.");
   matching.ms = record.ms.matching;
   add_figure(matching, "Matches", record.matches);
   add_figure(matching, "Of the kept",
              record.features_kept > 0 ? 100.0 * record.matches / record.features_kept : 0.0, "%", 1);
+  if (record.measured.solving) return;
+  matching.timed = false;
+  add_figure(matching, "Inliers", record.inliers);
+  add_figure(matching, "Outliers", record.matches - record.inliers);
+}
 
+void add_pose_stages(const FrameRecord& record, std::vector<Stage>& stages) {
+  if (!record.measured.solving) return;
   Stage& start = add_stage(stages, "initial_pose", "Initial pose",
                            "A first pose: by the motion model where it holds, else by EPnP inside RANSAC.");
   start.ms = record.ms.epnp;
@@ -124,6 +137,7 @@ void add_direct_stage(const FrameRecord& record, std::vector<Stage>& stages) {
 }
 
 void add_map_stages(const FrameRecord& record, std::vector<Stage>& stages) {
+  if (!record.measured.points || !record.measured.bundle) return;
   Stage& mapping = add_stage(stages, "mapping", "Keyframe and map",
                              "Makes a keyframe where too little of the last one is left, and new points.");
   mapping.ms = record.ms.mapping;
@@ -180,6 +194,7 @@ void add_first_pose(const FrameRecord& record, std::vector<Stage>& stages) {
 void add_odometry_stages(const FrameRecord& record, std::vector<Stage>& stages) {
   add_first_pose(record, stages);
   add_feature_stages(record, stages);
+  add_matching(record, stages);
   add_pose_stages(record, stages);
   add_direct_stage(record, stages);
   add_map_stages(record, stages);

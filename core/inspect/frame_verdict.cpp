@@ -87,6 +87,15 @@ std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
 /// Through fmt, for GCC 12 warns falsely of a literal copied into an aggregate's string.
 FrameVerdict::Part part_of(const char* text, Tone tone) { return {fmt::format("{}", text), tone}; }
 
+FrameVerdict::Part mask_part(const FrameRecord& record, const FrameScores* scores) {
+  FrameVerdict::Part part{fmt::format("mask {:.1f} %", 100.0 * record.mask_share), Tone::neutral};
+  if (scores != nullptr && scores->mask.iou()) {
+    part.text += fmt::format(", IoU {}", percent(*scores->mask.iou()));
+    part.tone = *scores->mask.iou() < kLowIou ? Tone::bad : Tone::good;
+  }
+  return part;
+}
+
 FrameVerdict without_pose(const FrameRecord& record) {
   FrameVerdict verdict;
   verdict.bad = true;
@@ -117,13 +126,7 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
       text += fmt::format(", {} worst of {}", ordinal(standing->rank), standing->of);
     verdict.parts.push_back({std::move(text), standing->bad ? Tone::bad : Tone::good});
   }
-  std::string mask = fmt::format("mask {:.1f} %", 100.0 * record.mask_share);
-  Tone of_mask = Tone::neutral;
-  if (scores != nullptr && scores->mask.iou()) {
-    mask += fmt::format(", IoU {}", percent(*scores->mask.iou()));
-    of_mask = *scores->mask.iou() < kLowIou ? Tone::bad : Tone::good;
-  }
-  verdict.parts.push_back({mask, of_mask});
+  if (record.measured.mask) verdict.parts.push_back(mask_part(record, scores));
   if (scores != nullptr && record.inliers > 0) {
     const bool many = scores->dynamic_inliers > kManyOnDynamic * static_cast<double>(record.inliers);
     verdict.parts.push_back(
@@ -142,7 +145,7 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
         fmt::format("{} where {} is usual: {}.", shown_value(info_of(figure), standing->value),
                     shown_value(info_of(figure), standing->median), cause_of(run, row, removal_hurt));
   else if (record.status == FrameStatus::initialised)
-    verdict.sentence = "The map begins here.";
+    verdict.sentence = record.measured.points ? "The map begins here." : "The run begins here.";
   else if (standing && standing->of >= kFewest)
     verdict.sentence =
         fmt::format("As usual in this run (median {}).", shown_value(info_of(figure), standing->median));

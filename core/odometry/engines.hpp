@@ -6,6 +6,7 @@
 
 #include "core/config.hpp"
 #include "core/motion/figure_info.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 
@@ -22,6 +23,7 @@ struct EngineInfo {
   bool offers_matches = false;  ///< it has points that methods with MotionNeeds::matches can judge
   bool wants_orb = false;       ///< FramePreparer finds ORB features for it
   bool has_stages = false;      ///< FrameResult::engine describes its own stages; else the record tells all
+  RecordParts measures{};       ///< what of a record it tells; the rest has no value, not 0
   AnySection parameters{};      ///< its own constants at their defaults; empty when it has none
   std::vector<FigureInfo> figures{};  ///< what it adds to FrameRecord::motion_figures
   std::unique_ptr<OdometryEngine> (*make)(const Camera& camera, const Config& config) = nullptr;

@@ -105,6 +105,7 @@ FrameResult MaskedEngine::run_frame(const Frame& frame, const PreparedFrame& pre
   record.index = frame.index;
   record.timestamp = frame.timestamp;
   record.note = frame.problem;
+  record.measured = engine_of(config_).measures;
   const Stopwatch whole;
   double beside_ms = 0.0;
   point_weight_.clear();

@@ -64,21 +64,21 @@ FigureUnit common_unit(const Node& a, const Node& b, const Token& between) {
 
 // ---- Values ----
 
-bool is_spike(const Node& x, double sigmas, const FrameFigures& figures, int row) {
+double spike(const Node& x, double sigmas, const FrameFigures& figures, int row) {
   const double now = x.value(figures, row);
-  if (std::isnan(now)) return false;
+  if (std::isnan(now)) return kUnknownValue;
   std::vector<double> before;
   for (int i = std::max(0, row - kSpikeWindow); i < row; ++i)
     if (const double value = x.value(figures, i); !std::isnan(value)) before.push_back(value);
-  if (static_cast<int>(before.size()) < kSpikeLeast) return false;
+  if (static_cast<int>(before.size()) < kSpikeLeast) return 0.0;
   const double middle = median_of(before);
   for (double& value : before) value = std::abs(value - middle);
   const double sigma = 1.4826 * median_of(before);  // of normally distributed values
-  return std::abs(now - middle) > sigmas * sigma;
+  return std::abs(now - middle) > sigmas * sigma ? 1.0 : 0.0;
 }
 
 double compare(std::string_view symbol, double a, double b) {
-  if (std::isnan(a) || std::isnan(b)) return 0.0;
+  if (std::isnan(a) || std::isnan(b)) return kUnknownValue;
   const bool holds = symbol == "<"    ? a < b
                      : symbol == "<=" ? a <= b
                      : symbol == ">"  ? a > b
@@ -89,6 +89,18 @@ double compare(std::string_view symbol, double a, double b) {
 }
 
 bool is_true(double value) { return !std::isnan(value) && value != 0.0; }
+
+// Three values, Kleene's logic: the opposite of what is not known is not known either, so that a condition
+// over figures that nobody measured holds nowhere, however it is put.
+
+double opposite(double a) { return std::isnan(a) ? kUnknownValue : a == 0.0 ? 1.0 : 0.0; }
+
+double either_of(double a, double b) {
+  if (is_true(a) || is_true(b)) return 1.0;
+  return std::isnan(a) || std::isnan(b) ? kUnknownValue : 0.0;
+}
+
+double both_of(double a, double b) { return opposite(either_of(opposite(a), opposite(b))); }
 
 // ---- Grammar ----
 
@@ -131,7 +143,7 @@ class Parser {
     NodePtr left = both();
     for (int column = now().column; take("||") || take("or"); column = now().column)
       left = node(truth, column, [a = left, b = both()](const FrameFigures& f, int row) {
-        return is_true(a->value(f, row)) || is_true(b->value(f, row)) ? 1.0 : 0.0;
+        return either_of(a->value(f, row), b->value(f, row));
       });
     return left;
   }
@@ -140,7 +152,7 @@ class Parser {
     NodePtr left = negation();
     for (int column = now().column; take("&&") || take("and"); column = now().column)
       left = node(truth, column, [a = left, b = negation()](const FrameFigures& f, int row) {
-        return is_true(a->value(f, row)) && is_true(b->value(f, row)) ? 1.0 : 0.0;
+        return both_of(a->value(f, row), b->value(f, row));
       });
     return left;
   }
@@ -149,9 +161,8 @@ class Parser {
     const int column = now().column;
     if (!take("!") && !take("not")) return comparison();
     const Deeper deeper(*this);
-    return node(truth, column, [a = negation()](const FrameFigures& f, int row) {
-      return is_true(a->value(f, row)) ? 0.0 : 1.0;
-    });
+    return node(truth, column,
+                [a = negation()](const FrameFigures& f, int row) { return opposite(a->value(f, row)); });
   }
 
   NodePtr comparison() {
@@ -283,12 +294,12 @@ class Parser {
       return node(x->unit, column,
                   [x](const FrameFigures& f, int row) { return std::abs(x->value(f, row)); });
     if (is_spike_of)
-      return node(truth, column, [x, sigmas](const FrameFigures& f, int row) {
-        return is_spike(*x, sigmas, f, row) ? 1.0 : 0.0;
-      });
+      return node(truth, column,
+                  [x, sigmas](const FrameFigures& f, int row) { return spike(*x, sigmas, f, row); });
     const bool change = name.text == "change";
     return node(x->unit, column, [x, change](const FrameFigures& f, int row) {
-      if (row == 0) return kUnknownValue;
+      // Before the first frame nothing was measured, and nothing was so.
+      if (row == 0) return !change && x->unit == truth ? 0.0 : kUnknownValue;
       const double before = x->value(f, row - 1);
       return change ? x->value(f, row) - before : before;
     });
@@ -362,7 +373,7 @@ std::string condition_help() {
       "  Units       m cm mm deg px ms s %; a plain number takes the unit of what it is compared with\n"
       "  Functions   previous(x): of the frame before; change(x): x - previous(x); abs(x);\n"
       "              spike(x, 3): more than 3 standard deviations off the median of the 60 frames before\n"
-      "  What is not known, such as errors without ground truth, makes a comparison false.\n"
+      "  What is not known, such as errors without ground truth, holds nowhere, nor does its opposite.\n"
       "Names:\n";
   for (const FigureInfo& info : frame_figure_infos())
     text += fmt::format("  {:<18} {:<7} {}{}\n", info.name, to_string(info.unit), info.help,

@@ -19,7 +19,14 @@ double of_pose(const MeasuredFrame& row, double value) {
 double of_image(const MeasuredFrame& row, double value) {
   return row.record.status == FrameStatus::unreadable ? kUnknownFigure : value;
 }
-double of_scores(const MeasuredFrame& row, double value) { return row.scores.known ? value : kUnknownFigure; }
+/// Of a part that somebody measured (RecordParts); elsewhere a field's 0 says nothing.
+double of_part(bool RecordParts::*part, const MeasuredFrame& row, double value) {
+  return row.record.measured.*part ? value : kUnknownFigure;
+}
+/// Of features that are there and of which the truth is known.
+double of_scores(const MeasuredFrame& row, double value) {
+  return row.scores.known ? of_part(&RecordParts::features, row, value) : kUnknownFigure;
+}
 double time(double ms) { return ms > 0.0 ? ms : kUnknownFigure; }  // 0: not measured
 
 /// The error of the motion that ends at the record, or null. @param errors in order of time
@@ -94,9 +101,13 @@ std::vector<FrameFigure> all_figures() {
       is_status("initialised", "the map began here",
                 [](const MeasuredFrame& r) { return flag(r.record.status == FrameStatus::initialised); }),
       is_status("keyframe", "kept in the map",
-                [](const MeasuredFrame& r) { return flag(r.record.keyframe); }),
+                [](const MeasuredFrame& r) {
+                  return of_part(&RecordParts::keyframes, r, flag(r.record.keyframe));
+                }),
       is_status("bundle", "the map was adjusted",
-                [](const MeasuredFrame& r) { return flag(r.record.bundle_iterations > 0); }),
+                [](const MeasuredFrame& r) {
+                  return of_part(&RecordParts::bundle, r, flag(r.record.bundle_iterations > 0));
+                }),
       {{.name = "rpe",
         .unit = metres,
         .help = "error of the motion from the frame before, against ground truth",
@@ -181,7 +192,9 @@ std::vector<FrameFigure> all_figures() {
         .worse = high,
         .title = "Mask",
         .column = "mask_share"},
-       [](const MeasuredFrame& r) { return of_image(r, r.record.mask_share); }},
+       [](const MeasuredFrame& r) {
+         return of_part(&RecordParts::mask, r, of_image(r, r.record.mask_share));
+       }},
       {{.name = "mask_precision",
         .unit = share,
         .help = "of the mask that is truly dynamic; this and the next four need ground-truth masks",
@@ -212,21 +225,38 @@ std::vector<FrameFigure> all_figures() {
           [](const MeasuredFrame& r) { return of_scores(r, double(r.scores.dynamic_inliers)); }, high),
       count(
           "features", "Features", "features_found", "features found",
-          [](const MeasuredFrame& r) { return of_image(r, r.record.features_found); }, low),
+          [](const MeasuredFrame& r) {
+            return of_part(&RecordParts::features, r, of_image(r, r.record.features_found));
+          },
+          low),
       count("removed", "Features removed", "features_removed", "features inside the mask",
-            [](const MeasuredFrame& r) { return of_image(r, r.record.features_removed); }),
+            [](const MeasuredFrame& r) {
+              return of_part(&RecordParts::features, r, of_image(r, r.record.features_removed));
+            }),
       count(
           "kept", "Features kept", "features_kept", "features outside the mask",
-          [](const MeasuredFrame& r) { return of_image(r, r.record.features_kept); }, low),
+          [](const MeasuredFrame& r) {
+            return of_part(&RecordParts::features, r, of_image(r, r.record.features_kept));
+          },
+          low),
       count(
           "matches", "Matches", "", "features matched to map points",
-          [](const MeasuredFrame& r) { return of_image(r, r.record.matches); }, low),
+          [](const MeasuredFrame& r) {
+            return of_part(&RecordParts::matches, r, of_image(r, r.record.matches));
+          },
+          low),
       count(
           "inliers", "Inliers", "", "matches that agree with the pose",
-          [](const MeasuredFrame& r) { return of_image(r, r.record.inliers); }, low),
+          [](const MeasuredFrame& r) {
+            return of_part(&RecordParts::matches, r, of_image(r, r.record.inliers));
+          },
+          low),
       count(
           "outliers", "Outliers", "", "matches that do not",
-          [](const MeasuredFrame& r) { return of_image(r, r.record.matches - r.record.inliers); }, high),
+          [](const MeasuredFrame& r) {
+            return of_part(&RecordParts::matches, r, of_image(r, r.record.matches - r.record.inliers));
+          },
+          high),
       {{.name = "residual",
         .unit = pixels,
         .help = "reprojection error of the inliers, RMS",
@@ -234,7 +264,8 @@ std::vector<FrameFigure> all_figures() {
         .title = "Residual",
         .column = "rms_px"},
        [](const MeasuredFrame& r) {
-         return r.record.inliers > 0 ? of_pose(r, r.record.rms_px) : kUnknownFigure;
+         return r.record.inliers > 0 ? of_part(&RecordParts::solving, r, of_pose(r, r.record.rms_px))
+                                     : kUnknownFigure;
        }},
       {{.name = "position_sigma",
         .unit = metres,
@@ -253,35 +284,49 @@ std::vector<FrameFigure> all_figures() {
         .column = "rotation_sigma_deg"},
        [](const MeasuredFrame& r) { return to_degrees(sigma_of(r.record, 3)); }},
       count("refine_iterations", "Refinement steps", "", "steps the refinement of the pose took",
-            [](const MeasuredFrame& r) { return double(r.record.refine_iterations); }),
+            [](const MeasuredFrame& r) {
+              return of_part(&RecordParts::solving, r, r.record.refine_iterations);
+            }),
       is_status("wide_search", "the motion model's window was too small",
-                [](const MeasuredFrame& r) { return flag(r.record.pose_start == PoseStart::wide_search); }),
+                [](const MeasuredFrame& r) {
+                  return of_part(&RecordParts::solving, r,
+                                 flag(r.record.pose_start == PoseStart::wide_search));
+                }),
       is_status("epnp", "the pose began with EPnP",
-                [](const MeasuredFrame& r) { return flag(r.record.pose_start == PoseStart::epnp); }),
+                [](const MeasuredFrame& r) {
+                  return of_part(&RecordParts::solving, r, flag(r.record.pose_start == PoseStart::epnp));
+                }),
       is_status("direct", "the pose has a share by direct alignment",
-                [](const MeasuredFrame& r) { return flag(r.record.direct.share > 0.0); }),
+                [](const MeasuredFrame& r) {
+                  return of_part(&RecordParts::direct, r, flag(r.record.direct.share > 0.0));
+                }),
       count("direct_patches", "Direct patches", "", "patches that were aligned directly",
-            [](const MeasuredFrame& r) { return double(r.record.direct.patches); }),
+            [](const MeasuredFrame& r) { return of_part(&RecordParts::direct, r, r.record.direct.patches); }),
       {{.name = "direct_share",
         .unit = share,
         .help = "of the pose's information that direct alignment gave",
         .digits = 3,
         .title = "Direct share"},
-       [](const MeasuredFrame& r) { return r.record.direct.share; }},
+       [](const MeasuredFrame& r) { return of_part(&RecordParts::direct, r, r.record.direct.share); }},
       count("rounds", "Motion rounds", "motion_rounds", "rounds of motion detection",
-            [](const MeasuredFrame& r) { return double(r.record.motion_rounds); }),
+            [](const MeasuredFrame& r) { return of_part(&RecordParts::rounds, r, r.record.motion_rounds); }),
       count("map_points", "Map points", "", "points in the map after the frame",
-            [](const MeasuredFrame& r) { return double(r.record.map_points); }),
-      count("map_keyframes", "Map keyframes", "", "keyframes in the map after the frame",
-            [](const MeasuredFrame& r) { return double(r.record.map_keyframes); }),
+            [](const MeasuredFrame& r) { return of_part(&RecordParts::points, r, r.record.map_points); }),
+      count(
+          "map_keyframes", "Map keyframes", "", "keyframes in the map after the frame",
+          [](const MeasuredFrame& r) { return of_part(&RecordParts::keyframes, r, r.record.map_keyframes); }),
       count("new_points", "New points", "", "points the keyframe added",
-            [](const MeasuredFrame& r) { return double(r.record.new_points); }),
+            [](const MeasuredFrame& r) { return of_part(&RecordParts::points, r, r.record.new_points); }),
       count("fused_points", "Fused points", "", "points found to be one",
-            [](const MeasuredFrame& r) { return double(r.record.fused_points); }),
+            [](const MeasuredFrame& r) {
+              return of_part(&RecordParts::fused_points, r, r.record.fused_points);
+            }),
       count("culled_points", "Culled points", "", "points dropped",
-            [](const MeasuredFrame& r) { return double(r.record.culled_points); }),
+            [](const MeasuredFrame& r) { return of_part(&RecordParts::points, r, r.record.culled_points); }),
       count("culled_keyframes", "Culled keyframes", "", "keyframes dropped",
-            [](const MeasuredFrame& r) { return double(r.record.culled_keyframes); }),
+            [](const MeasuredFrame& r) {
+              return of_part(&RecordParts::culled_keyframes, r, r.record.culled_keyframes);
+            }),
       {{.name = "bundle_rms_before_px",
         .unit = pixels,
         .help = "residual before bundle adjustment",
@@ -299,7 +344,9 @@ std::vector<FrameFigure> all_figures() {
          return r.record.bundle_iterations > 0 ? r.record.bundle_rms_px : kUnknownFigure;
        }},
       count("bundle_iterations", "Bundle steps", "", "steps that bundle adjustment took",
-            [](const MeasuredFrame& r) { return double(r.record.bundle_iterations); }),
+            [](const MeasuredFrame& r) {
+              return of_part(&RecordParts::bundle, r, r.record.bundle_iterations);
+            }),
       stage_time("ms.total", "Time", "total_ms", "time of the whole frame",
                  [](const MeasuredFrame& r) { return time(r.record.ms.total); }),
       stage_time("ms.motion", "Motion time", "motion_ms", "time of motion detection",

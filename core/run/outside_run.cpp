@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -317,6 +318,7 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
     }
   }
   const bool scored = source.has_masks() && (has_features || masks);
+  for (FrameRecord& record : run.records) tell_parts_of_outside(record, false);
   for (std::size_t i = 0; (masks || has_features) && i < run.records.size(); ++i) {
     FrameResult result;
     result.record = std::move(run.records[i]);
@@ -332,6 +334,7 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
     }
     if (scored && (!masks || !result.mask.empty()))
       run.scores[i] = score_frame(result, source.truth(static_cast<int>(i)).moving, !masks);
+    tell_parts_of_outside(result.record, !result.mask.empty());
     details[i].features = std::exchange(result.record.features, {});
     run.records[i] = std::move(result.record);
   }
@@ -340,8 +343,18 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
   return recorded;
 }
 
+void tell_parts_of_outside(FrameRecord& record, bool mask) {
+  record.measured = poses_alone();
+  record.measured.mask = mask;
+  // A table of features without a row for the frame leaves it untold.
+  record.measured.features = record.measured.matches = record.features_found > 0;
+  record.rms_px = std::numeric_limits<double>::quiet_NaN();
+}
+
 void write_outside_run(const std::string& folder, const RecordedRun& run, const FrameSource& source) {
-  RecordsWriter records(folder, run.origin, run.run.config, run.outside);
+  const bool masks = std::any_of(run.run.records.begin(), run.run.records.end(),
+                                 [](const FrameRecord& record) { return record.measured.mask; });
+  RecordsWriter records(folder, run.origin, run.run.config, run.outside, masks);
   for (std::size_t i = 0; i < run.run.records.size(); ++i) {
     FrameResult frame;
     frame.record = run.record(i);

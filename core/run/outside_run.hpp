@@ -35,6 +35,9 @@ struct OutsideRunFiles {
 [[nodiscard]] RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& origin,
                                            const OutsideRunFiles& files, std::vector<std::string>& warnings);
 
+/// Sets of a record of such a run what is known of it: a pose, features where there are any, and a mask.
+void tell_parts_of_outside(FrameRecord& record, bool mask);
+
 /// Writes it as a run's folder, which opens like any other.
 /// @param folder made by prepare_run_folder
 /// @throws InputError when it cannot be written

@@ -15,7 +15,7 @@
 namespace stillpoint {
 
 RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin,
-                             const Config& config, const std::string& outside)
+                             const Config& config, const std::string& outside, bool masks)
     : path_(run_folder / kRecordsName) {
   std::error_code none;
   if (std::filesystem::exists(run_folder / kSummaryName, none)) beside_.emplace(path_);
@@ -27,7 +27,10 @@ RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const Sequ
   json["sequence"] = to_json(origin, run_folder);
   json["frames_in_sequence"] = origin.frames;
   json["config"] = to_toml(config);
-  if (!outside.empty()) json["outside"] = outside;
+  if (!outside.empty()) {
+    json["outside"] = outside;
+    json["outside_masks"] = masks;
+  }
   const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   for (const char letter : text) content_(letter);
   put_chunk(ChunkKind::header);

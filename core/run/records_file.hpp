@@ -47,8 +47,9 @@ class RecordsWriter {
  public:
   /// @throws InputError when the file cannot be made
   /// @param outside RecordedRun::outside
+  /// @param masks whether that program left masks
   RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin, const Config& config,
-                const std::string& outside = {});
+                const std::string& outside = {}, bool masks = false);
 
   void add(const FrameResult& frame);
 

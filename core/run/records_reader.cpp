@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <future>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/json_text.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/outside_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_report.hpp"
 
@@ -13,13 +16,15 @@ namespace {
 using Chunk = ChunkFile::Chunk;
 using Exhausted = ByteStreamReader::Exhausted;
 
-void read_header(const Chunk& chunk, RecordedRun& recorded) {
+/// @param masks whether another program's run left masks; nothing in a file that does not say
+void read_header(const Chunk& chunk, RecordedRun& recorded, std::optional<bool>& masks) {
   if (chunk.kind != ChunkKind::header) throw ChunkDamaged();
   const std::vector<std::uint8_t>& content = chunk.content;
   const auto json = parse_json({reinterpret_cast<const char*>(content.data()), content.size()});
   recorded.origin = origin_from_json(json.at("sequence"));
   json.at("frames_in_sequence").get_to(recorded.run.frames_in_sequence);
   recorded.outside = json.value("outside", "");
+  if (json.contains("outside_masks")) masks = json["outside_masks"].get<bool>();
   recorded.run.config = config_from_toml(json.at("config").get<std::string>(), "its config");
 }
 
@@ -161,6 +166,19 @@ bool read_frames(std::uint64_t at, RecordsReading& reading) {
   }
 }
 
+/// What the records tell of: what their engine does, or what another program left.
+void tell_parts(RecordedRun& recorded, const std::optional<bool>& masks) {
+  std::vector<FrameRecord>& records = recorded.run.records;
+  if (recorded.outside.empty()) {
+    for (FrameRecord& record : records) record.measured = engine_of(recorded.run.config).measures;
+    return;
+  }
+  const bool any = masks.value_or(std::any_of(records.begin(), records.end(), [](const FrameRecord& record) {
+    return record.mask_share > 0.0 || !record.mask_problem.empty();
+  }));
+  for (FrameRecord& record : records) tell_parts_of_outside(record, any && record.mask_problem.empty());
+}
+
 /// The run as far as its frames tell: poses are those of the moment, and nothing was scored.
 void do_without_tail(RecordedRun& recorded, const std::string& cut_short) {
   recorded.cut_short = cut_short + "; what it holds is shown, without map, mask scores and adjusted poses";
@@ -175,9 +193,10 @@ void read_all_of(RecordsReading& reading, const std::function<void(const Sequenc
   RecordedRun& recorded = reading.recorded;
   const ChunkFile& file = *reading.file;
   bool whole = false;
+  std::optional<bool> masks;
   try {
     const Chunk header = file.read(kRecordsHeadBytes);
-    read_header(header, recorded);
+    read_header(header, recorded, masks);
     if (on_origin) on_origin(recorded.origin);
     if (file.tables()) read_tables(*file.tables(), reading);
     whole = file.tables() || read_frames(header.next, reading);
@@ -186,6 +205,7 @@ void read_all_of(RecordsReading& reading, const std::function<void(const Sequenc
     if (file.tables()) throw ChunkDamaged();
   }
   if (!whole && recorded.run.records.empty()) throw InputError(file.cut_short(0));
+  tell_parts(recorded, masks);
   for (const FrameRecord& record : recorded.run.records)
     if (record.estimated) recorded.run.live.push_back({record.timestamp, record.world_from_camera});
   if (!whole) do_without_tail(recorded, file.cut_short(recorded.run.records.size()));
@@ -206,6 +226,9 @@ std::shared_ptr<const FrameDetails> details_at_hand(std::vector<FrameDetails::De
 FrameRecord RecordedRun::record(std::size_t row) const {
   FrameRecord record = run.records.at(row);
   record.features = details->of(row).features;
+  if (!record.measured.solving)
+    for (FeatureRecord& feature : record.features)
+      feature.residual_px = std::numeric_limits<float>::quiet_NaN();
   return record;
 }
 

@@ -41,7 +41,7 @@ std::string frames_csv(const RunResult& run, const RunReport& report) {
     const FrameRecord& record = run.records[static_cast<std::size_t>(row)];
     std::vector<std::string> cells{fmt::format("{:.6f}", record.timestamp),
                                    std::string(to_string(record.status)),
-                                   std::string(to_string(record.pose_start))};
+                                   record.measured.solving ? std::string(to_string(record.pose_start)) : ""};
     for (const int column : columns) {
       const double value = figures.value(row, column);
       cells.push_back(std::isnan(value)

@@ -55,6 +55,21 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+/// What any frame tells of; of a run without frames all, as its figures are sums over none.
+RecordParts parts_of(const RunResult& run) {
+  if (run.records.empty()) return {};
+  RecordParts any = poses_alone();
+  for (const FrameRecord& record : run.records) {
+    any.mask = any.mask || record.measured.mask;
+    any.features = any.features || record.measured.features;
+    any.matches = any.matches || record.measured.matches;
+  }
+  // The rest is the engine's, and so the same for all frames.
+  RecordParts parts = run.records.front().measured;
+  parts.mask = any.mask, parts.features = any.features, parts.matches = any.matches;
+  return parts;
+}
+
 nlohmann::ordered_json speed_json(const SpeedFigures& speed) {
   nlohmann::ordered_json json;
   json["median_ms"] = speed.median_ms;
@@ -173,6 +188,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   report.without_mask = mask_gaps(run);
   if (report.evaluation) report.doubt = doubt_of(*report.evaluation);
   for (const FrameScores& scores : run.scores) report.scores += scores;
+  report.measured = parts_of(run);
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();
@@ -184,6 +200,14 @@ std::string run_hash(const std::vector<FrameRecord>& records) {
   for (const FrameRecord& record : records) hash.add(record);
   return hash.hex();
 }
+
+namespace {
+
+nlohmann::ordered_json number_or_null(bool known, int number) {
+  return known ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
+}
+
+}  // namespace
 
 nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run, const FrameSource& source) {
   nlohmann::ordered_json json;
@@ -205,8 +229,8 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
   json["ground_truth_unusable"] =
       report.truth_why_not.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.truth_why_not);
   json["doubt"] = report.doubt.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(report.doubt);
-  json["keyframes"] = report.keyframes;
-  json["map_points"] = report.map_points;
+  json["keyframes"] = number_or_null(report.measured.keyframes, report.keyframes);
+  json["map_points"] = number_or_null(report.measured.points, report.map_points);
   json["run_hash"] = report.hash;
   json["evaluation"] =
       report.evaluation ? nlohmann::ordered_json(nlohmann::json(*report.evaluation)) : nullptr;
@@ -217,19 +241,21 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
     json["masks"]["mask"] = nlohmann::json(report.scores.mask);
     if (const std::string& part = method_of(run.config).partial_mask; !part.empty())
       json["masks"][part + "_alone"] = nlohmann::json(report.scores.partial_mask);
-    json["masks"]["removed_features"] = nlohmann::json(report.scores.removal);
+    if (report.measured.features) json["masks"]["removed_features"] = nlohmann::json(report.scores.removal);
   }
-  json["speed"] = speed_json(report.speed);
+  json["speed"] = report.measured.times ? speed_json(report.speed) : nullptr;
   json["peak_memory_mb"] = report.peak_memory_mb;
   json["warnings"] = source.warnings();
   return json;
 }
 
 std::string to_text(const RunReport& report) {
-  std::string text = fmt::format(
-      "{}, method {}, odometry {}: {} of {} frames tracked ({:.1f} %), {} keyframes, {} map points\n",
-      report.sequence, report.method, report.odometry, report.tracked, report.frames, 100.0 * report.coverage,
-      report.keyframes, report.map_points);
+  std::string text =
+      fmt::format("{}, method {}, odometry {}: {} of {} frames tracked ({:.1f} %)", report.sequence,
+                  report.method, report.odometry, report.tracked, report.frames, 100.0 * report.coverage);
+  if (report.measured.keyframes) text += fmt::format(", {} keyframes", report.keyframes);
+  if (report.measured.points) text += fmt::format(", {} map points", report.map_points);
+  text += "\n";
   if (report.evaluation && !report.evaluation->matched.empty()) {
     const TrajectoryEvaluation& e = *report.evaluation;
     text += e.ate.translation_m.count > 0 ? fmt::format("  ATE           {:.4f} m RMSE over {} poses\n",
@@ -252,12 +278,17 @@ std::string to_text(const RunReport& report) {
   }
   if (!report.without_mask.empty()) text += fmt::format("  no mask       {}\n", report.without_mask);
   if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
-  if (report.scores.known && !method_named(report.method).baseline)
-    text += fmt::format(
-        "  mask          precision {}, recall {}, IoU {}; features removed rightly {}, wrongly {}\n",
-        share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),
-        share_text(report.scores.mask.iou()), report.scores.removal.removed_rightly,
-        report.scores.removal.removed_wrongly);
+  // Another program is no method of ours that could be asked what it removes.
+  if (report.scores.known && (!report.measured.solving || !method_named(report.method).baseline)) {
+    text += fmt::format("  mask          precision {}, recall {}, IoU {}",
+                        share_text(report.scores.mask.precision()), share_text(report.scores.mask.recall()),
+                        share_text(report.scores.mask.iou()));
+    if (report.measured.features)
+      text += fmt::format("; features removed rightly {}, wrongly {}", report.scores.removal.removed_rightly,
+                          report.scores.removal.removed_wrongly);
+    text += "\n";
+  }
+  if (!report.measured.times) return text + fmt::format("  run hash      {}\n", report.hash);
   text += fmt::format("  time a frame  median {:.1f} ms, 99th percentile {:.1f} ms", report.speed.median_ms,
                       report.speed.p99_ms);
   if (report.speed.units > 0) text += fmt::format(" ({:.2f} ORB units)", report.speed.units);

@@ -29,13 +29,14 @@ struct RunReport {
   double coverage = 0.0;                           ///< share of the frames with an estimated pose
   std::optional<TrajectoryEvaluation> evaluation;  ///< of the final trajectory; nothing without ground truth
   std::optional<TrajectoryEvaluation> evaluation_live;  ///< of the poses as first estimated
-  bool has_truth = false;     ///< the sequence has ground truth that meets its frames
-  std::string truth_why_not;  ///< why ground truth that is there is of no use; empty otherwise
-  std::string doubt;          ///< what lets truth and poses fit far better than as they stand; empty mostly
-  std::string without_depth;  ///< which frames lacked depth and why, one sentence; empty where none did
-  std::string without_mask;   ///< which frames lacked the mask they were to be given, and why; likewise
-  FrameScores scores;         ///< summed over the frames
-  SpeedFigures speed;
+  bool has_truth = false;       ///< the sequence has ground truth that meets its frames
+  std::string truth_why_not;    ///< why ground truth that is there is of no use; empty otherwise
+  std::string doubt;            ///< what lets truth and poses fit far better than as they stand; empty mostly
+  std::string without_depth;    ///< which frames lacked depth and why, one sentence; empty where none did
+  std::string without_mask;     ///< which frames lacked the mask they were to be given, and why; likewise
+  FrameScores scores;           ///< summed over the frames
+  RecordParts measured{};       ///< what is known of any frame; the rest has no value
+  SpeedFigures speed;           ///< where measured.times
   std::string hash;             ///< run_hash of the records
   double peak_memory_mb = 0.0;  ///< of the process so far
 };

@@ -15,6 +15,7 @@ namespace stillpoint {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr int kRunFrames = 40;  // over a second, so that there is an RPE over one
 
@@ -50,6 +51,15 @@ TEST_F(OutsideRunCli, AsOurOwnRunIs) {
   ASSERT_EQ(b.size(), a.size());
   for (std::size_t i = 1; i < a.size(); ++i)
     EXPECT_NEAR(std::stod(b[i].at("rpe_frame_m")), std::stod(a[i].at("rpe_frame_m")), 2e-6) << i;
+  // What the trajectory does not tell is an empty cell, and of our own run all is there.
+  for (const char* column : {"mask_share", "features_found", "inliers", "map_points", "keyframe", "total_ms",
+                             "pose_start", "bundle_iterations"}) {
+    EXPECT_NE(a[20].at(column), "") << column;
+    EXPECT_EQ(b[20].at(column), "") << column;
+  }
+  EXPECT_EQ(b[20].at("tracked"), "1");
+  EXPECT_THAT(imported.out, Not(HasSubstr("map points")));
+  EXPECT_THAT(imported.out, Not(HasSubstr("time a frame")));
   // A report takes both, each by its name.
   const CliResult report = run_cli(
       {"report", sequence.path("own"), sequence.path("theirs"), "--out", sequence.path("report.html")});
@@ -68,6 +78,11 @@ TEST_F(OutsideRunCli, IsDrawnBesideOrByItself) {
   const CliResult alone = run_cli({"snapshot", sequence.path("theirs"), "--frames", "20", "--panels",
                                    "workbench", "--out", sequence.path("alone")});
   EXPECT_EQ(alone.exit_code, 0) << alone.err;
+  const CliResult when = run_cli({"snapshot", sequence.path("theirs"), "--when", "mask < 5 %", "--panels",
+                                  "errors", "--out", sequence.path("when")});
+  EXPECT_EQ(when.exit_code, 0) << when.err;
+  EXPECT_THAT(when.err, HasSubstr("--when: no frame has mask"));
+  EXPECT_FALSE(std::filesystem::exists(sequence.path("when/000020_errors.png")));
 }
 
 TEST_F(OutsideRunCli, WhatCannotBeMeantIsRefused) {

@@ -310,5 +310,22 @@ TEST(ParametersPanel, ResetGoesBackToTheDefault) {
   EXPECT_EQ(preview.config->of<PaperConfig>().border_px, Config().of<PaperConfig>().border_px);
 }
 
+TEST(Bookmarks, NotesHaveTheRoomOfANarrowTile) {
+  // Where the time would stand in a wider tile, a note is typed.
+  const SessionView session = debug_example();
+  PanelStage stage("bookmarks", {}, 280, 240);
+  bool typed = false;
+  for (float y = 40.0F; y < 110.0F && !typed; y += 8.0F) {
+    stage.play(session, {MouseMoved{100.0F, y}, MouseButton{0, true, {}}, MouseButton{0, false, {}}});
+    stage.play(session, {TextTyped{'z'}});
+    for (const SessionRequest& request :
+         stage.play(session, {KeyChanged{Key::kEnter, true, {}}, KeyChanged{Key::kEnter, false, {}}})
+             .requests)
+      if (const auto* marks = std::get_if<request::Bookmarks>(&request))
+        for (const Bookmark& bookmark : marks->all) typed |= bookmark.note.find('z') != std::string::npos;
+  }
+  EXPECT_TRUE(typed);
+}
+
 }  // namespace
 }  // namespace stillpoint::testing

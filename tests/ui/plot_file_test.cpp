@@ -8,8 +8,11 @@
 #include <fstream>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 
 #include "core/error.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/saved_map.hpp"
 #include "core/run/sweep.hpp"
@@ -22,6 +25,7 @@
 namespace stillpoint::testing {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -217,6 +221,78 @@ TEST_F(PlotFile, IsOfferedByARightClick) {
   }
   EXPECT_EQ(workbench.fact("message", &session).value_or(""), "written to " + path);
   EXPECT_THAT(folder_.read("mine.svg"), HasSubstr("<svg"));
+}
+
+TEST(PlotLegend, NamesTheRunItselfWhereThereIsRoomForFew) {
+  const std::vector<double> x{0.0, 1.0}, y{1.0, 2.0};
+  const Rgb own{10, 200, 30};
+  Plot plot{.x_label = "time", .y_label = "RPE over 1 s"};
+  plot.series = {{"baseline with a long name", x, y, {200, 30, 10}},
+                 {"another run with a long name", x, y, {30, 10, 200}},
+                 {"the run itself, by a long name", x, y, own}};
+  Offscreen offscreen({.width = 280, .height = 160});
+  PlotView view;
+  const cv::Mat image = offscreen.render([&](UiFrame& frame) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(frame.size);
+    ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration);
+    draw_plot(frame, "plot", plot, view);
+    ImGui::End();
+  });
+  cv::Mat swatch;
+  const cv::Mat heading = image.rowRange(0, 26);
+  cv::inRange(heading, cv::Scalar(own.b, own.g, own.r), cv::Scalar(own.b, own.g, own.r), swatch);
+  EXPECT_GT(cv::countNonZero(swatch), 8);
+}
+
+/// The tables of the panel Feature, each by its own right click.
+TEST(FeatureTables, AreBothOffered) {
+  SessionView session = debug_example();
+  auto current = std::make_shared<FrameView>(*session.current);
+  ASSERT_FALSE(current->record->features.empty());
+  auto before = std::make_shared<FrameRecord>(*current->record);
+  before->index = current->index - 1;
+  // Where the example's flow says that they came from.
+  for (FeatureRecord& feature : before->features) feature.pixel.x -= 6.9F;
+  current->history = {before};
+  session.current = current;
+  // High enough for all that is told of a feature to be seen.
+  Offscreen offscreen({.width = 700, .height = 1600});
+  const auto panels = make_panels();
+  const auto found = std::find_if(panels.begin(), panels.end(),
+                                  [](const auto& panel) { return panel->name() == "feature"; });
+  ASSERT_NE(found, panels.end());
+  std::optional<FileOffer> offer;
+  std::set<std::string> names;
+  const auto draw = [&] {
+    for (int i = 0; i < 3; ++i)
+      offscreen.draw([&](UiFrame& frame) {
+        frame.offer = &offer;
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize(frame.size);
+        ImGui::Begin("stage", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+        PanelActions ignored;
+        (*found)->draw(frame, session, ignored);
+        ImGui::End();
+      });
+  };
+  const auto click = [&](float x, float y, int button) {
+    offscreen.send(MouseMoved{x, y});
+    draw();
+    for (const bool down : {true, false}) {
+      offscreen.send(MouseButton{button, down, {}});
+      draw();
+    }
+  };
+  draw();
+  for (float y = 700.0F; y < 1560.0F; y += 24.0F) {
+    click(560.0F, y, 1);
+    click(590.0F, y + 18.0F, 0);
+    if (offer) names.insert(offer->name);
+    offer.reset();
+  }
+  EXPECT_THAT(names, ElementsAre("feature.csv", "feature_trail.csv"));
+  offscreen.make_current();
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/golden.hpp"
 #include "tests/ui/gallery.hpp"
 #include "ui/gl/texture.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/text.hpp"
 
 namespace stillpoint::testing {
 namespace {
@@ -198,6 +200,34 @@ TEST_F(WidgetsTest, EmptyPlotsImagesAndScenesAreDrawnToo) {
   });
   EXPECT_FALSE(is_blank(image, 20));
   EXPECT_TRUE(matches_golden(image(cv::Rect(0, 0, 600, 800)), "empty"));
+}
+
+TEST(Text, LinesEndAtSpacesAndFiguresKeepTheirUnits) {
+  Offscreen offscreen({.width = 64, .height = 64});
+  offscreen.draw([](UiFrame& frame) {
+    const ImFont& font = *frame.fonts.text;
+    const auto width = [&](const std::string& text) {
+      return font.CalcTextSizeA(font.FontSize, 1e6F, 0.0F, text.c_str()).x;
+    };
+    const std::string text = "frame 417 was lost for 0.81 s after 12 px of blur";
+    for (const float room : {90.0F, 120.0F, 150.0F}) {
+      const std::string lines = in_lines(font, text, room);
+      std::string whole = lines;
+      std::replace(whole.begin(), whole.end(), '\n', ' ');
+      EXPECT_EQ(whole, text);
+      EXPECT_NE(lines, text);
+      EXPECT_EQ(lines.find("0.81\n"), std::string::npos) << lines;
+      EXPECT_EQ(lines.find("12\n"), std::string::npos) << lines;
+      for (std::size_t at = 0; at < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', at), lines.size());
+        EXPECT_LE(width(lines.substr(at, end - at)), room) << lines;
+        at = end + 1;
+      }
+    }
+    EXPECT_FLOAT_EQ(widest_word(font, "a longest b"), width("longest"));
+    EXPECT_LE(width(cut_to(font, text, 100.0F)), 100.0F);
+    EXPECT_EQ(cut_to(font, text, 1e4F), text);
+  });
 }
 
 }  // namespace

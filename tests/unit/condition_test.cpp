@@ -100,6 +100,27 @@ TEST(Condition, WhatIsNotKnownMakesComparisonsFalse) {
   EXPECT_THAT(where("inliers / (frame - frame) > 0"), IsEmpty());
 }
 
+TEST(Condition, NorDoesTheOppositeHoldOfWhatIsNotKnown) {
+  EXPECT_THAT(where("!(rpe > 0)"), IsEmpty());
+  EXPECT_THAT(where("!rpe"), IsEmpty());
+  EXPECT_THAT(where("!!(rpe > 0)"), IsEmpty());
+  EXPECT_THAT(where("!(rpe > 0 || lost)"), IsEmpty());
+  // What is known decides where it can.
+  EXPECT_THAT(where("rpe > 0 || lost"), ElementsAre(3, 4));
+  EXPECT_THAT(where("!(rpe > 0 && lost)"), ElementsAre(0, 1, 2, 5, 6, 7, 8, 9));
+  // Before the first frame nothing was lost.
+  std::vector<FrameRecord> records = ten_records();
+  records[0].status = FrameStatus::lost;
+  EXPECT_THAT(where("lost && !previous(lost)", records), ElementsAre(0, 3));
+}
+
+TEST(Condition, AFigureThatNobodyMeasuredIsNotKnown) {
+  std::vector<FrameRecord> records = ten_records();
+  for (FrameRecord& record : records) record.measured.matches = record.index >= 5;
+  EXPECT_THAT(where("inliers < 70", records), ElementsAre(5, 6));
+  EXPECT_THAT(where("!(inliers < 70)", records), ElementsAre(7, 8, 9));
+}
+
 TEST(Condition, ReadsErrorsFromTheEvaluation) {
   TrajectoryEvaluation evaluation;
   evaluation.rpe_frame.errors = {

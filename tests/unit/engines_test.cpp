@@ -50,6 +50,29 @@ TEST_P(EveryEngine, TracksAndGivesTheSameBytesByAnyNumberOfThreads) {
   EXPECT_EQ(to_summary(report_on(one, *source), one, *source)["odometry"], GetParam());
 }
 
+TEST_P(EveryEngine, WhatItDoesNotMeasureStaysUntouchedAndIsTold) {
+  const auto source = people();
+  config_.map.cull_dynamic = true;
+  config_.run.method = "oracle";
+  const RecordParts& measures = engine_named(GetParam()).measures;
+  int features = 0, keyframes = 0;
+  for (const FrameRecord& r : run_sequence(*source, config_).records) {
+    EXPECT_EQ(r.measured.points, measures.points);
+    EXPECT_EQ(r.measured.bundle, measures.bundle);
+    // A figure that is left out was none: nothing that an engine counts is hidden.
+    EXPECT_TRUE(measures.points || r.map_points + r.new_points + r.culled_points == 0) << r.index;
+    EXPECT_TRUE(measures.fused_points || r.fused_points == 0) << r.index;
+    EXPECT_TRUE(measures.culled_keyframes || r.culled_keyframes == 0) << r.index;
+    EXPECT_TRUE(measures.bundle || r.bundle_iterations == 0) << r.index;
+    EXPECT_TRUE(measures.direct || r.direct.patches == 0) << r.index;
+    features += measures.features ? r.features_found : 1;
+    keyframes += measures.keyframes ? r.map_keyframes : 1;
+  }
+  // … and what it says that it measures is there.
+  EXPECT_GT(features, 0);
+  EXPECT_GT(keyframes, 0);
+}
+
 TEST_P(EveryEngine, ACopyGoesOnAsTheOriginalWould) {
   const auto source = people();
   Odometry odometry(source->camera(), config_);

@@ -104,5 +104,16 @@ TEST(FrameVerdict, WithoutGroundTruthGoesByInliers) {
   EXPECT_FALSE(frame_verdict(run, 6).bad);
 }
 
+TEST(FrameVerdict, TellsOfNoMaskWhereNobodyLeftOne) {
+  RunView run = run_with_a_bad_step();
+  for (FrameRecord& record : run.records) {
+    record.measured = poses_alone();
+    record.inliers = 0;
+    record.mask_share = 0.0;
+  }
+  EXPECT_THAT(texts(frame_verdict(run, 5)), testing::ElementsAre("Step error 40.00 mm, worst of 9"));
+  EXPECT_EQ(frame_verdict(run, 0).sentence, "The run begins here.");
+}
+
 }  // namespace
 }  // namespace stillpoint

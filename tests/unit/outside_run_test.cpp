@@ -7,6 +7,8 @@
 
 #include "core/geometry/trajectory.hpp"
 #include "core/inspect/replayable_run.hpp"
+#include "core/run/condition.hpp"
+#include "core/run/frame_figures.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_report.hpp"
@@ -17,9 +19,11 @@
 namespace stillpoint {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsNan;
 
 constexpr int kFrames = 40;
 
@@ -196,6 +200,106 @@ TEST_F(OutsideRun, IsShownWithoutAnyOdometry) {
   EXPECT_EQ(view.name, "theirs");
   EXPECT_EQ(view.trajectory.size(), static_cast<std::size_t>(kFrames));
   EXPECT_GT(view.evaluation.rpe_frame.translation_m.rmse, 0.01);
+}
+
+/// A figure of each frame, by its name.
+std::vector<double> figure_of_run(const RecordedRun& run, const char* name) {
+  return frame_figure_values({run.run.records, nullptr, &run.run.scores}, frame_figure(name));
+}
+
+/// What a trajectory alone tells nothing of.
+constexpr std::array kNotInATrajectory = {"mask",
+                                          "rounds",
+                                          "features",
+                                          "removed",
+                                          "kept",
+                                          "matches",
+                                          "inliers",
+                                          "outliers",
+                                          "residual",
+                                          "position_sigma",
+                                          "keyframe",
+                                          "bundle",
+                                          "wide_search",
+                                          "epnp",
+                                          "direct",
+                                          "direct_share",
+                                          "map_points",
+                                          "map_keyframes",
+                                          "new_points",
+                                          "fused_points",
+                                          "culled_points",
+                                          "ms.total",
+                                          "direct_patches",
+                                          "culled_keyframes",
+                                          "refine_iterations",
+                                          "bundle_rms_px",
+                                          "removed_rightly",
+                                          "bundle_iterations",
+                                          "dynamic_inliers"};
+
+TEST_F(OutsideRun, WhatNobodyMeasuredHasNoValue) {
+  const RecordedRun run = read("theirs=" + write("drift.txt", drifting(0.03)));
+  RecordedRun with_origin = run;
+  with_origin.origin = origin_of(*source_, small_.path(), {});
+  const std::string out = folder_.path("out");
+  prepare_run_folder(out, false);
+  write_outside_run(out, with_origin, *source_);
+  // As it was laid onto the frames, and as its folder is opened again.
+  for (const RecordedRun& one : {run, read_records(out)})
+    for (const char* name : kNotInATrajectory) {
+      ASSERT_GE(frame_figure(name), 0) << name;
+      EXPECT_THAT(figure_of_run(one, name), Each(IsNan())) << name;
+    }
+  EXPECT_EQ(figure_of_run(run, "tracked")[5], 1.0);
+  EXPECT_EQ(figure_of_run(run, "lost")[5], 0.0);
+}
+
+TEST_F(OutsideRun, AConditionOverWhatNobodyMeasuredHoldsNowhere) {
+  const RecordedRun run = read("theirs=" + write("drift.txt", drifting(0.03)));
+  const FrameFigures figures({run.run.records});
+  for (const char* text : {"mask < 5 %", "!(mask > 5 %)", "inliers < 30", "!keyframe", "map_points == 0",
+                           "ms.total < 1 ms", "!spike(inliers, 3)", "tracked && inliers < 30"})
+    EXPECT_THAT(Condition(text).frames(figures), IsEmpty()) << text;
+  EXPECT_THAT(Condition("mask < 5 % || mask > 50 %").unknown_figures(figures), ElementsAre("mask"));
+  EXPECT_THAT(Condition("frame == 7 || mask < 5 %").frames(figures), ElementsAre(7));
+}
+
+TEST_F(OutsideRun, ItsReportTellsNoKeyframesMapPointsOrTimes) {
+  const RecordedRun run = read("theirs=" + write("drift.txt", drifting(0.03)));
+  const RunReport report = report_on(run.run, *source_);
+  const std::string text = to_text(report);
+  for (const char* word : {"keyframes", "map points", "time a frame", "mask"})
+    EXPECT_THAT(text, Not(HasSubstr(word))) << word;
+  EXPECT_THAT(text, HasSubstr("run hash"));
+  const auto summary = to_summary(report, run.run, *source_);
+  for (const char* key : {"keyframes", "map_points", "speed", "masks"})
+    EXPECT_TRUE(summary[key].is_null()) << key;
+}
+
+TEST_F(OutsideRun, WhatItLeftOfSingleFramesHasAValueThere) {
+  folder_.write("run/CameraTrajectory.txt", drifting(0.0));
+  folder_.write("run/features.csv", fmt::format("stamp,x,y,state,id,point\n{0:.4f},10,20,inlier,4,77\n"
+                                                "{0:.4f},11.5,21,removed,5,-1\n",
+                                                SmallSequence::stamp(3)));
+  // A mask that takes nothing out is told too, and is not the same as none.
+  const cv::Mat empty(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1, cv::Scalar(0));
+  folder_.write("run/masks/0.png", empty);
+  folder_.write("run/masks/3.png", empty);
+  RecordedRun run = read("theirs=" + folder_.path("run"));
+  run.origin = origin_of(*source_, small_.path(), {});
+  const std::string out = folder_.path("out");
+  prepare_run_folder(out, false);
+  write_outside_run(out, run, *source_);
+  for (const RecordedRun& one : {run, read_records(out)}) {
+    std::vector<double> inliers(kFrames, std::nan("")), mask = inliers;
+    inliers[3] = 1.0, mask[0] = mask[3] = 0.0;
+    EXPECT_THAT(figure_of_run(one, "inliers"), testing::Pointwise(testing::NanSensitiveDoubleEq(), inliers));
+    EXPECT_THAT(figure_of_run(one, "mask"), testing::Pointwise(testing::NanSensitiveDoubleEq(), mask));
+    // The program told which feature it used, not how far that was off.
+    EXPECT_THAT(figure_of_run(one, "residual"), Each(IsNan()));
+    EXPECT_TRUE(std::isnan(one.record(3).features.at(0).residual_px));
+  }
 }
 
 }  // namespace

@@ -258,6 +258,12 @@ class ComparePanel final : public NamedPanel {
                                                : "The frame cannot be shown: " + view.frame.problem);
       return;
     }
+    for (const auto& [record, name] :
+         {std::pair(view.record, session.run->name), std::pair(ghost.current->record, ghost.name)})
+      if (record != nullptr && !record->measured.mask) {
+        draw_absent(frame, fmt::format("{} left no mask of frame {} to compare.", name, view.index));
+        return;
+      }
     const ComparisonColours colours{
         .agreed = okabe_ito::kGreen,
         .missed = ghost_look(ghost.look.value_or(chosen_), frame.theme.name).colour,

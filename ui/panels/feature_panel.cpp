@@ -6,6 +6,7 @@
 #include "core/evaluation/tables.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -43,12 +44,14 @@ Facts facts_of(const FeatureExplanation& explanation) {
               {"Depth", f.depth > 0.0F ? fmt::format("{:.3f} m", f.depth) : "not measured"}};
   if (f.map_point != kNone) {
     facts.emplace_back("Map point",
-                       explanation.observations
+                       !explanation.measured.points ? fmt::format("{}", f.map_point)
+                       : explanation.observations
                            ? fmt::format("{}, seen by {} keyframes", f.map_point, *explanation.observations)
                            : fmt::format("{}, since taken out of the map", f.map_point));
     if (!std::isnan(f.residual_px))
       facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
-    facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.static_weight));
+    if (explanation.measured.solving)
+      facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.static_weight));
   } else {
     facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
   }
@@ -112,6 +115,8 @@ class FeaturePanel final : public FramePanel {
     const FrameView& view = *session.current;
     if (!view.frame.readable()) return missing_motion(session);
     if (view.record == nullptr) return fmt::format("Frame {} has not been processed yet.", view.index);
+    if (!view.record->measured.features)
+      return fmt::format("{} left no features of frame {}.", session.run->name, view.index);
     if (view.record->features.empty() && view.record->features_found > 0)
       return fmt::format("Frame {}'s {} features were not kept in its record.", view.index,
                          view.record->features_found);

@@ -6,6 +6,7 @@
 
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -40,6 +41,10 @@ class FeaturesPanel final : public FramePanel {
       return;
     }
     // Features of a record whose image is gone still say where they were.
+    if (!view.record->measured.features) {
+      draw_absent(frame, fmt::format("{} left no features of frame {}.", session.run->name, view.index));
+      return;
+    }
     if (!view.frame.readable() && view.record->features.empty()) {
       draw_absent(frame, missing_motion(session));
       return;
@@ -154,9 +159,15 @@ class FeaturesPanel final : public FramePanel {
     if (moment_ == FeatureMoment::kBefore) {
       add(FeatureFate::unmatched, record.features_kept);
       add(FeatureFate::removed, record.features_removed);
-      footer.caption =
-          fmt::format("{}: {} features found; method {} removes those in its mask, {:.1f} % of the image.",
-                      where, record.features_found, session.config.run.method, 100.0 * record.mask_share);
+      footer.caption = fmt::format("{}: {} features found", where, record.features_found);
+      // Another program's own mask, if it has one, need not be what took its features out.
+      if (record.measured.solving)
+        footer.caption += fmt::format("; method {} removes those in its mask, {:.1f} % of the image.",
+                                      session.config.run.method, 100.0 * record.mask_share);
+      else if (record.measured.mask)
+        footer.caption += fmt::format("; the mask is {:.1f} % of the image.", 100.0 * record.mask_share);
+      else
+        footer.caption += ".";
       return footer;
     }
     for (const FeatureFate fate : {FeatureFate::inlier, FeatureFate::outlier, FeatureFate::unmatched})

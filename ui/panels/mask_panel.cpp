@@ -6,7 +6,9 @@
 
 #include "core/evaluation/mask_scores.hpp"
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/motion/regions.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -47,6 +49,10 @@ class MaskPanel final : public FramePanel {
     if (is_the_runs()) {
       if (!view.frame.readable() || view.record == nullptr) {
         draw_absent(frame, missing_motion(session));
+        return;
+      }
+      if (!view.record->measured.mask) {
+        draw_absent(frame, fmt::format("{} left no mask of frame {}.", session.run->name, view.index));
         return;
       }
       log_ = view.motion.get();

@@ -10,6 +10,11 @@
 #include "core/run/frame_figures.hpp"
 
 namespace stillpoint {
+namespace {
+
+constexpr const char* kDash = "–";  // as shown_value has it
+
+}  // namespace
 
 FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const MeasuredFrames& ghost,
                               std::size_t ghost_row) {
@@ -19,12 +24,18 @@ FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const 
   const Pose run_from_ghost = here.world_from_camera.inverse() * there.world_from_camera;
   difference.translation_m = run_from_ghost.translation().norm();
   difference.rotation_deg = kDegrees * rotation_angle(run_from_ghost.linear());
+  const bool both_ours = here.measured.solving && there.measured.solving;
   const auto add = [&](const std::string& name, std::string a, std::string b) {
-    const bool differs = a != b;
+    // What another program did not tell is no difference.
+    const bool told = both_ours || (a != kDash && b != kDash);
+    const bool differs = a != b && told;
     difference.figures.push_back({name, std::move(a), std::move(b), differs});
   };
   add("Status", std::string(to_string(here.status)), std::string(to_string(there.status)));
-  add("Keyframe", here.keyframe ? "yes" : "no", there.keyframe ? "yes" : "no");
+  const auto keyframe = [](const FrameRecord& record) {
+    return !record.measured.keyframes ? kDash : record.keyframe ? "yes" : "no";
+  };
+  if (here.measured.keyframes || there.measured.keyframes) add("Keyframe", keyframe(here), keyframe(there));
   const std::vector<double> a = figures_of_frame(run, row), b = figures_of_frame(ghost, ghost_row);
   const auto& infos = frame_figure_infos();
   for (std::size_t i = 0; i < infos.size(); ++i) {

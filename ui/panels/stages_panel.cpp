@@ -65,7 +65,7 @@ class StagesPanel final : public FramePanel {
     list(session);
     const FrameView& view = *session.current;
     if (stages_.empty()) {
-      draw_absent(frame, !view.frame.readable()
+      draw_absent(frame, !view.frame.readable() || view.record != nullptr
                              ? missing_motion(session)
                              : fmt::format("Frame {} has not been processed yet.", view.index));
       return;

@@ -35,6 +35,10 @@ std::vector<double> lane_values(const RunView& run, int figure) {
 
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
+bool any_known(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
 double highest_of(const std::vector<double>& values, double so_far) {
   for (const double value : values)
     if (std::isfinite(value)) so_far = std::max(so_far, value);
@@ -123,14 +127,15 @@ void TimelineModel::update(const SessionView& session, const std::vector<int>& w
   lanes.clear();
   for (const int figure : wanted) {
     TimelineLane lane{.figure = figure, .values = lane_values(run, figure), .ghosts = {}, .highest = 0.0};
-    // Without a truth there are no errors, and without a clock no times.
-    if (std::none_of(lane.values.begin(), lane.values.end(), [](double v) { return std::isfinite(v); }))
-      continue;
+    bool known = any_known(lane.values);
     lane.highest = highest_of(lane.values, 0.0);
     for (const GhostView& ghost : ghosts) {
       lane.ghosts.push_back(lane_values(*ghost.run, figure));
       lane.highest = highest_of(lane.ghosts.back(), lane.highest);
+      known = known || any_known(lane.ghosts.back());
     }
+    // Without a truth there are no errors, without a clock no times, and a trajectory alone has no masks.
+    if (!known) continue;
     lane.highest = lane.highest > 0.0 ? 1.05 * lane.highest : 1.0;
     lanes.push_back(std::move(lane));
   }

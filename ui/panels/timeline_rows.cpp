@@ -15,6 +15,14 @@
 #include "ui/session/data_sources.hpp"
 
 namespace stillpoint {
+namespace {
+
+bool tells_keyframes(const SessionView& session) {
+  const auto& records = session.run->records;
+  return records.empty() || records.front().measured.keyframes;
+}
+
+}  // namespace
 
 Rgb lane_colour(const FigureInfo& figure, ThemeName theme) {
   switch (figure.unit) {
@@ -57,10 +65,12 @@ void TimelineRows::marks(float top, float bottom) const {
                0.3F * height);
   paint_.signs(bookmarked_frames(session_.debug), Sign::kFlag, role_colour(Role::kWarning, theme), middle,
                0.42F * height);
-  paint_.value(top,
-               hits.empty() ? fmt::format("{} keyframes", model_.keyframes.size())
-                            : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
-               frame_.theme.text);
+  paint_.value(
+      top,
+      hits.empty()
+          ? (tells_keyframes(session_) ? fmt::format("{} keyframes", model_.keyframes.size()) : std::string())
+          : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
+      frame_.theme.text);
 }
 
 void TimelineRows::ghost(std::size_t index, float top, float bottom) const {
@@ -93,11 +103,14 @@ std::string frame_report(const SessionView& session, const TimelineModel& model,
   if (const std::string remarks = remarks_on(record); !remarks.empty()) text += "\n" + remarks;
   for (const TimelineLane& lane : model.lanes) {
     const FigureInfo& info = frame_figure_infos()[static_cast<std::size_t>(lane.figure)];
-    if (!std::isfinite(lane.values[*at])) continue;
-    text += fmt::format("\n{} {}", shown_name(info), lane_text(lane.values[*at], info));
+    bool known = std::isfinite(lane.values[*at]);
+    std::string line = fmt::format("\n{} {}", shown_name(info), lane_text(lane.values[*at], info));
     for (std::size_t g = 0; g < lane.ghosts.size(); ++g)
-      if (const auto there = record_of(*session.debug.ghosts[g].run, index))
-        text += fmt::format(", ghost {} {}", g + 1, lane_text(lane.ghosts[g][*there], info));
+      if (const auto there = record_of(*session.debug.ghosts[g].run, index)) {
+        known = known || std::isfinite(lane.ghosts[g][*there]);
+        line += fmt::format(", ghost {} {}", g + 1, lane_text(lane.ghosts[g][*there], info));
+      }
+    if (known) text += line;
   }
   for (const BreakpointView& one : session.debug.breakpoints)
     if (std::binary_search(one.hits.begin(), one.hits.end(), index))
@@ -120,7 +133,8 @@ Footer timeline_footer(const UiFrame& frame, const SessionView& session, const F
     entry.name = fmt::format("{} {}", counts[i], entry.name);
     footer.legend.push_back(std::move(entry));
   }
-  footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, theme), Sign::kDiamond});
+  if (tells_keyframes(session))
+    footer.legend.push_back({"keyframe", role_colour(Role::kEstimate, theme), Sign::kDiamond});
   if (!session.debug.breakpoints.empty())
     footer.legend.push_back({"breakpoint hit", role_colour(Role::kOutlier, theme), Sign::kTriangle});
   if (!session.debug.bookmarks.empty())

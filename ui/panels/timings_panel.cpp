@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "core/evaluation/tables.hpp"
 #include "core/inspect/frame_view.hpp"
@@ -37,6 +38,9 @@ struct Figures {
   double mean = 0.0, median = 0.0, p99 = 0.0;
 };
 
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+constexpr Figures kNoFigures{kNotKnown, kNotKnown, kNotKnown};
+
 Figures figures_of(std::vector<double> values) {
   if (values.empty()) return {};
   Figures figures;
@@ -66,11 +70,15 @@ GhostTimes times_of(const GhostView& ghost) {
                    .run = ghost.run.get()};
   std::array<std::vector<double>, kStages.size()> values;
   for (const FrameRecord& record : ghost.run->records) {
-    if (record.index < ghost.from) continue;
+    // Nobody held a clock to a run that another program made.
+    if (record.index < ghost.from || !record.measured.times) continue;
     times.index.push_back(record.index);
     times.total.push_back(record.ms.total);
     for (std::size_t i = 0; i < kStages.size(); ++i) values[i].push_back(record.ms.*kStages[i].value);
   }
+  times.figures.fill(kNoFigures);
+  times.whole = kNoFigures;
+  if (times.index.empty()) return times;
   for (std::size_t i = 0; i < kStages.size(); ++i) times.figures[i] = figures_of(std::move(values[i]));
   times.whole = figures_of(times.total);
   return times;
@@ -86,6 +94,10 @@ class TimingsPanel final : public NamedPanel {
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->records.empty()) {
       draw_absent(frame, "No frame has been processed yet.");
+      return;
+    }
+    if (!session.run->records.back().measured.times) {
+      draw_absent(frame, fmt::format("{} left no times.", session.run->name));
       return;
     }
     if (session.run->records.back().ms.total <= 0.0) {
@@ -188,15 +200,17 @@ class TimingsPanel final : public NamedPanel {
     for (const GhostView& ghost : session.debug.ghosts) table.header.push_back("mean, " + ghost.name);
     const auto add = [&](const char* name, double now, const Figures& figures, const auto& of_ghost) {
       std::vector<std::string> row{name};
-      for (const double value : {now, figures.mean, figures.median, figures.p99})
-        row.push_back(fmt::format("{:.4f}", value));
-      for (const GhostTimes& ghost : ghosts_) row.push_back(fmt::format("{:.4f}", of_ghost(ghost).mean));
+      const auto push = [&row](double value) {
+        row.push_back(std::isnan(value) ? std::string() : fmt::format("{:.4f}", value));
+      };
+      for (const double value : {now, figures.mean, figures.median, figures.p99}) push(value);
+      for (const GhostTimes& ghost : ghosts_) push(of_ghost(ghost).mean);
       table.rows.push_back(std::move(row));
     };
     for (std::size_t i = 0; i < kStages.size(); ++i)
-      add(kStages[i].name, record == nullptr ? 0.0 : record->ms.*kStages[i].value, figures_[i],
+      add(kStages[i].name, record == nullptr ? kNotKnown : record->ms.*kStages[i].value, figures_[i],
           [i](const GhostTimes& ghost) { return ghost.figures[i]; });
-    add("whole frame", record == nullptr ? 0.0 : record->ms.total, whole_,
+    add("whole frame", record == nullptr ? kNotKnown : record->ms.total, whole_,
         [](const GhostTimes& ghost) { return ghost.whole; });
     return table;
   }
@@ -218,7 +232,7 @@ class TimingsPanel final : public NamedPanel {
     const auto cell = [&](double value) {
       ImGui::TableNextColumn();
       ImGui::PushFont(frame.fonts.mono);
-      ImGui::Text("%7.2f", value);
+      ImGui::TextUnformatted(std::isnan(value) ? "      –" : fmt::format("{:7.2f}", value).c_str());
       ImGui::PopFont();
     };
     const auto row = [&](const char* name, const Rgb& colour, Sign sign, double now, const Figures& figures,
@@ -243,11 +257,11 @@ class TimingsPanel final : public NamedPanel {
       }
     };
     for (std::size_t i = 0; i < kStages.size(); ++i) {
-      const double now = record != nullptr ? record->ms.*kStages[i].value : std::nan("");
+      const double now = record != nullptr ? record->ms.*kStages[i].value : kNotKnown;
       row(kStages[i].name, colour_of(i), Sign::kSquare, now, figures_[i],
           [i](const GhostTimes& ghost) -> const Figures& { return ghost.figures[i]; });
     }
-    row("Whole frame", frame.theme.text, Sign::kLine, record != nullptr ? record->ms.total : std::nan(""),
+    row("Whole frame", frame.theme.text, Sign::kLine, record != nullptr ? record->ms.total : kNotKnown,
         whole_, [](const GhostTimes& ghost) -> const Figures& { return ghost.whole; });
     ImGui::EndTable();
     offer_table(frame, "timings", low, as_table);

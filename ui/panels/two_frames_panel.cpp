@@ -5,6 +5,7 @@
 
 #include "core/inspect/frame_pair.hpp"
 #include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
 #include "core/inspect/scene_point.hpp"
 #include "core/sequence/frame.hpp"
 #include "ui/panels/all_panels.hpp"
@@ -31,6 +32,11 @@ class TwoFramesPanel final : public NamedPanel {
     const auto& other = session.debug.other;
     if (session.current->record == nullptr || other == nullptr) {
       draw_absent(frame, why_none(session));
+      return;
+    }
+    if (!session.current->record->measured.features) {
+      draw_absent(frame, fmt::format("{} left no features of frame {} to pair.", session.run->name,
+                                     session.current->index));
       return;
     }
     Controls controls(frame);

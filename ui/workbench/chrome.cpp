@@ -258,7 +258,7 @@ void Workbench::draw_status_bar(float height) {
     x += 13.0F * scale;
     put(fmt::format("frame {}  {}", session_->current->index, status.text), theme.text);
     put(run_words(session_->config), theme.text_dim);
-    if (const FrameRecord* record = session_->current->record)
+    if (const FrameRecord* record = session_->current->record; record != nullptr && record->measured.features)
       put(fmt::format("{} of {} features kept, {} inliers", record->features_kept, record->features_found,
                       record->inliers),
           theme.text_dim);

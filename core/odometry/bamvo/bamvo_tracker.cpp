@@ -180,6 +180,9 @@ EngineInfo bamvo_engine() {
       "Kim D.-H., Kim J.-H.: Effective Background Model-Based RGB-D Dense Visual Odometry in a Dynamic "
       "Environment. IEEE T-RO 32(6), 2016";
   info.has_stages = true;
+  // Frames are aligned with frames: there is no map of points, and nothing to adjust.
+  info.measures.direct = info.measures.points = info.measures.fused_points = info.measures.bundle = false;
+  info.measures.culled_keyframes = false;
   info.parameters = AnySection(BamvoConfig());
   info.figures = {
       {"bamvo_counted", FigureUnit::share, "of the pixels that counted in the alignment"},

@@ -335,6 +335,8 @@ EngineInfo dso_engine() {
       "Yuan Z., Cheng K., Tang J., Yang X.: RGB-D DSO. IEEE T-Multimedia, 2021";
   info.offers_matches = true;
   info.has_stages = true;
+  // All of it is direct, and its window is optimised by brightness: there is no reprojection to tell of.
+  info.measures.direct = info.measures.fused_points = info.measures.bundle = false;
   info.parameters = AnySection(DsoConfig());
   info.figures = {{"dso_points", FigureUnit::plain, "points in the window", 0},
                   {"dso_window", FigureUnit::plain, "keyframes in the window", 0},

@@ -227,6 +227,7 @@ EngineInfo ptam_engine() {
       "depth";
   info.offers_matches = true;
   info.has_stages = true;
+  info.measures.direct = info.measures.fused_points = info.measures.culled_keyframes = false;
   info.parameters = AnySection(PtamConfig());
   info.figures = {{"ptam_searched", FigureUnit::plain, "patches looked for", 0},
                   {"ptam_found", FigureUnit::share, "of these that were found"},

@@ -68,6 +68,27 @@ TEST(RunDifference, PosesAndFiguresAreCompared) {
     EXPECT_EQ(pair.differs, pair.name == "Inliers" || pair.name == "Outliers") << pair.name;
 }
 
+TEST(RunDifference, ADashStandsForWhatOnlyOneOfThemKnows) {
+  FrameRecord run, ghost;
+  run.inliers = 200, run.matches = 230, run.keyframe = true;
+  ghost.measured = poses_alone();
+  ghost.status = FrameStatus::tracked;
+  const auto shown = [&](const FrameRecord& a, const FrameRecord& b, const std::string& name) {
+    for (const FigurePair& pair : difference_of({{a}}, 0, {{b}}, 0).figures)
+      if (pair.name == name) return pair.run + " " + pair.ghost;
+    return std::string("is not told");
+  };
+  EXPECT_EQ(shown(run, ghost, "Inliers"), "200 –");
+  EXPECT_EQ(shown(run, ghost, "Mask"), "0.00 % –");
+  EXPECT_EQ(shown(run, ghost, "Keyframe"), "yes –");
+  EXPECT_EQ(shown(run, ghost, "Map points"), "0 –");
+  for (const FigurePair& pair : difference_of({{run}}, 0, {{ghost}}, 0).figures)
+    EXPECT_EQ(pair.differs, pair.name == "Status") << pair.name;
+  // What neither knows is no row.
+  for (const char* name : {"Inliers", "Mask", "Keyframe", "Map points"})
+    EXPECT_EQ(shown(ghost, ghost, name), "is not told") << name;
+}
+
 TEST(RunDifference, MasksOverlap) {
   cv::Mat run = cv::Mat::zeros(10, 10, CV_8UC1), ghost = run.clone();
   run(cv::Rect(0, 0, 4, 10)) = 255;

@@ -6,6 +6,17 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/check/findings.hpp"
+#include "core/inspect/frame_view.hpp"
+#include "core/inspect/run_view.hpp"
+#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_figures.hpp"
+#include "core/run/frame_scores.hpp"
+#include "core/run/removal_errors.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/run/sweep.hpp"
+#include "ui/session/data_sources.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -112,6 +123,44 @@ TEST(SpanDrag, StaysInTheSequence) {
   drag.begin(3, std::nullopt, 0.0);
   drag.move(400);
   EXPECT_EQ(drag.end(10), (FrameSpan{3, 9}));
+}
+
+/// Five frames with inliers, or with poses alone.
+std::shared_ptr<const RunView> five_frames(const RecordParts& measured) {
+  auto run = std::make_shared<RunView>();
+  for (int i = 0; i < 5; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.status = FrameStatus::tracked;
+    record.measured = measured;
+    record.inliers = measured.matches ? 100 + i : 0;
+    run->records.push_back(record);
+  }
+  return run;
+}
+
+TEST(TimelineLanes, WhatARunDoesNotKnowIsAGap) {
+  SessionView session;
+  session.run = five_frames({});
+  GhostView ghost;
+  ghost.run = five_frames(poses_alone());
+  session.debug.ghosts = {ghost};
+  TimelineModel model;
+  model.update(session, {frame_figure("inliers")});
+  ASSERT_EQ(model.lanes.size(), 1U);
+  EXPECT_THAT(model.lanes[0].values, ElementsAre(100, 101, 102, 103, 104));
+  EXPECT_THAT(model.lanes[0].ghosts.at(0), ::testing::Each(::testing::IsNan()));
+  // The other way round the lane is there for the run beside.
+  std::swap(session.run, session.debug.ghosts[0].run);
+  model.update(session, {frame_figure("inliers")});
+  ASSERT_EQ(model.lanes.size(), 1U);
+  EXPECT_THAT(model.lanes[0].values, ::testing::Each(::testing::IsNan()));
+  EXPECT_THAT(model.lanes[0].ghosts.at(0), ElementsAre(100, 101, 102, 103, 104));
+  EXPECT_GT(model.lanes[0].highest, 104.0);
+  // Where nobody knows it, there is none.
+  session.debug.ghosts.clear();
+  model.update(session, {frame_figure("inliers")});
+  EXPECT_THAT(model.lanes, IsEmpty());
 }
 
 }  // namespace
