@@ -141,6 +141,16 @@ TEST(RunPictures, AllStripsFollowTheControls) {
   }
 }
 
+TEST(RunPictures, ASingleRunTickedIsTheOneSeen) {
+  const SessionView session = three_runs();
+  Strips strips("mask");
+  const cv::Mat other = strips.flipped_to(session, kRunNames[2]);
+  strips.runs = {.pictures = RunPictures::wiped, .chosen = {kRunNames[2]}};
+  EXPECT_TRUE(images_agree(strips.render(session), other, {2, 20.0, 0.0}));
+  strips.runs.chosen = {kRunNames[0]};
+  EXPECT_FALSE(images_agree(strips.render(session), other, {2, 20.0, 0.0}));
+}
+
 TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
   const SessionView session = three_runs();
   Strips strips("mask");
