@@ -49,7 +49,8 @@ constexpr double kBandHigh = 1.33;   // …
 constexpr double kIouMargin = 0.05;  // below what was measured
 constexpr double kRoomMask = 0.002;  // share of the pixels masked where nothing moves
 // Errors of a pose that goes with the dynamic object, times those of one that does not.
-constexpr double kCapturedBy = 8.0;
+constexpr double kCapturedBy = 10.0;
+constexpr double kCapturedByOfOracle = 8.0;  // which is the worse of both on walking_xyz
 
 class Accuracy : public testing::TestWithParam<Measured> {
  protected:
@@ -95,7 +96,7 @@ TEST_P(Accuracy, MasksHoldWhatMovesAndLittleElse) {
 TEST_P(Accuracy, AMoverTakesAlongWhoRemovesNothing) {
   const std::string& kind = GetParam().sequence.kind;
   if (kind == "approach" || kind == "walking_xyz") {
-    EXPECT_GE(run("none").rpe_m, kCapturedBy * run("oracle").rpe_m);
+    EXPECT_GE(run("none").rpe_m, kCapturedByOfOracle * run("oracle").rpe_m);
     EXPECT_GE(run("none").rpe_m, kCapturedBy * run("stillpoint").rpe_m);
   } else if (moves()) {
     EXPECT_GE(run("none").rpe_m, 2.0 * run("oracle").rpe_m);

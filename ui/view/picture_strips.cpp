@@ -26,17 +26,20 @@ void draw_name(const UiFrame& frame, const PictureStrip& strip, ImVec2 at) {
                strip.name.c_str());
 }
 
-/// Nothing where the strip is narrower than a word: it reads as soon as it is drawn wider.
-void draw_sentence(const UiFrame& frame, const std::string& text, ImVec2 low, ImVec2 high) {
+/// Nothing where there is no room for it: it reads as soon as the strip is drawn wider.
+/// @returns whether it is there
+bool draw_sentence(const UiFrame& frame, const std::string& text, ImVec2 low, ImVec2 high) {
   const ImFont* font = frame.fonts.small;
   const float wrap = 0.86F * (high.x - low.x);
-  if (widest_word(*font, text) > wrap) return;
+  if (widest_word(*font, text) > wrap) return false;
   const std::string lines = in_lines(*font, text, wrap);
   const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, lines.c_str());
+  if (extent.y > high.y - low.y) return false;
   ImGui::GetWindowDrawList()->AddText(
       font, font->FontSize,
       {std::round(0.5F * (low.x + high.x - extent.x)), std::round(0.5F * (low.y + high.y - extent.y))},
       to_u32(frame.theme.text_dim), lines.c_str());
+  return true;
 }
 
 }  // namespace
@@ -115,8 +118,9 @@ void PictureStrips::draw_strip(const UiFrame& frame, const Place& place, std::si
   if (!place.drawn[strip]) {
     list.AddRectFilled({from, place.low.y}, {to, place.high.y}, to_u32(frame.theme.background));
     const std::string& absent = strips_[strip].absent;
-    draw_sentence(frame, absent.empty() ? strips_[strip].name + " has no such picture." : absent,
-                  {from, place.low.y}, {to, place.high.y});
+    for (const std::string& sentence :
+         {absent, strips_[strip].name + " has no such picture.", std::string("–")})
+      if (!sentence.empty() && draw_sentence(frame, sentence, {from, place.low.y}, {to, place.high.y})) break;
   }
   const float gap = 5.0F * frame.scale;
   const float left = strip == 0 ? std::max(from, place.from) : from;
