@@ -144,6 +144,14 @@ std::string depth_gaps(const RunResult& run) {
   return gaps_text(run, lacking);
 }
 
+/// Which frames could not be read, and why.
+std::string image_gaps(const RunResult& run) {
+  std::vector<Lacking> lacking;
+  for (const FrameRecord& record : run.records)
+    if (record.status == FrameStatus::unreadable) lacking.push_back({record.index, &record.note});
+  return gaps_text(run, lacking);
+}
+
 /// Which frames lacked the mask that was to be given, and why.
 std::string mask_gaps(const RunResult& run) {
   std::vector<Lacking> lacking;
@@ -184,6 +192,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
     report.evaluation_live = evaluate_trajectory(source.ground_truth(), run.live, options);
   }
   report.truth_why_not = source.why_not(FramePart::truth);
+  report.without_image = image_gaps(run);
   report.without_depth = depth_gaps(run);
   report.without_mask = mask_gaps(run);
   if (report.evaluation) report.doubt = doubt_of(*report.evaluation);
@@ -276,6 +285,7 @@ std::string to_text(const RunReport& report) {
   } else {
     text += "  no ground truth: no errors\n";
   }
+  if (!report.without_image.empty()) text += fmt::format("  no image      {}\n", report.without_image);
   if (!report.without_mask.empty()) text += fmt::format("  no mask       {}\n", report.without_mask);
   if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
   // Another program is no method of ours that could be asked what it removes.

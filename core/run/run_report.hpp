@@ -32,6 +32,7 @@ struct RunReport {
   bool has_truth = false;       ///< the sequence has ground truth that meets its frames
   std::string truth_why_not;    ///< why ground truth that is there is of no use; empty otherwise
   std::string doubt;            ///< what lets truth and poses fit far better than as they stand; empty mostly
+  std::string without_image;    ///< which frames could not be read and why, one sentence; empty where none
   std::string without_depth;    ///< which frames lacked depth and why, one sentence; empty where none did
   std::string without_mask;     ///< which frames lacked the mask they were to be given, and why; likewise
   FrameScores scores;           ///< summed over the frames

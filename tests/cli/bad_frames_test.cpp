@@ -71,6 +71,9 @@ TEST_P(MidSequence, MarksTheFrameAndGoesOn) {
   const CliResult result =
       run_cli({"run", sequence.path(), "--method", method, "--out", sequence.path("out")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
+  if (std::string(fault.status) == "unreadable") {
+    EXPECT_THAT(result.out, ::testing::AllOf(HasSubstr("  no image "), HasSubstr(fault.note)));
+  }
 
   const auto rows = csv_rows(sequence.folder.read("out/frames.csv"));
   ASSERT_EQ(rows.size(), static_cast<std::size_t>(kFrames));
