@@ -150,8 +150,7 @@ void add_map_stages(const FrameRecord& record, std::vector<Stage>& stages) {
 
   Stage& bundle =
       add_stage(stages, "bundle", "Bundle adjustment",
-                "Refines the local keyframes and the points they share; enters the map at a fixed "
-                "frame. The time is what this frame waited for it.");
+                "Refines the local keyframes and the points they share, after each new keyframe.");
   bundle.ms = record.ms.bundle;
   if (record.bundle_iterations == 0) {
     bundle.note = "None entered the map in this frame.";
