@@ -20,6 +20,8 @@ constexpr double kTimesUsual = 2.0;  // a bad value is that far off the run's me
 constexpr double kManyOnDynamic =
     0.15;  // share of a pose's inliers: more on dynamic objects explain an error
 constexpr double kLowIou = 0.5;
+constexpr double kWayBack =
+    0.5;                    // a step that is off comes back when it takes so much of itself off the error
 constexpr int kFewest = 5;  // frames with a value: among fewer there is no rank and nothing usual
 
 const FigureInfo& info_of(int figure) { return frame_figure_infos()[static_cast<std::size_t>(figure)]; }
@@ -60,6 +62,20 @@ std::optional<Standing> standing_of(const MeasuredFrames& frames, int figure, st
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
+
+/// A step that is far off may be the way back from poses that were: says since when. Empty where it is not,
+/// and where there is no ground truth.
+std::string way_back_of(const RunView& run, std::size_t row, int figure, double step) {
+  if (row == 0 || figure != frame_figure("rpe")) return {};
+  const int absolute = frame_figure("ate");
+  const std::vector<double> off = frame_figure_values(run.measured(), absolute);
+  // Where either is not known this compares false.
+  if (!(off[row - 1] - off[row] > kWayBack * step)) return {};
+  std::size_t since = row - 1;
+  while (since > 0 && off[since - 1] < off[since]) --since;
+  return fmt::format("the estimate comes back, gone off since frame {} by {}", run.records[since].index,
+                     shown_value(info_of(absolute), off[row - 1]));
+}
 
 /// What was recorded that explains a bad pose, likeliest first.
 std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
@@ -140,11 +156,12 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
   if (removal_hurt) verdict.parts.push_back(part_of("removal hurt", Tone::bad));
 
   verdict.bad = standing && standing->bad;
-  if (verdict.bad)
-    verdict.sentence =
-        fmt::format("{} where {} is usual: {}.", shown_value(info_of(figure), standing->value),
-                    shown_value(info_of(figure), standing->median), cause_of(run, row, removal_hurt));
-  else if (record.status == FrameStatus::initialised)
+  if (verdict.bad) {
+    std::string cause = way_back_of(run, row, figure, standing->value);
+    if (cause.empty()) cause = cause_of(run, row, removal_hurt);
+    verdict.sentence = fmt::format("{} where {} is usual: {}.", shown_value(info_of(figure), standing->value),
+                                   shown_value(info_of(figure), standing->median), cause);
+  } else if (record.status == FrameStatus::initialised)
     verdict.sentence = record.measured.points ? "The map begins here." : "The run begins here.";
   else if (standing && standing->of >= kFewest)
     verdict.sentence =

@@ -23,7 +23,8 @@ struct FrameVerdict {
 
 /// @param row index into run.records
 /// @param hurt frames that removal made worse, ascending (removal_errors)
-/// A step counts as bad when it is among the worst tenth and more than twice the median of the run.
+/// A step counts as bad when it is among the worst tenth and more than twice the median of the run. One that is off
+/// because it comes back to the truth is told from one that leaves it.
 [[nodiscard]] FrameVerdict frame_verdict(const RunView& run, std::size_t row,
                                          const std::vector<int>& hurt = {});
 
