@@ -274,6 +274,13 @@ TEST(Figures, AreThePapersOfAnySequence) {
   EXPECT_EQ(cv::norm(cv::imread(out + "/figure1b.png"), cv::imread(sequence.path("rgb/4.png")), cv::NORM_INF),
             0.0);
 
+  // Captions have room whatever the pictures' size: narrower ones wrap into more lines.
+  const int whole = cv::imread(out + "/figure1.png").rows;
+  const CliResult small =
+      run_cli({"figures", sequence.path(), "--frame", "4", "--scale", "0.5", "--out", out, "--force"});
+  ASSERT_EQ(small.exit_code, 0) << small.err;
+  EXPECT_GT(cv::imread(out + "/figure1.png").rows, whole - 2 * 120);
+
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "4", "--out", out}), "--force");
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "9", "--out", out}),
                       "--frame 9: the sequence has frames 0 to 5");
