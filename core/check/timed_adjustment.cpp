@@ -125,7 +125,7 @@ struct SightingResiduals {
 
 std::optional<SightingResiduals> residuals_of(const Camera& camera, const SeenFrame& frame, const Sighting& s,
                                               const Vector3& point, const Times& times) {
-  const double share = (s.row + 0.5) / camera.height - 0.5;  // of the readout, after the middle row
+  const double share = camera.row_share(s.row);  // of the readout, after the middle row
   const Vector3 p = frame.camera_from_world * point;
   if (!(p.z() >= kNearestUsed)) return std::nullopt;
   const Moved seen = moved(frame, p, share * times[0]);
@@ -202,7 +202,7 @@ void TimedAdjustment::look_up_depth() {
     for (Sighting& s : frame.sightings) {
       s.depth.reset();
       if (frame.depth.empty()) continue;
-      const double share = (s.row + 0.5) / camera_.height - 0.5;
+      const double share = camera_.row_share(s.row);
       const Vector3 p = frame.camera_from_world * stretch_.points[static_cast<std::size_t>(s.point)];
       const Vector3 then = moved(frame, p, frame.lag + times_[2] + share * times_[1]).at;
       if (!(then.z() >= kNearestUsed)) continue;

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "core/geometry/camera_yaml.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 
 namespace stillpoint {
 namespace {
@@ -136,8 +137,7 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
   const double sx = static_cast<double>(new_width) / width, sy = static_cast<double>(new_height) / height;
   scaled.width = new_width, scaled.height = new_height;
   scaled.fx *= sx, scaled.fy *= sy;
-  // Pixel centres lie at whole numbers: the image's edge, not pixel 0, stays where it is.
-  scaled.cx = (cx + 0.5) * sx - 0.5, scaled.cy = (cy + 0.5) * sy - 0.5;
+  scaled.cx = upsampled(cx, sx), scaled.cy = upsampled(cy, sy);
   return scaled;
 }
 

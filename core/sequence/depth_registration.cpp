@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -88,13 +90,13 @@ bool is_one_surface(const std::array<float, 3>& z) {
 DepthRegistration::DepthRegistration(const DepthCamera& depth, const Camera& colour)
     : depth_(depth), colour_(colour) {
   const Camera& camera = depth_.camera;
-  const auto ray = [&camera](double x, double y) {
-    return camera.back_project(camera.undistorted({x, y}), 1.0);
+  const auto ray = [&camera](const Eigen::Vector2d& pixel) {
+    return camera.back_project(camera.undistorted(pixel), 1.0);
   };
   for (int y = 0; y <= camera.height; ++y)
-    for (int x = 0; x <= camera.width; ++x) corners_.push_back(ray(x - 0.5, y - 0.5));
+    for (int x = 0; x <= camera.width; ++x) corners_.push_back(ray(to_pixel(RasterPoint(x, y))));
   for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) centres_.push_back(ray(x, y));
+    for (int x = 0; x < camera.width; ++x) centres_.push_back(ray({x, y}));
 }
 
 cv::Mat DepthRegistration::registered(const cv::Mat& depth) const {

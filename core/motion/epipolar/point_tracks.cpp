@@ -41,6 +41,7 @@ bool inside(const cv::Point2f& point, cv::Size size) {
 cv::Mat coarse_shifts(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to) {
   const cv::Mat a = from[2 * kCoarseLevel].clone(), b = to[2 * kCoarseLevel].clone();
   const int across = a.cols / kCoarseCell, down = a.rows / kCoarseCell;
+  // Cells' middles to half a pixel: their raster coordinates, which are followed as pixels.
   std::vector<cv::Point2f> places, ends;
   for (int y = 0; y < down; ++y)
     for (int x = 0; x < across; ++x)

@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -49,14 +51,14 @@ Yi2013Places places_by_depth(const cv::Mat& depths, const PixelRays& rays, const
       if (z <= 0.0) continue;
       const Eigen::Vector2d ray = rays.at(static_cast<float>(bx), static_cast<float>(by)).cast<double>();
       const Eigen::Vector3d there = last_from_here * Eigen::Vector3d(ray.x() * z, ray.y() * z, z);
-      cv::Point2d& place = places[static_cast<std::size_t>(by * depths.cols + bx)];
+      RasterPoint& place = places[static_cast<std::size_t>(by * depths.cols + bx)];
       if (there.z() < kNearest) {
-        place = {kNowhere, kNowhere};
+        place = RasterPoint(kNowhere, kNowhere);
         continue;
       }
       const Eigen::Vector2d straight = camera.project(there);
       const Eigen::Vector2d pixel = camera.has_distortion() ? camera.distort(straight) : straight;
-      place = {(pixel.x() + 0.5) / block_px, (pixel.y() + 0.5) / block_px};
+      place = to_raster(pixel) / block_px;
     }
   return places;
 }

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 
 namespace stillpoint {
 namespace {
@@ -105,8 +106,8 @@ class Way {
   [[nodiscard]] float weight_of(const CoarsePoint& point, double x, double y, int level) const {
     float weight = 1.0F;
     if (!looked_.weight.empty()) {
-      const int u = static_cast<int>(std::lround((x + 0.5) * (1 << level) - 0.5)),
-                v = static_cast<int>(std::lround((y + 0.5) * (1 << level) - 0.5));
+      const int u = static_cast<int>(std::lround(upsampled(x, 1 << level))),
+                v = static_cast<int>(std::lround(upsampled(y, 1 << level)));
       weight = looked_.weight.at<float>(std::clamp(v, 0, looked_.weight.rows - 1),
                                         std::clamp(u, 0, looked_.weight.cols - 1));
     }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/sequence/generated/act.hpp"
 #include "core/sequence/generated/ray_caster.hpp"
 #include "core/sequence/generated/sensor.hpp"
@@ -137,7 +138,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
   /// @param look what a camera sees whose image is a band, and whose middle row is that row of the whole one
   template <typename Look>
   [[nodiscard]] Rendering film(double readout_s, int beyond, const Look& look) const {
-    if (readout_s == 0.0) return look(filming_, 0.5 * filming_.height - 0.5);
+    if (readout_s == 0.0) return look(filming_, filming_.middle_row());
     constexpr int kBand = 8;  // rows: at 30 ms for an image half a band is 0.25 ms
     Rendering whole;
     for (int top = 0; top < filming_.height; top += kBand) {
@@ -145,7 +146,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
       Camera band = filming_;
       band.height = rows + 2 * beyond;
       band.cy -= top - beyond;
-      const Rendering seen = look(band, top + 0.5 * rows - 0.5);
+      const Rendering seen = look(band, to_pixel(RasterCoordinate(top + 0.5 * rows)));
       const auto put = [&](const cv::Mat& from, cv::Mat& to) {
         if (from.empty()) return;
         if (to.empty()) to.create(filming_.height, filming_.width, from.type());
