@@ -66,6 +66,7 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+// At most: a handful of rounds do unless distortion folds the image. A step that makes it worse is halved.
 constexpr int kNewtonRounds = 30, kHalvings = 8;
 constexpr double kNewtonResidual = 1e-13;  // of the image plane one focal length away
 
@@ -191,7 +192,7 @@ std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
 
 namespace {
 
-constexpr double kLongestBaseline = 100.0;  // m
+constexpr double kLongestBaseline = 100.0;  // m: what is longer was given in mm
 constexpr double kLongestTime = 0.2;        // s, of readouts and delays
 
 using Reals = std::vector<std::pair<const char*, double*>>;

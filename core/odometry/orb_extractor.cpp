@@ -23,7 +23,7 @@ constexpr int kFastCell = 32;  // px: where FAST finds nothing in such a cell, t
 /// Weights of the intensity centroid's disc: a row of 32 pixels each, from kPatchRadius left of the corner
 /// on, so that whole rows are summed at once and what lies outside the disc counts 0.
 struct DiscWeights {
-  static constexpr int kRow = 2 * kPatchRadius + 2;
+  static constexpr int kRow = 2 * kPatchRadius + 2;  // px: the disc and one more, 32 in all
   std::array<std::array<std::int16_t, kRow>, 2 * kPatchRadius + 1> inside{}, sideways{};
 
   DiscWeights() {

@@ -66,6 +66,7 @@ class ZBuffer {
   [[nodiscard]] const cv::Mat& inverse() const { return inverse_; }
 
  private:
+  // A triangle of less than half kFlat px² covers nothing. Shares of a side: more than rounding opens.
   static constexpr double kFlat = 1e-9, kSeam = 1e-7;
   // Pixel centres lie at whole numbers. (std::ceil and std::floor are calls of the C library.)
   static int first(double from, int count) {
@@ -136,6 +137,7 @@ cv::Mat DepthRegistration::registered(const cv::Mat& depth) const {
       const std::size_t i = at(x, y, width);
       if (seen[i].inverse <= 0 || triangles[i] == kAllAround) continue;
       std::array<Seen, 4> corners;
+      // A square's corners in their order round it, px.
       constexpr std::array<Place, 4> kAround = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
       for (std::size_t k = 0; k < corners.size(); ++k)
         corners[k] =

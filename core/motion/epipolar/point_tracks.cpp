@@ -18,10 +18,12 @@ constexpr float kMaxReturn = 0.5F;  // px: forth and back must end where it bega
 constexpr int kCoarseLevel = 2;  // of the pyramid, at which parts of the picture are aligned first
 constexpr int kCoarseCell = 8, kCoarseWindow = 15;  // px at that level
 
-constexpr std::size_t kNeighbours = 8;
-constexpr float kMaxJump = 4.5F;  // px a frame: larger changes of velocity are slips
+constexpr std::size_t kNeighbours = 8;  // points: their median is no outlier while half of them are right
+constexpr float kMaxJump = 4.5F;        // px a frame: larger changes of velocity are slips
 
+// At most 12 steps, or one of 0.02 px, which is well below a followed point's noise.
 const cv::TermCriteria kStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 12, 0.02);
+// Grey levels² as OpenCV scales them, and its default: below, a window has no texture.
 constexpr double kMinEigen = 1e-4;
 
 int cells_across(int pixels, int cell) { return (pixels + cell - 1) / cell; }

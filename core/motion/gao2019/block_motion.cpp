@@ -79,7 +79,7 @@ cv::Mat block_deviations(const Yi2013Blocks& blocks, const Yi2013Model& chosen, 
 
 double exposure_gain(const Yi2013Blocks& blocks, const Yi2013Model& warped, double settled_age) {
   constexpr float kDark = 16.0F, kWhite = 230.0F;  // grey levels: ratios tell nothing there
-  constexpr std::size_t kLeast = 50;               // blocks
+  constexpr std::size_t kLeast = 50;               // blocks: a median of fewer follows what moves
   std::vector<float> ratios;
   for (int y = 0; y < blocks.mean.rows; ++y)
     for (int x = 0; x < blocks.mean.cols; ++x) {
@@ -95,6 +95,7 @@ double exposure_gain(const Yi2013Blocks& blocks, const Yi2013Model& warped, doub
 }
 
 void brighten(Yi2013Model& model, double gain) {
+  // What is nearly white may have been cut off, and nothing is above white.
   constexpr float kWhite = 245.0F, kWhitest = 255.0F;  // grey levels
   for (Yi2013Gaussians& gaussians : model)
     for (int y = 0; y < gaussians.mean.rows; ++y) {

@@ -36,6 +36,7 @@ float level_at(const cv::Mat& image, float x, float y) {
 
 /// Where a full-size place lies in a level whose pixels are `scale` of it: the left upper pixel of its patch.
 cv::Point2f corner_in_level(const cv::Point2f& full, float scale) {
+  // From a patch's first pixel to its middle, px.
   constexpr float kMiddle = 0.5F * static_cast<float>(kPatchSide - 1);
   return upsampled(full, scale) - cv::Point2f(kMiddle, kMiddle);
 }

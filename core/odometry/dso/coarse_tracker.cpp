@@ -17,7 +17,7 @@ namespace {
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
-constexpr std::array<int, 5> kIterations = {10, 20, 50, 50, 50};  // finest first
+constexpr std::array<int, 5> kIterations = {10, 20, 50, 50, 50};  // at most, finest first: DSO's
 
 struct State {
   Pose frame_from_reference = Pose::Identity();
@@ -118,6 +118,8 @@ class Way {
   }
 
   double run_level(int level, State& state, int& iterations, double& cutoff) {
+    // The damping begins at kFirst and goes by factors, as in DSO. Ends: a gain that is no larger share of
+    // the energy, a step of fewer m and rad at full size.
     constexpr double kWorse = 4.0, kBetter = 0.5, kFirst = 0.01, kLeastGain = 1e-5, kStill = 2e-5,
                      kMostCutoffs = 3;
     cutoff = config_.cutoff;

@@ -22,8 +22,9 @@ namespace {
 
 using namespace generated;
 
+// Frames: 10 s unless asked for, and at most 55 minutes, for more is a slip of the keyboard.
 constexpr int kOwnLength = 300, kMostFrames = 100000;
-constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz
+constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz: a Kinect's, and TUM's motion capture's
 constexpr double kBaseline = 0.12;                       // m, of the stereo pair
 constexpr double kMostBlur = 24.0;                       // px, that four instants of an exposure stand for
 constexpr double kEpoch = 1000.0;                        // s, the first frame's stamp
@@ -183,7 +184,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
   /// @param aside m, to the right of the sequence's camera
   [[nodiscard]] Rendering expose(const Camera& camera, double seconds, const Instant& middle,
                                  double aside) const {
-    constexpr double kStep = 1.5;  // px
+    constexpr double kStep = 1.5;  // px between instants: closer than what the eye tells from a smear
     const auto at = [&](int k, int count) {
       return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count, aside);
     };
@@ -264,6 +265,7 @@ namespace {
 /// @param endings ":readout_s=0.02:…", or nothing
 /// @throws InputError for a name or a number that is none
 SensorTiming timing_from(std::string_view endings) {
+  // An image is read out within its 33 ms: far more is an error of units.
   constexpr double kLongest = 0.1;  // s
   SensorTiming timing;
   while (!endings.empty()) {
