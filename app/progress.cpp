@@ -54,7 +54,7 @@ std::function<void(const std::string&, double)> opening_progress() {
   };
   return [line = std::make_shared<Line>(), terminal = isatty(STDERR_FILENO) != 0](const std::string& what,
                                                                                   double share) {
-    constexpr double kInterval = 100.0;  // ms
+    constexpr double kInterval = 100.0;  // ms: often enough to look alive
     throw_if_interrupted();
     const double now = line->watch.milliseconds();
     if (!terminal || now - line->last_ms < kInterval) return;
@@ -72,8 +72,9 @@ Progress::~Progress() {
 }
 
 void Progress::advance(const std::string& remark) {
+  // On a terminal, and in a file, where every line stays.
   constexpr double kBarInterval = 100.0, kLineInterval = 5000.0;  // ms
-  constexpr int kBarWidth = 30;
+  constexpr int kBarWidth = 30;                                   // characters: figures have room beside
   ++done_;
   const double elapsed = watch_.milliseconds();
   if (done_ < total_ && elapsed - last_shown_ms_ < (terminal_ ? kBarInterval : kLineInterval)) return;

@@ -28,7 +28,7 @@ struct RunArguments {
   SequenceArguments frames;
 };
 
-constexpr int kConditionHeld = 3;  // exit status
+constexpr int kConditionHeld = 3;  // the exit status, so that scripts tell it from a failure
 
 std::optional<Condition> break_condition(const RunArguments& arguments) {
   if (arguments.break_at.empty()) return std::nullopt;

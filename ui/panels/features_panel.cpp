@@ -140,7 +140,7 @@ class FeaturesPanel final : public FramePanel {
 
   /// The less a feature weighs in the pose, the fainter it is drawn.
   [[nodiscard]] float strength(const FeatureRecord& feature) const {
-    constexpr float kFaintest = 0.3F;
+    constexpr float kFaintest = 0.3F;  // opacity of a feature without weight: it is still seen
     const bool weighs = moment_ == FeatureMoment::kAfter && feature.fate == FeatureFate::inlier;
     return weighs ? kFaintest + (1.0F - kFaintest) * feature.static_weight : 1.0F;
   }

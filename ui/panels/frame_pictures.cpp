@@ -63,7 +63,7 @@ cv::Mat plain_mask(const cv::Mat& mask, Rgb colour, Rgb ground) {
 
 cv::Mat coloured(const cv::Mat& values, const ColourScale& scale, bool zero_is_none) {
   if (values.empty()) return {};
-  constexpr int kSteps = 512;
+  constexpr int kSteps = 512;  // colours of a scale: more than a channel's 256 levels tell apart
   std::array<cv::Vec3b, kSteps> table;
   for (int i = 0; i < kSteps; ++i) {
     const double share = static_cast<double>(i) / (kSteps - 1);

@@ -20,7 +20,7 @@ namespace stillpoint {
 namespace {
 
 constexpr float kCornerReach = 8.0F, kEdgeReach = 5.0F;  // design px, for the mouse
-constexpr std::size_t kLeastCorners = 3;
+constexpr std::size_t kLeastCorners = 3;                 // corners: fewer enclose nothing
 
 /// Truth by hand: outlines are drawn round what moves in some frames, and carried to the others.
 class OutlinePanel final : public FramePanel {

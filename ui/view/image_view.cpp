@@ -5,7 +5,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kLeastZoom = 0.25;
+constexpr double kLeastZoom = 0.25;   // of the size that just fits: smaller, nothing is made out
 constexpr double kMostScale = 256.0;  // panel px an image px
 
 Eigen::Vector2d with_area(const Eigen::Vector2d& size) { return size.cwiseMax(1.0); }

@@ -15,8 +15,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kNumbersFromScale = 28.0;  // panel px an image px, design px
-constexpr double kWheelFactor = 1.2;
-constexpr float kClickSlack = 4.0F;  // px the mouse may move in a click
+constexpr double kWheelFactor = 1.2;        // times the size, a notch of the wheel
+constexpr float kClickSlack = 4.0F;         // px the mouse may move in a click
 
 Eigen::Vector2d to_vector(ImVec2 v) { return {static_cast<double>(v.x), static_cast<double>(v.y)}; }
 
