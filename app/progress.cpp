@@ -8,6 +8,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/config.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -90,6 +95,21 @@ void Progress::advance(const std::string& remark) {
   } else {
     fmt::print(stderr, "{}: {}\n", title_, figures);
   }
+}
+
+int frames_of(const FrameSource& source, int asked) {
+  return asked > 0 ? std::min(asked, source.size()) : source.size();
+}
+
+RunResult run_with_progress(const FrameSource& source, const Config& config, const std::string& title,
+                            RunOptions options) {
+  Progress progress(title, frames_of(source, options.count));
+  options.stop = &stop_requested();
+  options.on_frame = [&progress, take = std::move(options.on_frame)](const FrameResult& frame) {
+    if (take) take(frame);
+    progress.advance(std::string(to_string(frame.record.status)));
+  };
+  return run_sequence(source, config, options);
 }
 
 }  // namespace stillpoint
