@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -47,8 +49,8 @@ cv::Mat coarse_shifts(const std::vector<cv::Mat>& from, const std::vector<cv::Ma
   std::vector<cv::Point2f> places, ends;
   for (int y = 0; y < down; ++y)
     for (int x = 0; x < across; ++x)
-      places.emplace_back(static_cast<float>(kCoarseCell) * (static_cast<float>(x) + 0.5F),
-                          static_cast<float>(kCoarseCell) * (static_cast<float>(y) + 0.5F));
+      places.emplace_back((to_raster(static_cast<float>(x)) * kCoarseCell).px(),
+                          (to_raster(static_cast<float>(y)) * kCoarseCell).px());
   std::vector<std::uint8_t> found;
   std::vector<float> error;
   cv::calcOpticalFlowPyrLK(a, b, places, ends, found, error, {kCoarseWindow, kCoarseWindow}, 2, kStop);
