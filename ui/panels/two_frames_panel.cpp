@@ -181,8 +181,7 @@ class TwoFramesPanel final : public NamedPanel {
   }
 
   static ImVec2 on_screen(const ImageResponse& response, const Eigen::Vector2d& pixel) {
-    return response.to_screen(
-        to_raster(cv::Point2f(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()))));
+    return response.to_screen(to_raster(pixel));
   }
 
   static bool in_view(const ImageResponse& response, ImVec2 at) {
