@@ -116,7 +116,7 @@ TEST(PixelConventions, RowsOfAReadoutAreSharedOutEvenlyAboutTheMiddle) {
   camera.height = 480, camera.readout_s = 0.048;
   EXPECT_EQ(camera.middle_row(), 239.5);
   EXPECT_EQ(camera.row_time(camera.middle_row()), 0.0);
-  EXPECT_DOUBLE_EQ(camera.row_time(240.0) - camera.row_time(239.0), 0.0001);
+  EXPECT_NEAR(camera.row_time(240.0) - camera.row_time(239.0), 0.0001, 1e-15);
   EXPECT_DOUBLE_EQ(camera.row_share(to_pixel(RasterCoordinate(0.0))), -0.5);
   EXPECT_DOUBLE_EQ(camera.row_share(to_pixel(RasterCoordinate(480.0))), 0.5);
 }
