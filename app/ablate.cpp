@@ -18,7 +18,6 @@
 #include "app/progress.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
-#include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/ablation.hpp"
 #include "core/run/cell_plan.hpp"
@@ -75,22 +74,13 @@ std::vector<AblatedSequence> open_all(const AblateArguments& arguments, const Co
   return sequences;
 }
 
-int frames_ablated(const FrameSource& source, int asked) {
-  return asked > 0 ? std::min(asked, source.size()) : source.size();
-}
-
 /// Nothing where it was interrupted.
 std::optional<AblationCell> run_variant(const FrameSource& source, const std::string& sequence,
                                         const Config& config, int frames, const std::string& without) {
   RunOptions options;
   options.count = frames;
-  options.stop = &stop_requested();
   const std::string name = without.empty() ? "whole method" : "without " + without;
-  Progress progress(fmt::format("{} ({})", sequence, name), frames_ablated(source, frames));
-  options.on_frame = [&progress](const FrameResult& frame) {
-    progress.advance(std::string(to_string(frame.record.status)));
-  };
-  const RunResult result = run_sequence(source, config, options);
+  const RunResult result = run_with_progress(source, config, fmt::format("{} ({})", sequence, name), options);
   if (result.interrupted) return std::nullopt;
   return ablation_cell(report_on(result, source));
 }
@@ -133,7 +123,7 @@ std::string run_ablation_cell(const CellPlan& plan, const PlanCell& cell, const 
   set_parameter(config, "run.odometry=" + cell.odometry);
   set_parameter(config, "run.method=" + cell.method);
   const auto source = reading.open(sequence.where, config, {.depth = true});
-  if (frames_ablated(*source, reading.frames) != cell.frames)
+  if (frames_of(*source, reading.frames) != cell.frames)
     throw InputError(fmt::format("{}: has {} frames now, and the plan was made for another number",
                                  sequence.where, source->size()));
   std::optional<Ingredient> variant;
@@ -187,7 +177,7 @@ CellPlan ablation_plan(const AblateArguments& arguments, const Config& config,
     for (const auto& variant : variants)
       plan.cells.push_back({sequence.name, config.run.odometry, config.run.method, 0,
                             variant ? variant->name : "",
-                            frames_ablated(*sequence.source, sequence.reading.frames)});
+                            frames_of(*sequence.source, sequence.reading.frames)});
   }
   if (!arguments.resume) return plan;
   if (const auto earlier = earlier_cells(arguments.out, plan.kind, plan.config)) {

@@ -20,7 +20,6 @@
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
-#include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/cell_plan.hpp"
 #include "core/run/outside_run.hpp"
@@ -28,6 +27,7 @@
 #include "core/run/repeats.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 
 namespace stillpoint {
 namespace {
@@ -98,27 +98,6 @@ std::filesystem::path runs_folder(const std::string& out, std::string sequence,
   return std::filesystem::path(out) / name;
 }
 
-/// How many frames of a sequence are run. @param asked 0 = all
-int frames_of(const FrameSource& source, int asked) {
-  return asked > 0 ? std::min(asked, source.size()) : source.size();
-}
-
-/// @param records null where the run is not kept
-RunResult run_one(const FrameSource& source, const Config& config, int first, int frames,
-                  const std::string& label, RecordsWriter* records) {
-  RunOptions options;
-  options.first = first;
-  options.count = frames;
-  options.stop = &stop_requested();
-  options.measure_orb_unit = true;
-  Progress progress(label, frames);
-  options.on_frame = [&progress, records](const FrameResult& frame) {
-    if (records != nullptr) records->add(frame);
-    progress.advance(std::string(to_string(frame.record.status)));
-  };
-  return run_sequence(source, config, options);
-}
-
 /// A sequence of the benchmark.
 struct Place {
   const FrameSource& source;
@@ -145,9 +124,12 @@ std::optional<BenchmarkResult> run_and_keep(const Place& place, const Config& co
       arguments.repeats > 1
           ? fmt::format("{} ({}, {} of {})", place.name, run_label(config), repeat + 1, arguments.repeats)
           : fmt::format("{} ({})", place.name, run_label(config));
-  const int first = std::min(by.first_frame, place.frames - 1);
-  const RunResult result = run_one(place.source, perturbed(config, by), first, place.frames - first, label,
-                                   records ? &*records : nullptr);
+  RunOptions options;
+  options.first = std::min(by.first_frame, place.frames - 1);
+  options.count = place.frames - options.first;
+  options.measure_orb_unit = true;
+  if (records) options.on_frame = [&records](const FrameResult& frame) { records->add(frame); };
+  const RunResult result = run_with_progress(place.source, perturbed(config, by), label, options);
   const std::string gone = why_gone(place.where, result);
   if (result.interrupted || !gone.empty()) {
     if (records) records->discard();

@@ -93,7 +93,7 @@ pid_t start_cell(const fs::path& folder, const CellPlan& plan, std::string finge
 
 /// The last line of a log, clipped; empty where this attempt said nothing.
 std::string last_words(const fs::path& log) {
-  constexpr std::size_t kLongest = 300;  // bytes
+  constexpr std::size_t kLongest = 300;  // bytes: a sentence for a table's cell
   std::string said;
   std::ifstream file(log);
   for (std::string line; std::getline(file, line);)

@@ -17,7 +17,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kFindingsStatus = 3;
+constexpr int kFindingsStatus = 3;  // the exit status, so that scripts tell findings from failures
 
 struct CheckArguments {
   std::string sequence, estimate;

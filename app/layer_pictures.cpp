@@ -26,7 +26,7 @@ struct LegendEntry {
   Marker draw;
 };
 
-constexpr int kFractionBits = 4;
+constexpr int kFractionBits = 4;  // a sixteenth of a pixel: smooth lines show no more
 
 cv::Point fixed_point(const cv::Point2f& point) {
   return {cvRound(point.x * (1 << kFractionBits)), cvRound(point.y * (1 << kFractionBits))};
@@ -70,8 +70,8 @@ Marker swatch(const cv::Scalar& colour) {
 
 /// The picture with a legend below it, as many lines as its width asks for.
 cv::Mat with_legend(const cv::Mat& picture, const std::vector<LegendEntry>& entries) {
-  constexpr int kLine = 20;
-  constexpr double kTextScale = 0.42;
+  constexpr int kLine = 20;            // px of a line of text
+  constexpr double kTextScale = 0.42;  // of OpenCV's font: 9 px a capital
   std::vector<cv::Point> places;
   int x = 4, y = 0;
   for (const LegendEntry& entry : entries) {

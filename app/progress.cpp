@@ -8,6 +8,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/config.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/run/run_sequence.hpp"
+#include "core/sequence/source.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -54,7 +59,7 @@ std::function<void(const std::string&, double)> opening_progress() {
   };
   return [line = std::make_shared<Line>(), terminal = isatty(STDERR_FILENO) != 0](const std::string& what,
                                                                                   double share) {
-    constexpr double kInterval = 100.0;  // ms
+    constexpr double kInterval = 100.0;  // ms: often enough to look alive
     throw_if_interrupted();
     const double now = line->watch.milliseconds();
     if (!terminal || now - line->last_ms < kInterval) return;
@@ -72,8 +77,9 @@ Progress::~Progress() {
 }
 
 void Progress::advance(const std::string& remark) {
+  // On a terminal, and in a file, where every line stays.
   constexpr double kBarInterval = 100.0, kLineInterval = 5000.0;  // ms
-  constexpr int kBarWidth = 30;
+  constexpr int kBarWidth = 30;                                   // characters: figures have room beside
   ++done_;
   const double elapsed = watch_.milliseconds();
   if (done_ < total_ && elapsed - last_shown_ms_ < (terminal_ ? kBarInterval : kLineInterval)) return;
@@ -89,6 +95,21 @@ void Progress::advance(const std::string& remark) {
   } else {
     fmt::print(stderr, "{}: {}\n", title_, figures);
   }
+}
+
+int frames_of(const FrameSource& source, int asked) {
+  return asked > 0 ? std::min(asked, source.size()) : source.size();
+}
+
+RunResult run_with_progress(const FrameSource& source, const Config& config, const std::string& title,
+                            RunOptions options) {
+  Progress progress(title, frames_of(source, options.count));
+  options.stop = &stop_requested();
+  options.on_frame = [&progress, take = std::move(options.on_frame)](const FrameResult& frame) {
+    if (take) take(frame);
+    progress.advance(std::string(to_string(frame.record.status)));
+  };
+  return run_sequence(source, config, options);
 }
 
 }  // namespace stillpoint

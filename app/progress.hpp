@@ -8,6 +8,11 @@
 
 namespace stillpoint {
 
+class FrameSource;
+struct Config;
+struct RunOptions;
+struct RunResult;
+
 /// Turns true at the first Ctrl-C (or SIGTERM); a second one ends the program at once.
 [[nodiscard]] const std::atomic<bool>& stop_requested();
 
@@ -44,6 +49,13 @@ class Progress {
   Stopwatch watch_;
   double last_shown_ms_ = 0.0;
 };
+
+/// How many frames of a sequence are run. @param asked 0 = all
+[[nodiscard]] int frames_of(const FrameSource& source, int asked);
+
+/// run_sequence() with a Progress, up to a stop that is requested.
+[[nodiscard]] RunResult run_with_progress(const FrameSource& source, const Config& config,
+                                          const std::string& title, RunOptions options);
 
 /// What OpenOptions::progress is given: a line on a terminal, cleared at the end, and Ctrl-C ends what it
 /// tells of.

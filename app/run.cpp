@@ -17,6 +17,7 @@
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 
 namespace stillpoint {
 namespace {
@@ -28,7 +29,7 @@ struct RunArguments {
   SequenceArguments frames;
 };
 
-constexpr int kConditionHeld = 3;  // exit status
+constexpr int kConditionHeld = 3;  // the exit status, so that scripts tell it from a failure
 
 std::optional<Condition> break_condition(const RunArguments& arguments) {
   if (arguments.break_at.empty()) return std::nullopt;
@@ -69,7 +70,6 @@ void run(const RunArguments& arguments) {
                    {.depth = true, .oracle = method_of(config).needs.true_mask, .questioned = true});
   RunOptions options;
   options.count = arguments.frames.frames;
-  options.stop = &stop_requested();
   std::optional<SequenceOrigin> origin;
   std::optional<RecordsWriter> records;
   if (!arguments.out.empty()) {
@@ -84,17 +84,12 @@ void run(const RunArguments& arguments) {
     mcap_name.emplace(arguments.mcap, arguments.force);
     mcap.emplace(mcap_name->while_written(), source->camera());
   }
-  const int total = options.count > 0 ? std::min(options.count, source->size()) : source->size();
-  RunResult result;
-  {
-    Progress progress(fmt::format("{} ({})", source->name(), run_label(config)), total);
-    options.on_frame = [&](const FrameResult& frame) {
-      if (records) records->add(frame);
-      if (mcap) mcap->add(source->read(frame.record.index), frame.record, frame.mask);
-      progress.advance(std::string(to_string(frame.record.status)));
-    };
-    result = run_sequence(*source, config, options);
-  }
+  options.on_frame = [&](const FrameResult& frame) {
+    if (records) records->add(frame);
+    if (mcap) mcap->add(source->read(frame.record.index), frame.record, frame.mask);
+  };
+  const RunResult result =
+      run_with_progress(*source, config, fmt::format("{} ({})", source->name(), run_label(config)), options);
   const RunReport report = report_on(result, *source);
   // Told before it is written: on a full disk the figures at least are seen.
   fmt::print("{}", to_text(report));
@@ -108,7 +103,7 @@ void run(const RunArguments& arguments) {
     fmt::print("  written to    {}\n", arguments.mcap);
   }
   if (result.interrupted) {
-    fmt::print("stopped after {} of {} frames{}\n", report.frames, total,
+    fmt::print("stopped after {} of {} frames{}\n", report.frames, frames_of(*source, options.count),
                arguments.out.empty() ? "" : "; what was done is kept");
     throw_if_interrupted();
   }

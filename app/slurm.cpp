@@ -52,7 +52,7 @@ Answer ask_shell(const std::string& line) {
 /// @throws InputError with what it said, on one line
 std::string ask_slurm(const std::string& command, const std::string& line) {
   Answer answer = ask_shell(line);
-  constexpr int kNotFound = 127;
+  constexpr int kNotFound = 127;  // what a shell answers for a command that is not there
   if (answer.status == kNotFound)
     throw InputError(fmt::format(
         "--slurm: there is no {} here; a cluster's jobs are submitted where Slurm's commands are", command));
@@ -173,7 +173,7 @@ int slurm_minutes(const std::string& time) {
     seconds = (part(2) * 60 + part(3)) * 60 + part(4);
   else
     seconds = part(2) * 60 + part(3);
-  constexpr int kMinute = 60, kLongest = 366 * 24 * 60;
+  constexpr int kMinute = 60, kLongest = 366 * 24 * 60;  // s; minutes of a year
   const int minutes = (seconds + kMinute - 1) / kMinute;
   if (minutes < 1 || minutes > kLongest)
     throw InputError(fmt::format("--time {}: expected a minute to a year", in_quotes(time)));

@@ -148,7 +148,7 @@ class Pictures {
 double usual_step(const FrameSource& source) {
   std::vector<double> steps;
   for (int i = 1; i < source.size(); ++i) steps.push_back(source.timestamp(i) - source.timestamp(i - 1));
-  constexpr double kOfOneFrame = 1.0 / 30.0;
+  constexpr double kOfOneFrame = 1.0 / 30.0;  // s: a single frame is shown as long as a Kinect's
   return steps.empty() ? kOfOneFrame : std::clamp(median_of(steps), 1.0 / 240.0, 10.0);
 }
 

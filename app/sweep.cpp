@@ -68,9 +68,9 @@ void sweep(const SweepArguments& arguments) {
   for (const auto& source : sources) {
     std::vector<SweepPoint> points;
     const int frames = arguments.frames.frames;
-    const int total = frames > 0 ? std::min(frames, source->size()) : source->size();
     for (const double value : values) {
-      Progress progress(fmt::format("{} ({} = {:.6g})", source->name(), range.parameter, value), total);
+      Progress progress(fmt::format("{} ({} = {:.6g})", source->name(), range.parameter, value),
+                        frames_of(*source, frames));
       auto point = sweep_point(*source, config, range.parameter, value, frames, &stop_requested(),
                                [&progress](const FrameResult& frame) {
                                  progress.advance(std::string(to_string(frame.record.status)));

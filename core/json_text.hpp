@@ -11,6 +11,7 @@ namespace stillpoint {
 /// @throws nlohmann::json::parse_error
 template <typename Json = nlohmann::json>
 [[nodiscard]] Json parse_json(std::string_view text, bool throws = true) {
+  // Levels: many more than files of ours have, and as many calls fit a stack.
   constexpr int kDeepestJson = 200;
   return Json::parse(
       text, [](int depth, typename Json::parse_event_t, const Json&) { return depth < kDeepestJson; },

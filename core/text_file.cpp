@@ -121,7 +121,7 @@ std::string printable(std::string name) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMost = 60;
+  constexpr std::size_t kMost = 60;  // bytes: enough to find the place again, and the sentence stays readable
   std::string result = "'";
   for (const char c : text.substr(0, kMost)) {
     const auto code = static_cast<unsigned char>(c);

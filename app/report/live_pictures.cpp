@@ -17,8 +17,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kLiveJpegQuality = 80;
-constexpr int kTruthRim = 3;  // px
+constexpr int kLiveJpegQuality = 80;  // of 100: all frames of a run go into one page
+constexpr int kTruthRim = 3;          // px: a line that is seen in a small picture
 
 using Json = nlohmann::ordered_json;
 

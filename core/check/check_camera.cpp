@@ -12,10 +12,10 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kWorseResidual = 1.015;         // of the best camera's, to doubt the one that is used
-constexpr double kCertain = 4.0;                 // standard errors
+constexpr double kWorseResidual = 1.015;  // of the best camera's, to doubt the one that is used
+constexpr double kCertain = 4.0;  // standard errors: several cameras are tried, and none is to win by chance
 constexpr double kFewestTrackedByCamera = 0.85;  // of the frames, for a residual to mean anything
-constexpr double kSameSides = 0.01;
+constexpr double kSameSides = 0.01;  // of the ratio of sides: rounding a small image to whole pixels
 
 /// Frames at hand under another camera.
 class UnderCamera final : public WithCamera {

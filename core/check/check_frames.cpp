@@ -13,7 +13,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kLongGap = 10.0;      // times the median step
-constexpr double kLongGapLeast = 0.5;  // s
+constexpr double kLongGapLeast = 0.5;  // s: shorter ones of fast cameras are no gaps to a hand
 constexpr int kPairsSampled = 12;      // neighbours compared in search of repeats
 
 /// What a sentence told on opening is about, by its words.

@@ -48,7 +48,7 @@ struct Followed {
 /// Follows corners one frame on, and back as a check; those that are lost go.
 void follow(const cv::Mat& from, const cv::Mat& to, Followed& corners) {
   if (corners.later.empty()) return;
-  constexpr float kReturnsPx = 0.7F;
+  constexpr float kReturnsPx = 0.7F;  // px: what is followed well returns to a fraction of a pixel
   Points there, back;
   std::vector<unsigned char> found, found_back;
   std::vector<float> error;
@@ -112,8 +112,9 @@ std::optional<Triangulated> triangulate(const Camera& camera, const Frame& frame
 std::optional<Triangulated> triangulated_from(const FrameSource& source, int index) {
   const Frame first = source.read(index);
   if (!first.readable() || !first.has_depth()) return std::nullopt;
-  constexpr int kCorners = 400, kApartPx = 8, kStep = 4;
-  constexpr double kQuality = 0.01;
+  // Many corners well apart, and few frames, so that they are found again.
+  constexpr int kCorners = 400, kApartPx = 8, kStep = 4;  // corners, px, frames
+  constexpr double kQuality = 0.01;  // of the best corner's score, as OpenCV's examples have it
   Followed corners;
   cv::goodFeaturesToTrack(first.gray, corners.first, kCorners, kQuality, kApartPx);
   corners.later = corners.first;
@@ -143,6 +144,7 @@ double spread_under(Meaning meaning, const Triangulated& points) {
     off.push_back(log_depth(meaning, points.measured[i], points.cosine[i]) - std::log(points.depth[i]));
   const double middle = median_of(off);
   for (double& value : off) value = std::abs(value - middle);
+  // Standard deviations of a normal distribution a median absolute deviation.
   constexpr double kSigmaOfMad = 1.4826;
   return kSigmaOfMad * median_of(off);
 }

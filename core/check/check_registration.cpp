@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kRegistrationFrames =
     12;  // spread over the sequence, so that motions of the camera average out
+// The farthest shift that is tried, to each side, and from one to the next.
 constexpr int kMostShiftPx = 32, kShiftStepPx = 2;
 constexpr double kWorthTellingPx = 6.0;  // a Kinect's own registration is off by 2 to 4
 constexpr float kFarPx = 8.0F;      // distances to an edge count up to so much: most edges have no partner
@@ -53,6 +54,7 @@ cv::Mat distance_to_edges(const cv::Mat& gray) {
 
 std::vector<Finding> check_registration(const FrameSource& source) {
   if (!source.has_depth() || source.camera().is_stereo()) return {};
+  // Shifts along a side, and which of them is none.
   constexpr int kSide = 2 * (kMostShiftPx / kShiftStepPx) + 1, kMiddle = kSide / 2;
   cv::Mat sum = cv::Mat::zeros(kSide, kSide, CV_64FC1);
   int frames = 0;

@@ -9,6 +9,7 @@
 namespace stillpoint {
 namespace {
 
+// A few seconds of work; fewer frames where every known camera goes over them.
 constexpr int kFramesTracked = 60, kFramesByCamera = 40;
 constexpr TimeStretch kShortStretch = {.frames = 90, .tries = 1, .runs = 1};
 

@@ -13,19 +13,20 @@
 namespace stillpoint {
 namespace {
 
+// The farthest shift that is tried, to either side, and from one to the next.
 constexpr double kMostShift = 0.5, kShiftStep = 0.005;  // s
-constexpr double kLeastShift = 0.015;  // s; below, sensors and clocks differ by as much anyway
-constexpr double kShareLeft = 0.7;     // of the error, for a shift to be believed
-constexpr double kWorthAWord = 0.002;  // m of motion
-constexpr double kMostGap = 0.05;      // s, between truth poses that are interpolated
-constexpr std::size_t kFewestPoses = 15;
-constexpr double kFewestTracked = 0.8;
+constexpr double kLeastShift = 0.015;     // s; below, sensors and clocks differ by as much anyway
+constexpr double kShareLeft = 0.7;        // of the error, for a shift to be believed
+constexpr double kWorthAWord = 0.002;     // m of motion
+constexpr double kMostGap = 0.05;         // s, between truth poses that are interpolated
+constexpr std::size_t kFewestPoses = 15;  // poses: below, a shift that fits is chance
+constexpr double kFewestTracked = 0.8;    // of the frames: below, the odometry says nothing about its input
 
 /// RMSE of motions over a few poses when the truth is read `shift` seconds earlier; nothing where too few
 /// poses have truth.
 std::optional<double> motion_error(const Trajectory& truth, const Trajectory& estimate, double shift,
                                    std::size_t needed) {
-  constexpr std::size_t kStep = 5;
+  constexpr std::size_t kStep = 5;  // poses: over a few frames motion outgrows noise
   double squares = 0;
   std::size_t pairs = 0;
   std::vector<std::optional<Pose>> poses;

@@ -174,11 +174,13 @@ TimeCalibration calibrate_stretch(const FrameSource& source, const Config& confi
 }  // namespace
 
 std::optional<TimeEstimate> delay_beside_truth(const Trajectory& truth, const Trajectory& estimate) {
+  // Half a second at 30 Hz, over which motion outgrows noise; and pairs whose errors hang together.
   constexpr std::size_t kApart = 15, kPairsInBlock = 20;  // poses
   constexpr double kGap = 0.05, kDifference = 0.002;      // s: between truth's poses; for derivatives
-  constexpr double kMostTold = 5e-3, kFarthest = 0.05;    // s
-  constexpr double kMetresARadian = 1.0;                  // rotation beside translation: a point 1 m away
-  constexpr int kSteps = 10;
+  // The largest standard error that is told, and a delay that is more than a frame's.
+  constexpr double kMostTold = 5e-3, kFarthest = 0.05;  // s
+  constexpr double kMetresARadian = 1.0;                // rotation beside translation: a point 1 m away
+  constexpr int kSteps = 10;  // of Gauss-Newton over one number: it settles in a few
   // How two motions over the same poses differ, truth read `delay` later.
   const auto difference = [&](std::size_t i, double delay) -> std::optional<Vector6d> {
     const auto a = interpolate(truth, estimate[i].timestamp + delay, kGap),

@@ -42,9 +42,9 @@ struct Sighting {
 /// difference of neighbours would miss a sixth of a hand's tremor at 5 Hz; a curve through all of them would
 /// take the poses' noise for motion.
 struct MotionAbout {
-  static constexpr int kReach = 2;  // frames to either side
-  static constexpr std::size_t kFrames = 2 * kReach + 1;
-  bool known = false;  ///< these frames are there, and near
+  static constexpr int kReach = 2;                        // frames to either side
+  static constexpr std::size_t kFrames = 2 * kReach + 1;  // with the frame itself
+  bool known = false;                                     ///< these frames are there, and near
   /// Coefficients of t, t² and t³: of the motion, and of each frame's part in it.
   Eigen::Matrix<double, 6, 3> cubic = Eigen::Matrix<double, 6, 3>::Zero();
   Eigen::Matrix<double, 3, kFrames> parts = Eigen::Matrix<double, 3, kFrames>::Zero();

@@ -224,7 +224,7 @@ Table details_table(const BenchmarkResults& results) {
 }
 
 std::string exit_text(int status) {
-  constexpr int kBySignal = 128;
+  constexpr int kBySignal = 128;  // what shells add to a signal's number
   if (status <= kBySignal) return fmt::format("exit status {}", status);
   return fmt::format("exit status {} (signal {})", status, status - kBySignal);
 }
@@ -236,7 +236,7 @@ std::string why_missing(const MissingRun& run) {
 
 std::string missing_text(const std::vector<MissingRun>& missing, std::size_t asked) {
   if (missing.empty()) return {};
-  constexpr std::size_t kShown = 50;
+  constexpr std::size_t kShown = 50;  // rows: more are told by their number
   Table table;
   table.header = {"missing", "odometry", "method", "repeat", "without", "why", "log", "it said last"};
   for (const MissingRun& run : missing) {

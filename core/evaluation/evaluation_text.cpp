@@ -79,7 +79,7 @@ std::string box_plot(const ErrorStatistics& s, double largest, int width) {
 }
 
 std::string lengths_text(const std::vector<RelativePoseError>& by_length) {
-  constexpr int kPlotWidth = 40;
+  constexpr int kPlotWidth = 40;  // characters: a row still fits a screen
   double largest = 0.0;
   for (const RelativePoseError& part : by_length) largest = std::max(largest, part.translation_m.max);
   std::string text = fmt::format(

@@ -10,7 +10,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kGap = 4.0;  // median steps, from which on poses are missing between
-constexpr double kDegreesOfRadian = 180.0 / std::numbers::pi;
+constexpr double kDegreesOfRadian = 180.0 / std::numbers::pi;  // degrees a radian
 
 std::array<double, 3> angles_of(const Eigen::Matrix3d& r) {
   return {kDegreesOfRadian * std::atan2(r(2, 1), r(2, 2)),

@@ -47,7 +47,7 @@ std::vector<double> path_of(const std::vector<MatchedPose>& matched) {
 class PythonRandom {
  public:
   PythonRandom() {
-    constexpr std::uint32_t kKey = 0;
+    constexpr std::uint32_t kKey = 0;  // random.seed(0), as the benchmark's script has it
     std::array<std::uint32_t, 624> state{};
     state[0] = 19650218U;
     for (std::uint32_t i = 1; i < state.size(); ++i)
@@ -186,6 +186,7 @@ RelativePoseError relative_error_over_distance(const std::vector<MatchedPose>& m
 }
 
 RelativePoseError relative_error_of_random_pairs(const Trajectory& truth, const Trajectory& estimate) {
+  // Below so many poses all pairs are taken, otherwise so many are drawn: as the benchmark's script has it.
   constexpr std::size_t kAllBelow = 100, kPairs = 10000;
   RelativePoseError result;
   result.delta = "random pairs";

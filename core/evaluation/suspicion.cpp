@@ -14,11 +14,11 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kShareLeft = 0.4;  // of the error, for a reading to be suspected
+constexpr double kDegrees = 180.0 / std::numbers::pi;  // degrees a radian
+constexpr double kShareLeft = 0.4;                     // of the error, for a reading to be suspected
 constexpr double kFarBetter =
     0.5;  // of the error a convention leaves, for six free numbers to be preferred to it
-constexpr double kWorthAWord = 0.02;     // m, combined
+constexpr double kWorthAWord = 0.02;  // m, combined: what fits as well leaves no doubt about its convention
 constexpr std::size_t kFewestPoses = 8;  // below, anything fits
 
 /// Pairs of poses some time apart: (i, i + step).

@@ -12,7 +12,7 @@ constexpr double kReach = 0.5;       // s, to both sides
 constexpr double kStep = 0.01;       // s, of the first search: well below a hand's period
 constexpr double kPrecision = 1e-8;  // s, at which the second one ends
 constexpr double kLargestGap = 0.1;  // s, between neighbours of the truth
-constexpr std::size_t kFewest = 10;  // poses
+constexpr std::size_t kFewest = 10;  // poses: below, any offset fits some
 constexpr double kProbe = 0.02;      // s off the best: there the error must have grown …
 constexpr double kTelling = 1.01;    // … to so many times
 

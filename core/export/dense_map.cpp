@@ -66,7 +66,8 @@ Eigen::Vector3f normal_at(const cv::Mat& rays, const cv::Mat& depth, int x, int 
 }
 
 std::uint64_t key_of(const Eigen::Vector3f& position, float voxel) {
-  constexpr int kBits = 21;
+  constexpr int kBits = 21;  // a coordinate: three fill a word
+  // Cells: where 0 lies, so that there are as many to either side.
   constexpr std::int64_t kMiddle = 1 << (kBits - 1);
   std::uint64_t key = 0;
   for (int i = 0; i < 3; ++i) {

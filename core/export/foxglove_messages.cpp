@@ -219,7 +219,7 @@ MessageFields& MessageFields::numbers(const char* field, std::span<const double>
 }
 
 MessageFields& MessageFields::time(const char* field, std::uint64_t ns) {
-  constexpr std::uint64_t kSecond = 1'000'000'000;
+  constexpr std::uint64_t kSecond = 1'000'000'000;  // ns
   auto& stamp = dynamic_cast<google::protobuf::Timestamp&>(
       *message_->GetReflection()->MutableMessage(message_, field_of(*message_, field)));
   stamp.set_seconds(static_cast<std::int64_t>(ns / kSecond));

@@ -20,6 +20,7 @@
 namespace stillpoint {
 namespace {
 
+// Of 100: artefacts are hardly seen, and files of many frames stay small.
 constexpr int kJpegQuality = 92;
 constexpr double kMillimetres = 1000.0;  // a metre
 constexpr const char *kWorld = "world", *kCamera = "camera", *kTrueCamera = "true_camera";
@@ -43,7 +44,7 @@ constexpr FateColour kFateColours[] = {{FeatureFate::inlier, {0, 158, 115}},
                                        {FeatureFate::unmatched, {86, 180, 233}}};
 
 void colour(MessageFields fields, const std::array<std::uint8_t, 3>& rgb) {
-  constexpr double kFull = 255.0;
+  constexpr double kFull = 255.0;  // of a channel's 8 bits; Foxglove's are shares
   fields.number("r", rgb[0] / kFull).number("g", rgb[1] / kFull).number("b", rgb[2] / kFull).number("a", 1.0);
 }
 
@@ -74,7 +75,7 @@ class PackedPoints {
   }
 
  private:
-  static constexpr std::uint32_t kStride = 3 * sizeof(float) + 4;
+  static constexpr std::uint32_t kStride = 3 * sizeof(float) + 4;  // bytes a point: x, y, z and a colour
   std::string bytes_;
 };
 
@@ -193,7 +194,7 @@ void calibration(const Camera& camera, std::uint64_t time, google::protobuf::Mes
 
 void annotate(const std::vector<FeatureRecord>& features, const std::vector<FeatureRecord>& before,
               std::uint64_t time, MessageFields message) {
-  constexpr double kPointSize = 3.0, kLineWidth = 1.0;  // px
+  constexpr double kPointSize = 3.0, kLineWidth = 1.0;  // px of the image: seen, and hides little
   std::map<int, cv::Point2f> was;
   for (const FeatureRecord& feature : before)
     if (feature.map_point != kNone) was[feature.map_point] = feature.pixel;

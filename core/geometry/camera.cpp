@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "core/geometry/camera_yaml.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 
 namespace stillpoint {
 namespace {
@@ -65,6 +66,7 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
+// At most: a handful of rounds do unless distortion folds the image. A step that makes it worse is halved.
 constexpr int kNewtonRounds = 30, kHalvings = 8;
 constexpr double kNewtonResidual = 1e-13;  // of the image plane one focal length away
 
@@ -136,8 +138,7 @@ Camera Camera::scaled_to(int new_width, int new_height) const {
   const double sx = static_cast<double>(new_width) / width, sy = static_cast<double>(new_height) / height;
   scaled.width = new_width, scaled.height = new_height;
   scaled.fx *= sx, scaled.fy *= sy;
-  // Pixel centres lie at whole numbers: the image's edge, not pixel 0, stays where it is.
-  scaled.cx = (cx + 0.5) * sx - 0.5, scaled.cy = (cy + 0.5) * sy - 0.5;
+  scaled.cx = upsampled(cx, sx), scaled.cy = upsampled(cy, sy);
   return scaled;
 }
 
@@ -191,7 +192,7 @@ std::optional<Camera> camera_from_folder_name(std::string_view folder_name) {
 
 namespace {
 
-constexpr double kLongestBaseline = 100.0;  // m
+constexpr double kLongestBaseline = 100.0;  // m: what is longer was given in mm
 constexpr double kLongestTime = 0.2;        // s, of readouts and delays
 
 using Reals = std::vector<std::pair<const char*, double*>>;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/depth_noise.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/geometry/se3.hpp"
 
 namespace stillpoint {
@@ -66,14 +67,19 @@ struct Camera {
   /// The baseline (m) whose disparity stands for depth in px: a stereo pair's own, otherwise `sensor`.
   [[nodiscard]] double baseline_or(double sensor) const { return is_stereo() ? baseline_m : sensor; }
 
+  /// How far below the image's middle a row lies, as a share of the height: -1/2 to 1/2.
+  [[nodiscard]] double row_share(double row) const { return to_raster(row).px() / height - 0.5; }
+  /// The row of the image's middle, whose moment is the frame's time: between two rows where they are even.
+  [[nodiscard]] double middle_row() const { return to_pixel(RasterCoordinate(0.5 * height)); }
+
   /// When a row of colour is taken: s after the middle row.
-  [[nodiscard]] double row_time(double row) const { return ((row + 0.5) / height - 0.5) * readout_s; }
+  [[nodiscard]] double row_time(double row) const { return row_share(row) * readout_s; }
 
   /// How long (s) after colour depth is measured, in a row of both. @param lag_s from the frame's time to
   /// depth's stamp
   [[nodiscard]] double depth_lag(double lag_s, double row) const {
     const double lag = lag_s + depth_delay_s;
-    return depth_readout_s ? lag + ((row + 0.5) / height - 0.5) * (*depth_readout_s - readout_s) : lag;
+    return depth_readout_s ? lag + row_share(row) * (*depth_readout_s - readout_s) : lag;
   }
 
   /// Whether depth is measured at another moment than colour in any row.

@@ -60,7 +60,7 @@ class YamlReader {
     const auto values = numbers(root_["T_BS"], "T_BS", 16);
     Pose pose;
     for (int i = 0; i < 16; ++i) pose.matrix()(i / 4, i % 4) = values[static_cast<std::size_t>(i)];
-    constexpr double kRounding = 1e-3;
+    constexpr double kRounding = 1e-3;  // of a matrix's numbers: what printing them leaves
     const Eigen::Matrix3d turn = pose.linear();
     if (!(turn * turn.transpose()).isIdentity(kRounding) || turn.determinant() < 0 ||
         !pose.matrix().row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), kRounding))

@@ -27,7 +27,8 @@ struct Descent {
 ///                                it is the last
 template <typename Problem>
 Descent levenberg_marquardt(Problem& problem, int most_steps) {
-  constexpr double kFirst = 1e-4, kLeast = 1e-16, kMost = 1e32;  // of damping
+  // The damping: near Gauss-Newton at first, and within what double precision adds and multiplies.
+  constexpr double kFirst = 1e-4, kLeast = 1e-16, kMost = 1e32;
   constexpr double kLeastGain = 1e-3;  // of the one foreseen, for a step to be taken
   Descent descent;
   double cost = problem.linearise(), damping = kFirst, harder = 2.0;

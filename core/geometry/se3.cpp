@@ -68,7 +68,7 @@ Pose normalised(const Pose& pose) {
 }
 
 std::optional<Pose> rigid_pose(const Eigen::Matrix4d& matrix) {
-  constexpr double kRounding = 1e-2;
+  constexpr double kRounding = 1e-2;  // of a matrix's numbers: what printing few digits leaves
   const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
   if (!matrix.allFinite() || !(turn * turn.transpose()).isIdentity(kRounding) || turn.determinant() < 0 ||
       (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > kRounding)

@@ -8,7 +8,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kRowsLookedAt = 64;
+constexpr std::size_t kRowsLookedAt = 64;  // rows: enough to tell a layout
+// A stamp and a pose's 7 numbers; 3x4 of a matrix; a stamp, 7 and 9 more of the IMU's; a 4x4 matrix.
 constexpr int kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17, kReplicaColumns = 16;
 
 /// A header's cell in small letters, without its unit in brackets and blanks about it.

@@ -11,7 +11,7 @@ struct FrameView;
 
 // What a frame's view holds of the frames before it.
 
-inline constexpr int kHistoryFrames = 12;
+inline constexpr int kHistoryFrames = 12;  // frames: enough to see where a feature came from
 
 /// The records of the frames right before `index`, newest first.
 /// @param record gives a processed frame's record with its features

@@ -46,7 +46,7 @@ std::vector<Mark> feature_marks(const FrameRecord& record, bool fates) {
 
 /// Patches that were aligned directly, as squares of their residual.
 Layer direct_layer(const FrameView& view, const DirectRecord& direct) {
-  constexpr int kHalf = 4;  // px
+  constexpr int kHalf = 4;  // px to each side: a square that can be seen and pointed at
   cv::Mat values(view.frame.gray.size(), CV_32FC1, cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
   if (direct.seen)
     for (const DirectPatch& patch : *direct.seen) {

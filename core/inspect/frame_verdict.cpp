@@ -18,10 +18,10 @@ namespace {
 constexpr double kWorstShare = 0.1;  // of the frames, from the worst one on
 constexpr double kTimesUsual = 2.0;  // a bad value is that far off the run's median
 constexpr double kManyOnDynamic =
-    0.15;  // share of a pose's inliers: more on dynamic objects explain an error
-constexpr double kLowIou = 0.5;
+    0.15;                        // share of a pose's inliers: more on dynamic objects explain an error
+constexpr double kLowIou = 0.5;  // below, more of mask and truth differs than agrees
 constexpr double kWayBack =
-    0.5;                    // a step that is off comes back when it takes so much of itself off the error
+    0.5;                    // of a step's error: one that takes so much off the absolute error comes back
 constexpr int kFewest = 5;  // frames with a value: among fewer there is no rank and nothing usual
 
 const FigureInfo& info_of(int figure) { return frame_figure_infos()[static_cast<std::size_t>(figure)]; }

@@ -26,7 +26,7 @@ std::optional<std::size_t> pin_near(const std::vector<Pin>& pins, double x, doub
 }
 
 std::vector<Pin> with_pin_toggled(std::vector<Pin> pins, int frame, int x, int y) {
-  constexpr double kSamePixel = 0.7;
+  constexpr double kSamePixel = 0.7;  // px: less than to the next pixel, more than rounding leaves
   if (const auto there = pin_near(pins, x, y, kSamePixel)) {
     pins.erase(pins.begin() + static_cast<std::ptrdiff_t>(*there));
     return pins;

@@ -15,7 +15,7 @@ namespace stillpoint {
 namespace {
 
 constexpr const char* kNothing = "–";
-constexpr double kFeatureReach = 12.0;  // px
+constexpr double kFeatureReach = 12.0;  // px of the frame: what one points at, and not past its neighbours
 
 using Point = Eigen::Vector2d;
 

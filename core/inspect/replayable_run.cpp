@@ -12,6 +12,7 @@
 namespace stillpoint {
 namespace {
 
+// More than so many states, and every second one goes: memory stays bounded.
 constexpr std::size_t kMostMotionStates = 2500;
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/odometry/frame_record.hpp"
@@ -100,8 +101,7 @@ std::optional<WarpedPoint> scene_point_in(const PairGeometry& pair, FrameSpace s
     case FrameSpace::kTarget:
       return WarpedPoint{target, WarpedBy::kItself};
     case FrameSpace::kSmall:
-      return WarpedPoint{((target.array() + 0.5) / static_cast<double>(pair.small_factor) - 0.5).matrix(),
-                         WarpedBy::kItself};
+      return WarpedPoint{downsampled(target, pair.small_factor), WarpedBy::kItself};
     case FrameSpace::kReference:
       return in_reference(pair, target);
     case FrameSpace::kCompensatedBackward:
@@ -124,8 +124,7 @@ std::optional<WarpedPoint> target_point(const PairGeometry& pair, FrameSpace spa
     case FrameSpace::kTarget:
       return WarpedPoint{pixel, WarpedBy::kItself};
     case FrameSpace::kSmall:
-      return WarpedPoint{((pixel.array() + 0.5) * static_cast<double>(pair.small_factor) - 0.5).matrix(),
-                         WarpedBy::kItself};
+      return WarpedPoint{upsampled(pixel, pair.small_factor), WarpedBy::kItself};
     case FrameSpace::kReference:
       return from_reference(pair, pixel);
     case FrameSpace::kCompensatedBackward:

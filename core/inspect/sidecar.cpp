@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "stillpoint marks";
-constexpr int kVersion = 1;
+constexpr int kVersion = 1;                      // of the format: readers refuse what is newer
 constexpr std::uintmax_t kLargest = 16U << 20U;  // bytes: no person marks more
 
 Json to_json(const MarkedSequence& sequence, const Marks& marks) {

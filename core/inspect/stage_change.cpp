@@ -9,6 +9,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/frame_stages.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/scene_point.hpp"
@@ -42,11 +43,10 @@ cv::Mat warped_here(const FrameView& view, const Camera& camera, const Layer& ol
   cv::Mat places(old.image.size(), CV_32FC2);
   for (int y = 0; y < places.rows; ++y)
     for (int x = 0; x < places.cols; ++x) {
-      const Eigen::Vector2d here(f * (x + 0.5) - 0.5, f * (y + 0.5) - 0.5);
+      const Eigen::Vector2d here = upsampled(Eigen::Vector2d(x, y), f);
       const auto there = scene_point_in(pair, FrameSpace::kReference, here);
-      const Eigen::Vector2d from = there ? there->pixel : here;
-      places.at<cv::Vec2f>(y, x) = {static_cast<float>((from.x() + 0.5) / f - 0.5),
-                                    static_cast<float>((from.y() + 0.5) / f - 0.5)};
+      const Eigen::Vector2d from = downsampled(there ? there->pixel : here, f);
+      places.at<cv::Vec2f>(y, x) = {static_cast<float>(from.x()), static_cast<float>(from.y())};
     }
   cv::Mat warped;
   cv::remap(old.image, warped, places, cv::Mat(), is_grey(old) ? cv::INTER_LINEAR : cv::INTER_NEAREST);

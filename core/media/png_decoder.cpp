@@ -32,8 +32,8 @@ std::uint32_t big_endian(const unsigned char* bytes) {
 
 /// The IHDR chunk's thirteen bytes; nothing for a kind of image that is not decoded here.
 std::optional<Header> read_header(const unsigned char* bytes) {
-  constexpr std::uint32_t kWidest = 1U << 20;  // px
-  constexpr unsigned char kGrey = 0, kColour = 2, kColourAlpha = 6;
+  constexpr std::uint32_t kWidest = 1U << 20;  // px: products of sides and bytes stay within 64 bits
+  constexpr unsigned char kGrey = 0, kColour = 2, kColourAlpha = 6;  // IHDR's colour types
   const std::uint32_t width = big_endian(bytes), height = big_endian(bytes + 4);
   const unsigned char bits = bytes[8], colour = bytes[9];
   if (width == 0 || height == 0 || width > kWidest || height > kWidest || (bits != 8 && bits != 16) ||

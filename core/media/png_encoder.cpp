@@ -11,6 +11,7 @@ namespace stillpoint {
 namespace {
 
 constexpr int kFastest = 1;  // libdeflate's level
+// What the PNG standard has every file begin with.
 constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 constexpr unsigned char kFilterSub = 1;
 constexpr std::size_t kChunkFrame = 12;  // bytes of a chunk beside its content: length, type, CRC
@@ -67,7 +68,7 @@ std::vector<unsigned char> encode_plain_png(const cv::Mat& image) {
   if (packed == 0 || packed > INT32_MAX) return {};
 
   std::vector<unsigned char> png(kPngSignature.begin(), kPngSignature.end());
-  constexpr std::size_t kHeaderBytes = 13;
+  constexpr std::size_t kHeaderBytes = 13;  // bytes of IHDR's content
   png.reserve(png.size() + 3 * kChunkFrame + kHeaderBytes + packed);
   std::vector<unsigned char> header;
   put_big_endian(header, static_cast<std::uint32_t>(image.cols));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/motion/rgbd_view.hpp"
 
 namespace stillpoint {
@@ -13,15 +14,15 @@ PixelRays::PixelRays(const Camera& camera, const cv::Size& frame, int factor)
   const Camera full = camera.scaled_to(frame.width, frame.height);
   fx_ = full.fx, fy_ = full.fy;
   focal_x_ = static_cast<float>(full.fx / factor), focal_y_ = static_cast<float>(full.fy / factor);
-  centre_x_ = static_cast<float>((full.cx + 0.5) / factor - 0.5);
-  centre_y_ = static_cast<float>((full.cy + 0.5) / factor - 0.5);
+  centre_x_ = static_cast<float>(downsampled(full.cx, factor));
+  centre_y_ = static_cast<float>(downsampled(full.cy, factor));
   if (!full.has_distortion()) return;
   table_.create(size_, CV_32FC2);
   std::vector<cv::Point2f> row(static_cast<std::size_t>(size_.width));
   for (int y = 0; y < size_.height; ++y) {
     for (int x = 0; x < size_.width; ++x)
-      row[static_cast<std::size_t>(x)] = {static_cast<float>((static_cast<double>(x) + 0.5) * factor - 0.5),
-                                          static_cast<float>((static_cast<double>(y) + 0.5) * factor - 0.5)};
+      row[static_cast<std::size_t>(x)] = {static_cast<float>(upsampled(static_cast<double>(x), factor)),
+                                          static_cast<float>(upsampled(static_cast<double>(y), factor))};
     const std::vector<cv::Point2f> straight = full.undistort(row);
     auto* out = table_.ptr<cv::Vec2f>(y);
     for (int x = 0; x < size_.width; ++x) {

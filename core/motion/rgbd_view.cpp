@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -95,8 +97,7 @@ RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera&
   describe_surface(view);
   view.camera = camera.scaled_to(gray.cols, gray.rows);
   view.camera.fx /= factor, view.camera.fy /= factor;
-  view.camera.cx = (view.camera.cx + 0.5) / factor - 0.5,
-  view.camera.cy = (view.camera.cy + 0.5) / factor - 0.5;
+  view.camera.cx = downsampled(view.camera.cx, factor), view.camera.cy = downsampled(view.camera.cy, factor);
   view.camera.width = size.width, view.camera.height = size.height;
   return view;
 }

@@ -6,15 +6,17 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kShapes = 31;
+constexpr int kShapes = 31;  // shapes that are tried, from -4 to 2: those between are alike
+// The kernel's shape: below the least, shapes hardly differ, nor do they within a step.
 constexpr double kLeastShape = -4.0, kShapeStep = 0.2;
-constexpr double kCutOff = 10.0;  // standard deviations
+// Standard deviations: the integral needs an end, as it diverges for shapes below 0.
+constexpr double kCutOff = 10.0;
 
 double shape_at(int i) { return kLeastShape + kShapeStep * i; }
 
 /// log of the integral of exp(-cost) over [-kCutOff, kCutOff], a shape each.
 std::array<double, kShapes> log_partitions() {
-  constexpr int kSteps = 2000;
+  constexpr int kSteps = 2000;  // of the midpoint rule: 1/200 of a standard deviation each
   std::array<double, kShapes> logs{};
   for (int s = 0; s < kShapes; ++s) {
     const AdaptiveKernel kernel(shape_at(s));
@@ -46,7 +48,7 @@ AdaptiveKernel AdaptiveKernel::likeliest(const std::vector<double>& squares) {
 }
 
 double AdaptiveKernel::cost(double square) const {
-  constexpr double kSame = 1e-9;
+  constexpr double kSame = 1e-9;  // of the shape: where the formula divides 0 by 0, its limit
   if (std::abs(shape_ - 2.0) < kSame) return 0.5 * square;
   const double aside = std::abs(shape_ - 2.0), grown = square / aside + 1.0;
   if (std::abs(shape_) < kSame) return std::log(grown);
@@ -54,7 +56,7 @@ double AdaptiveKernel::cost(double square) const {
 }
 
 double AdaptiveKernel::weight(double square) const {
-  constexpr double kSame = 1e-9;
+  constexpr double kSame = 1e-9;  // of the shape: where the formula divides 0 by 0, its limit
   if (std::abs(shape_ - 2.0) < kSame) return 1.0;
   return std::pow(square / std::abs(shape_ - 2.0) + 1.0, 0.5 * shape_ - 1.0);
 }

@@ -16,8 +16,8 @@ constexpr double kFairShare = 6.0;     // observations a part may have before th
 constexpr double kNearestShare = 0.3;  // of a vote, for what is much nearer than the rest
 constexpr double kBoundPx = 1.5;       // at octave 0: beyond it an observation disagrees, however far
 constexpr double kRigidTolerance =
-    0.01;  // m, and this share of the distance: three points of one rigid scene
-constexpr double kRigidShare = 0.02;
+    0.01;                             // m, and this share of the distance: three points of one rigid scene
+constexpr double kRigidShare = 0.02;  // … this one
 constexpr double kRigidSigmas = 2.0;  // … and of a stereo pair's depths, standard deviations
 
 /// The depth (m) on either side of which lies half of the votes, which the parts of the image share: most

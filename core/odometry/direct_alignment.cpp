@@ -14,7 +14,7 @@ namespace {
 DirectLevel::Comparison descend(DirectLevel& level, const Camera& camera, int most_steps, DirectState& state,
                                 int& steps) {
   constexpr double kConverged = 0.01;  // px of the level
-  constexpr double kUsualDepth = 2.0;  // m
+  constexpr double kUsualDepth = 2.0;  // m: turns a step of the camera into pixels; rooms have about that
   DirectLevel::Comparison current = level.compare(state);
   const double pixels_a_radian = std::ldexp(camera.fx, -level.level());
   for (int i = 0; i < most_steps && current.in_view > 0; ++i) {
@@ -44,7 +44,7 @@ DirectLevel::Comparison descend(DirectLevel& level, const Camera& camera, int mo
 /// The turn about a pose, sideways and up or down, under which single pixels of the coarsest level go
 /// together best.
 Pose best_turn(const DirectLevel& level, const Camera& camera, const Pose& about) {
-  constexpr double kFarthest = 0.2;  // rad
+  constexpr double kFarthest = 0.2;  // rad: 11°, more than a hand turns between two frames
   const double step = std::ldexp(1.0, level.level()) / camera.fx;
   const int reach = static_cast<int>(kFarthest / step);
   double best = level.correlation_at(about);

@@ -8,9 +8,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNearestAligned = 0.1;  // m
+constexpr double kNearestAligned = 0.1;  // m: nearer, nothing is measured, and pixels run off to infinity
 constexpr double kLeastNoise = 1.0;      // grey levels: images are rounded to whole ones
-constexpr int kHalf = DirectLevel::kSide / 2;
+constexpr int kHalf = DirectLevel::kSide / 2;  // px from a patch's middle to its last ones
 
 /// A CV_8UC1 image between its pixels, over a square block; the block lies inside.
 template <int kBlock>
@@ -177,7 +177,7 @@ std::vector<DirectPatch> DirectLevel::seen(const Comparison& comparison) const {
 }
 
 double DirectLevel::correlation_at(const Pose& target_from_reference) const {
-  constexpr std::size_t kMiddle = kPixels / 2;
+  constexpr std::size_t kMiddle = kPixels / 2;  // the place of the middle pixel in a patch
   double count = 0, a_sum = 0, b_sum = 0, aa = 0, bb = 0, ab = 0;
   for (const Patch& patch : patches_) {
     cv::Point2f full;

@@ -21,7 +21,7 @@ struct DirectState {
 /// pixels a side; its Jacobians are the reference's and computed once (inverse compositional).
 class DirectLevel {
  public:
-  static constexpr int kSide = 3;
+  static constexpr int kSide = 3;  // px of a patch: one pixel and its neighbours
   static constexpr std::size_t kPixels = kSide * kSide;
 
   DirectLevel(const std::vector<PatchPoint>& patches, const cv::Mat& reference, const cv::Mat& target,

@@ -37,7 +37,7 @@ float median_of_image(const cv::Mat& values) {
 
 /// Whether a pixel and what lies about it were measured on one surface: beside an edge, depth is a guess.
 bool within_surface(const cv::Mat& depth, int x, int y) {
-  constexpr int kReach = 3;  // px
+  constexpr int kReach = 3;  // px to each side
   const float z = depth.at<float>(y, x);
   if (!(z > 0)) return false;
   for (const auto& [dx, dy] : {std::pair{-kReach, 0}, {kReach, 0}, {0, -kReach}, {0, kReach}}) {
@@ -62,7 +62,7 @@ bool covers(const cv::Mat& small, const cv::Point2f& pixel) {
 }
 
 GreyPyramid grey_pyramid(const cv::Mat& gray, int coarsest_level) {
-  constexpr int kLeastSide = 12;  // px
+  constexpr int kLeastSide = 12;  // px of the coarsest level: patches need room to go astray and come back
   GreyPyramid levels{gray};
   while (static_cast<int>(levels.size()) <= coarsest_level &&
          std::min(levels.back().cols, levels.back().rows) >= 2 * kLeastSide) {

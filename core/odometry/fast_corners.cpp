@@ -29,9 +29,10 @@ struct Bytes16 {
   friend Bytes16 operator-(const Bytes16& a, const Bytes16& b) { return {a.bytes - b.bytes}; }
 };
 
-constexpr int kLanes = Bytes16::kLanes, kMostLanes = 32;
+constexpr int kLanes = Bytes16::kLanes, kMostLanes = 32;  // bytes at once: of this unit, and of the widest
 
 FastCircle circle_of(const cv::Mat& image) {
+  // Bresenham's circle of radius 3 px, as OpenCV goes round it.
   constexpr std::array<std::array<int, 2>, kFastCircle> kAbout{{{0, 3},
                                                                 {1, 3},
                                                                 {2, 2},

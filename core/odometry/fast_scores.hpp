@@ -6,7 +6,7 @@
 namespace stillpoint {
 
 constexpr std::size_t kFastCircle = 16, kFastArc = 9;  // pixels about a corner, and how many must differ
-constexpr int kFastRadius = 3;                         // px
+constexpr int kFastRadius = 3;                         // px: FAST-9-16's circle
 
 /// Where the circle's pixels lie from its centre, in bytes.
 using FastCircle = std::array<std::ptrdiff_t, kFastCircle>;

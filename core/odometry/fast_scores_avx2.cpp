@@ -9,7 +9,7 @@ namespace stillpoint {
 namespace {
 
 struct Bytes32 {
-  static constexpr int kLanes = 32;
+  static constexpr int kLanes = 32;  // bytes of a register of 256 bits
   __m256i bytes;
 
   static Bytes32 all(unsigned char value) { return {_mm256_set1_epi8(static_cast<char>(value))}; }

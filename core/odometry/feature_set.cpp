@@ -84,7 +84,7 @@ std::vector<float> depth_at(const std::vector<cv::Point2f>& pixels,
   std::vector<float> result = depth_at(pixels, depth);
   if (depth.empty() || !lag_s || !camera.depth_is_late(*lag_s)) return result;
   // The whole image's lag exactly, what a row's differs from it to first order: that is some milliseconds.
-  const double middle_lag = camera.depth_lag(*lag_s, 0.5 * camera.height - 0.5);
+  const double middle_lag = camera.depth_lag(*lag_s, camera.middle_row());
   const Pose then_from_now = se3_exp(velocity * middle_lag), now_from_then = then_from_now.inverse();
   const auto rowed = [&](std::size_t i, const Eigen::Vector3d& p, double sign) -> Eigen::Vector3d {
     if (!camera.depth_readout_s) return p;

@@ -79,7 +79,7 @@ class LocalMap {
   void remove_moving_point(int point);
   /// The last of these, at most kMovedKept, oldest first.
   [[nodiscard]] const std::vector<MovedPoint>& moved_points() const { return moved_; }
-  static constexpr std::size_t kMovedKept = 1000;
+  static constexpr std::size_t kMovedKept = 1000;  // points, which are only shown: memory stays bounded
 
   /// Moves every observation of `from` to `into` where that keyframe does not see it yet, and removes `from`.
   void merge_points(int from, int into);

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kFuseRadiusPx = 3.0;  // at octave 0: both poses are known, so little is searched
 constexpr int kFuseMaxDistance = 50;   // bits: the same corner, not one like it
-constexpr int kFuseNeighbours = 10;
-constexpr double kFuseChi2 = 5.991;
+constexpr int kFuseNeighbours = 10;    // keyframes: as ORB-SLAM2 has it with depth
+constexpr double kFuseChi2 = 5.991;    // 95 % of a static point's squared deviations, two degrees of freedom
 
 /// Looks for points in a keyframe; joins those found with what the keyframe has there.
 int fuse_into(LocalMap& map, const std::vector<int>& points, int keyframe_id, const Camera& camera,
@@ -83,7 +83,7 @@ class PointsByPlace {
   }
 
  private:
-  static constexpr int kCell = 80;  // px
+  static constexpr int kCell = 80;  // px of a part: 8 x 6 of them in 640 x 480
   const Keyframe& keyframe_;
   int columns_, rows_;
   std::vector<int> counts_;
@@ -161,6 +161,7 @@ int cull_points(LocalMap& map, int newest_keyframe, const Config& config) {
 }
 
 int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, const Config& config) {
+  // Keyframes: a point seen by so many is not lost with one, as ORB-SLAM has it.
   constexpr int kSeenByOthers = 3;
   const double far = camera.depth_limit(config.map.far_depth_m);
   int culled = 0;

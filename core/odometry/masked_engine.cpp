@@ -11,23 +11,6 @@
 namespace stillpoint {
 namespace {
 
-/// A motion method's log-odds as a weight a pixel (CV_32FC1), as static features have it.
-cv::Mat weights_of(const cv::Mat& log_odds, const cv::Size& size, double half) {
-  std::vector<cv::Point2f> pixels;
-  pixels.reserve(log_odds.total());
-  const float step_x = static_cast<float>(size.width) / static_cast<float>(log_odds.cols),
-              step_y = static_cast<float>(size.height) / static_cast<float>(log_odds.rows);
-  for (int y = 0; y < log_odds.rows; ++y)
-    for (int x = 0; x < log_odds.cols; ++x)
-      pixels.emplace_back((static_cast<float>(x) + 0.5F) * step_x, (static_cast<float>(y) + 0.5F) * step_y);
-  std::vector<float> weight = static_weights_at(pixels, log_odds, size, half);
-  raise_least_weight(std::vector<std::uint8_t>(weight.size(), 1), weight);
-  const cv::Mat small(log_odds.size(), CV_32FC1, weight.data());
-  cv::Mat whole;
-  cv::resize(small, whole, size, 0, 0, cv::INTER_NEAREST);
-  return whole;
-}
-
 /// The method's weights of points, by map point, where it judges points.
 std::unordered_map<int, float> weights_of_points(const std::vector<MotionFeature>& features,
                                                  const std::vector<float>& weights) {
@@ -179,9 +162,9 @@ TrackerFrame MaskedEngine::looked_at(const Frame& frame, const Rectified& rectif
   const bool weighed =
       engine_of(config_).takes_weights && config_.tracking.soft_weights && !motion.log_odds.empty();
   if (mask.empty() && !weighed && rectifier_.seen().empty()) return looked;
-  cv::Mat weight = weighed
-                       ? weights_of(motion.log_odds, frame.gray.size(), config_.tracking.half_weight_log_odds)
-                       : cv::Mat(frame.gray.size(), CV_32FC1, cv::Scalar(1.0F));
+  cv::Mat weight =
+      weighed ? static_weight_image(motion.log_odds, frame.gray.size(), config_.tracking.half_weight_log_odds)
+              : cv::Mat(frame.gray.size(), CV_32FC1, cv::Scalar(1.0F));
   if (!mask.empty()) weight.setTo(0.0F, mask);
   looked.weight = rectifier_.nearest(weight);
   return looked;

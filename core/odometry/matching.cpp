@@ -93,7 +93,7 @@ std::vector<Match> match_everywhere(const FeatureSet& features, const std::vecto
 }
 
 std::vector<Match> consistently_turned(const std::vector<Match>& matches) {
-  constexpr int kBins = 30;
+  constexpr int kBins = 30;  // of 12° each, as ORB-SLAM has it
   const auto bin = [](const Match& m) {
     return static_cast<std::size_t>(cvRound(m.turned * kBins / 360.0F) % kBins);
   };

@@ -10,6 +10,7 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/odometry/fast_corners.hpp"
 
 namespace stillpoint {
@@ -22,7 +23,7 @@ constexpr int kFastCell = 32;  // px: where FAST finds nothing in such a cell, t
 /// Weights of the intensity centroid's disc: a row of 32 pixels each, from kPatchRadius left of the corner
 /// on, so that whole rows are summed at once and what lies outside the disc counts 0.
 struct DiscWeights {
-  static constexpr int kRow = 2 * kPatchRadius + 2;
+  static constexpr int kRow = 2 * kPatchRadius + 2;  // px: the disc and one more, 32 in all
   std::array<std::array<std::int16_t, kRow>, 2 * kPatchRadius + 1> inside{}, sideways{};
 
   DiscWeights() {
@@ -197,12 +198,10 @@ void OrbExtractor::extract_level(int index, const cv::Size& full, Level& level) 
   const double scale = std::pow(config_.scale_factor, index);
   for (std::size_t i = 0; i < found.keypoints.size(); ++i) {
     cv::KeyPoint& keypoint = found.keypoints[i];
-    // Pixel centres lie at whole numbers, hence the halves: without them coarse levels sit a pixel off.
-    keypoint.pt.x =
-        (keypoint.pt.x + 0.5F) * static_cast<float>(full.width) / static_cast<float>(level.image.cols) - 0.5F;
-    keypoint.pt.y =
-        (keypoint.pt.y + 0.5F) * static_cast<float>(full.height) / static_cast<float>(level.image.rows) -
-        0.5F;
+    keypoint.pt.x = to_pixel(to_raster(keypoint.pt.x) * static_cast<float>(full.width) /
+                             static_cast<float>(level.image.cols));
+    keypoint.pt.y = to_pixel(to_raster(keypoint.pt.y) * static_cast<float>(full.height) /
+                             static_cast<float>(level.image.rows));
     keypoint.octave = index;
     keypoint.size = static_cast<float>((2 * kPatchRadius + 1) * scale);
     std::memcpy(found.descriptors[i].data(), level.descriptor_rows.ptr(static_cast<int>(i)),

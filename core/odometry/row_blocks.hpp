@@ -11,6 +11,7 @@ namespace stillpoint {
 /// @param sum of a block: `Sum sum(int first, int end)`; Sum has +=
 template <typename Sum, typename OfBlock>
 [[nodiscard]] Sum sum_in_blocks(int count, int threads, const OfBlock& of_block) {
+  // Whatever the threads, so that sums are rounded alike; more than 16 threads help nothing.
   constexpr int kBlocks = 16;
   std::vector<Sum> sums(kBlocks);
   const auto work = [&](int from, int step) {

@@ -74,7 +74,7 @@ std::optional<double> StaticFeatures::depth_lag(const Frame& frame) const {
 }
 
 bool StaticFeatures::too_few_places(const TrackedFrame& frame) const {
-  constexpr int kColumns = 8, kRows = 6;
+  constexpr int kColumns = 8, kRows = 6;  // parts of the image, 80 px a side in 640 x 480
   constexpr int kLeastParts =
       5;  // of those 48 that features must lie in, or they tell no room from a dynamic object
   if (!frame.lost_features()) return false;

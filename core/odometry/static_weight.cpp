@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/geometry/pixel_conventions.hpp"
 
 namespace stillpoint {
 
@@ -29,6 +32,22 @@ void raise_least_weight(const std::vector<std::uint8_t>& keep, std::vector<float
   const auto least = static_cast<float>(unknown * unknown);
   for (std::size_t i = 0; i < weight.size(); ++i)
     if (keep[i] != 0) weight[i] = std::max(weight[i], least);
+}
+
+cv::Mat static_weight_image(const cv::Mat& log_odds, const cv::Size& full, double half) {
+  std::vector<cv::Point2f> pixels;
+  pixels.reserve(log_odds.total());
+  const float step_x = static_cast<float>(full.width) / static_cast<float>(log_odds.cols),
+              step_y = static_cast<float>(full.height) / static_cast<float>(log_odds.rows);
+  for (int y = 0; y < log_odds.rows; ++y)
+    for (int x = 0; x < log_odds.cols; ++x)
+      pixels.emplace_back(upsampled(static_cast<float>(x), step_x), upsampled(static_cast<float>(y), step_y));
+  std::vector<float> weight = static_weights_at(pixels, log_odds, full, half);
+  raise_least_weight(std::vector<std::uint8_t>(weight.size(), 1), weight);
+  const cv::Mat small(log_odds.size(), CV_32FC1, weight.data());
+  cv::Mat whole;
+  cv::resize(small, whole, full, 0, 0, cv::INTER_NEAREST);
+  return whole;
 }
 
 }  // namespace stillpoint

@@ -21,4 +21,8 @@ namespace stillpoint {
 /// @param keep one a feature; others neither count nor change
 void raise_least_weight(const std::vector<std::uint8_t>& keep, std::vector<float>& weight);
 
+/// The same of every pixel, CV_32FC1, as engines have it that look at pixels: a weight for each of
+/// `log_odds`.
+[[nodiscard]] cv::Mat static_weight_image(const cv::Mat& log_odds, const cv::Size& full, double half);
+
 }  // namespace stillpoint

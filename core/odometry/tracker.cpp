@@ -82,6 +82,7 @@ bool Tracker::estimate_from_last(const LocalMap& map, TrackedFrame& frame, Frame
 void Tracker::seek_consensus(const std::vector<PoseObservation>& observations, const Pose& predicted,
                              std::uint32_t seed, PoseRefinement& refined, TrackedFrame& frame,
                              FrameRecord& record) const {
+  // Sets of three: where half the observations agree, none is of these alone once in 10¹¹ times.
   constexpr int kSamples = 200;
   const Stopwatch watch;
   const Consensus agreed =
@@ -97,7 +98,7 @@ void Tracker::seek_consensus(const std::vector<PoseObservation>& observations, c
 
 bool Tracker::estimate_by_epnp(const LocalMap& map, TrackedFrame& frame, FrameRecord& record) const {
   constexpr int kMaxDistance = 60;  // bits: without a window only close descriptors tell points apart
-  constexpr double kRatio = 0.8;
+  constexpr double kRatio = 0.8;    // of the second best's distance, as Lowe has it
   Stopwatch watch;
   std::vector<Candidate> candidates;
   for (const int id : local_points(map, frame)) {

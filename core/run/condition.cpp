@@ -32,7 +32,7 @@ using NodePtr = std::shared_ptr<const Node>;
 using enum FigureUnit;
 using condition_words::fail, condition_words::Kind, condition_words::Token;
 
-constexpr int kSpikeWindow = 60, kSpikeLeast = 8;  // frames
+constexpr int kSpikeWindow = 60, kSpikeLeast = 8;  // frames: 2 s at 30 Hz; among fewer there is nothing usual
 constexpr int kMaxDepth = 60;                      // of parentheses in each other
 
 // ---- Units ----

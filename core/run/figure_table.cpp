@@ -9,7 +9,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kSameTime = 1e-6;  // s
+constexpr double kSameTime = 1e-6;  // s: stamps have microseconds, and printing rounds
 
 double flag(bool is) { return is ? 1.0 : 0.0; }
 double known(const std::optional<double>& value) { return value.value_or(kUnknownFigure); }

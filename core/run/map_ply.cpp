@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -61,10 +63,10 @@ std::string keyframes_ply(const std::vector<SavedKeyframe>& keyframes, const Cam
           fmt::format("{} {} {}\n", ply_numbers(pose * p, 5), kKeyframeOrange, keyframes[i].frame_index);
     };
     vertex(Eigen::Vector3d::Zero());
-    const double right = camera.width - 0.5, bottom = camera.height - 0.5;  // px: the image's outer rim
-    for (const auto& [x, y] :
-         {std::pair(-0.5, -0.5), std::pair(right, -0.5), std::pair(right, bottom), std::pair(-0.5, bottom)})
-      vertex(camera.back_project({x, y}, depth));
+    const double right = camera.width, bottom = camera.height;
+    for (const RasterPoint& corner : {RasterPoint(0.0, 0.0), RasterPoint(right, 0.0),
+                                      RasterPoint(right, bottom), RasterPoint(0.0, bottom)})
+      vertex(camera.back_project(to_pixel(corner), depth));
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const std::size_t tip = 5 * i, here = tip + 1 + corner, next = tip + 1 + (corner + 1) % 4;
       faces += fmt::format("3 {} {} {}\n", tip, here, next);

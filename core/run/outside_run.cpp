@@ -92,7 +92,7 @@ std::optional<FeatureFate> fate_of(std::string_view word) {
 
 /// An id as a table gives it; kNone for what is none.
 int whole_or_none(const std::optional<double>& number) {
-  constexpr double kLargest = 2e9;
+  constexpr double kLargest = 2e9;  // an id that fits an int
   return number && *number >= 0 && *number <= kLargest ? static_cast<int>(*number) : kNone;
 }
 

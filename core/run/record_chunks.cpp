@@ -17,6 +17,7 @@ constexpr std::string_view kMagic = "STILLREC", kEndMagic = "STILLEND";
 constexpr std::uint32_t kMostBytes = 1U << 28U;  // of one chunk unpacked: more is damage
 constexpr std::uint64_t kMostPacked = 1032;      // bytes that zlib packs into one, at most
 constexpr int kPackingLevel = 1;                 // fast: the run waits for it
+// Bytes: its kind, two sizes and a checksum.
 constexpr std::size_t kChunkHead = 1 + 3 * sizeof(std::uint32_t);
 
 void append(std::vector<std::uint8_t>& to, const void* from, std::size_t bytes) {

@@ -14,7 +14,7 @@ namespace stillpoint {
 
 // `records.bin` as chunks, whatever they hold: records_file.hpp has the layout.
 
-inline constexpr std::uint32_t kRecordsVersion = 9;
+inline constexpr std::uint32_t kRecordsVersion = 9;        // raised with every change of the layout
 inline constexpr std::uint32_t kOldestRecordsVersion = 8;  ///< had no tables: all frames are read at opening
 
 enum class ChunkKind : char { header = 'H', frame = 'F', table = 'T', end = 'E' };
@@ -27,6 +27,7 @@ enum class ChunkKind : char { header = 'H', frame = 'F', table = 'T', end = 'E' 
 /// What the file ends with, once it is whole.
 /// @param tables where the first table lies, bytes from the start
 [[nodiscard]] std::vector<std::uint8_t> records_foot(std::uint64_t tables);
+// Bytes: magic and version; where the tables lie and magic.
 inline constexpr std::uint64_t kRecordsHeadBytes = 12, kRecordsFootBytes = 16;
 
 /// The file ends within a chunk.

@@ -54,7 +54,7 @@ void transfer_direct(ByteStreamWriter& to, const DirectRecord& direct) {
 }
 
 void transfer_direct(ByteStreamReader& from, DirectRecord& direct) {
-  constexpr std::size_t kPatchBytes = 16;
+  constexpr std::size_t kPatchBytes = 16;  // bytes each: four floats
   transfer_direct_fields(from, direct);
   std::vector<DirectPatch> seen(from.count(kPatchBytes));
   for (DirectPatch& patch : seen) transfer_patch(from, patch);
@@ -70,7 +70,7 @@ void transfer_motion_figures(ByteStreamWriter& to, const std::vector<MotionFigur
 }
 
 void transfer_motion_figures(ByteStreamReader& from, std::vector<MotionFigure>& figures) {
-  constexpr std::size_t kFigureBytes = 12;
+  constexpr std::size_t kFigureBytes = 12;  // bytes at least: a name's length and a double
   figures.resize(from.count(kFigureBytes));
   for (MotionFigure& figure : figures) {
     from(figure.name);
@@ -156,6 +156,7 @@ void transfer_point(Archive& archive, SavedPointType& point) {
   for (int i = 0; i < 3; ++i) archive(point.colour[i]);
 }
 
+// Bytes each, at least: more features than the bytes left can hold are damage.
 constexpr std::size_t kFeatureBytes = 26;
 
 template <typename Thing, typename Transfer>

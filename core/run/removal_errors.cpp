@@ -15,7 +15,7 @@ namespace stillpoint {
 namespace {
 
 constexpr double kNoticeable = 1e-3;  // m: below, no step is called worse
-constexpr double kSigmas = 3.0;
+constexpr double kSigmas = 3.0;       // standard deviations: beyond, chance seldom makes a step worse
 
 double step_error(const Pose& true_step, const Pose& before, const std::optional<Pose>& now) {
   if (!now) return std::numeric_limits<double>::quiet_NaN();

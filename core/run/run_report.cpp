@@ -108,7 +108,7 @@ struct Lacking {
 /// "8 of 40 frames: 2, 11 (no depth image within 0.02 s); 10 (rgb/7.png holds 8 bits)": reasons that differ
 /// in numbers alone (names of files) stand together, and what is rare is told as well as what is common.
 std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking) {
-  constexpr std::size_t kMostReasons = 4;
+  constexpr std::size_t kMostReasons = 4;  // kinds: the sentence stays readable
   if (lacking.empty()) return {};
   const auto kind_of = [](std::string why) {
     std::erase_if(why, [](char c) { return c >= '0' && c <= '9'; });

@@ -155,6 +155,7 @@ class PointColours {
   }
 
  private:
+  // Colours: below, keeping them costs less than looking for those to forget.
   static constexpr std::size_t kFew = 10000;
   std::unordered_map<int, cv::Vec3b> colours_;
 };

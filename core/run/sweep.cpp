@@ -16,8 +16,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kWide = 20.0;  // a range of more than this factor is gone through by factors
-constexpr int kMostSteps = 1000;
+constexpr double kWide = 20.0;    // a range of more than this factor is gone through by factors
+constexpr int kMostSteps = 1000;  // runs of a whole sequence: more is a slip of the keyboard
 
 Parameter numeric_parameter(Config& config, const std::string& name) {
   for (const Parameter& parameter : parameters(config)) {

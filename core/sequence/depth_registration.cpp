@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -64,6 +66,7 @@ class ZBuffer {
   [[nodiscard]] const cv::Mat& inverse() const { return inverse_; }
 
  private:
+  // A triangle of less than half kFlat px² covers nothing. Shares of a side: more than rounding opens.
   static constexpr double kFlat = 1e-9, kSeam = 1e-7;
   // Pixel centres lie at whole numbers. (std::ceil and std::floor are calls of the C library.)
   static int first(double from, int count) {
@@ -88,13 +91,13 @@ bool is_one_surface(const std::array<float, 3>& z) {
 DepthRegistration::DepthRegistration(const DepthCamera& depth, const Camera& colour)
     : depth_(depth), colour_(colour) {
   const Camera& camera = depth_.camera;
-  const auto ray = [&camera](double x, double y) {
-    return camera.back_project(camera.undistorted({x, y}), 1.0);
+  const auto ray = [&camera](const Eigen::Vector2d& pixel) {
+    return camera.back_project(camera.undistorted(pixel), 1.0);
   };
   for (int y = 0; y <= camera.height; ++y)
-    for (int x = 0; x <= camera.width; ++x) corners_.push_back(ray(x - 0.5, y - 0.5));
+    for (int x = 0; x <= camera.width; ++x) corners_.push_back(ray(to_pixel(RasterPoint(x, y))));
   for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) centres_.push_back(ray(x, y));
+    for (int x = 0; x < camera.width; ++x) centres_.push_back(ray({x, y}));
 }
 
 cv::Mat DepthRegistration::registered(const cv::Mat& depth) const {
@@ -134,6 +137,7 @@ cv::Mat DepthRegistration::registered(const cv::Mat& depth) const {
       const std::size_t i = at(x, y, width);
       if (seen[i].inverse <= 0 || triangles[i] == kAllAround) continue;
       std::array<Seen, 4> corners;
+      // A square's corners in their order round it, px.
       constexpr std::array<Place, 4> kAround = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
       for (std::size_t k = 0; k < corners.size(); ++k)
         corners[k] =

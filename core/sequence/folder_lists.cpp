@@ -70,7 +70,7 @@ std::vector<std::string> other_places(const std::string& name, Names folders) {
 /// Sends a list's names to where its images lie, all in the way the first of them that can be found is found.
 void find_images(const FileStore& folder, ImageList& list, Names folders,
                  std::vector<std::string>& warnings) {
-  constexpr std::size_t kTried = 5;
+  constexpr std::size_t kTried = 5;  // entries: one file may be missing, hardly five in a row
   const std::size_t tried = std::min(kTried, list.entries.size());
   for (std::size_t i = 0; i < tried; ++i)
     if (folder.is_there(list.entries[i].file)) return;
@@ -125,7 +125,7 @@ std::string what_else(const FileStore& folder) {
         kind == ".txt" || kind == ".csv" || folder.is_folder(name))
       names.push_back(name);
   }
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMost = 6;  // names: a hint, and no listing
   if (names.size() > kMost) names.resize(kMost), names.emplace_back("…");
   return names.empty() ? "" : fmt::format("; it holds {}", fmt::join(names, ", "));
 }

@@ -21,8 +21,9 @@
 namespace stillpoint {
 namespace {
 
+// What the PNG standard has every file begin with.
 constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr std::uint32_t kLargestSide = 16384;  // px
+constexpr std::uint32_t kLargestSide = 16384;  // px: no camera has more, and what claims more is damaged
 
 std::uint32_t big_endian(const unsigned char* p) {
   return static_cast<std::uint32_t>(p[0]) << 24 | static_cast<std::uint32_t>(p[1]) << 16 |
@@ -119,6 +120,7 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
+  // Bytes of the first read; each further one is of as many as are there.
   constexpr std::size_t kAtOnce = 64 << 10;
   bytes.clear();
   // Whatever its size was said to be: it may still be growing.

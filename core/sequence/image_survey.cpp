@@ -9,12 +9,12 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::uint16_t kNoMeasurement = 65535;
+constexpr std::uint16_t kNoMeasurement = 65535;  // raw: what some sensors store in place of 0
 constexpr double kNearMedian = 0.45;  // m; a scene this near is doubted when its nearest part is nearer still
 constexpr int kMaskHalf = 127;        // of 8 bits
 constexpr double kWhiteShare = 0.5;   // of what is not 0, to call a mask black and white
-constexpr int kMostLabels = 32;
-constexpr int kNearlyWhite = 250;  // of 8 bits: JPEG's white
+constexpr int kMostLabels = 32;       // values: with more it is a picture and no labels
+constexpr int kNearlyWhite = 250;     // of 8 bits: JPEG's white
 
 double quantile(std::vector<std::uint16_t>& values, double share) {
   if (values.empty()) return 0.0;
@@ -79,7 +79,7 @@ DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected, con
       cv::min(read.image, (kNoMeasurement - 1) / kMetresSurveyScale, read.image);
       read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
     }
-    constexpr int kStride = 3;
+    constexpr int kStride = 3;  // px: a ninth of the pixels tells quantiles as well
     for (int y = 0; y < read.image.rows; y += kStride)
       for (int x = 0; x < read.image.cols; x += kStride) {
         const auto value = read.image.at<std::uint16_t>(y, x);

@@ -41,7 +41,7 @@ class WidgetsTest : public ::testing::Test {
     press(button, false);
     render();
   }
-  ImVec2 image_place(double x, double y) const { return gallery.image_response.to_screen({x, y}); }
+  ImVec2 image_place(double x, double y) const { return gallery.image_response.to_screen(RasterPoint(x, y)); }
   cv::Mat image_panel(const cv::Mat& whole) const {
     const ImageResponse& panel = gallery.image_response;
     return whole(

@@ -52,13 +52,15 @@ TEST(Gao2019, PlacesGoByDepthAndByTheHomographyWhereThereIsNone) {
   Pose last_from_here = Pose::Identity();
   last_from_here.translation().x() = 0.04;
   const Yi2013Places places = places_by_depth(depths, rays, last_from_here, camera, 4, homography);
-  EXPECT_NEAR(places[2 * 8 + 3].x, 3.5 + 0.5, 1e-6);  // 100 px * 0.04 / 2 = 2 px, half a block
-  EXPECT_NEAR(places[2 * 8 + 3].y, 2.5, 1e-6);
-  EXPECT_NEAR(places[2 * 8 + 4].x, 4.5 + 1.0, 1e-6);   // nearer: twice the parallax
-  EXPECT_NEAR(places[1 * 8 + 1].x, 1.5 + 2.0, 1e-12);  // no depth: the homography's 8 px to the right, 4 up
-  EXPECT_NEAR(places[1 * 8 + 1].y, 1.5 - 1.0, 1e-12);
+  EXPECT_NEAR(places[2 * 8 + 3].px().x(), 3.5 + 0.5, 1e-6);  // 100 px * 0.04 / 2 = 2 px, half a block
+  EXPECT_NEAR(places[2 * 8 + 3].px().y(), 2.5, 1e-6);
+  EXPECT_NEAR(places[2 * 8 + 4].px().x(), 4.5 + 1.0, 1e-6);  // nearer: twice the parallax
+  EXPECT_NEAR(places[1 * 8 + 1].px().x(), 1.5 + 2.0,
+              1e-12);  // no depth: the homography's 8 px to the right, 4 up
+  EXPECT_NEAR(places[1 * 8 + 1].px().y(), 1.5 - 1.0, 1e-12);
   last_from_here.translation() = Eigen::Vector3d(0, 0, -1.0);  // behind the last camera
-  EXPECT_TRUE(std::isnan(places_by_depth(depths, rays, last_from_here, camera, 4, homography)[3 * 8 + 4].x));
+  EXPECT_TRUE(
+      std::isnan(places_by_depth(depths, rays, last_from_here, camera, 4, homography)[3 * 8 + 4].px().x()));
 }
 
 Yi2013Model model_of(const cv::Size& size, double mean, double variance, double age) {
@@ -71,8 +73,8 @@ TEST(Gao2019, WarpsTheModelByAnyPlaces) {
   Yi2013Model model = model_of({6, 6}, 100, 25, 8);
   model[0].mean.col(3).setTo(120);
   const Yi2013Blocks blocks = yi2013_blocks(cv::Mat(24, 24, CV_8UC1, cv::Scalar(7)), 4);
-  Yi2013Places places(36, cv::Point2d(std::nan(""), std::nan("")));
-  places[2 * 6 + 2] = {3.0, 2.5};
+  Yi2013Places places(36, RasterPoint(std::nan(""), std::nan("")));
+  places[2 * 6 + 2] = RasterPoint(3.0, 2.5);
   const Yi2013Model warped = yi2013_warped(model, places, blocks, kConfig.model());
   EXPECT_EQ(warped[0].mean.at<float>(2, 2), 110.0F);
   EXPECT_EQ(warped[0].variance.at<float>(2, 2), 125.0F);  // 25 + 10²

@@ -34,6 +34,19 @@ TEST(StaticWeight, PixelsAtTheRimAreReadAtTheRim) {
   EXPECT_FLOAT_EQ(weight[1], 0.5F);
 }
 
+TEST(StaticWeight, EachPixelOfAnImageHasItsOwn) {
+  // As large as the log-odds, twice and four times as large.
+  cv::Mat log_odds(1, 8, CV_32FC1);
+  for (int x = 0; x < log_odds.cols; ++x) log_odds.at<float>(0, x) = x % 2 == 0 ? -10.0F : -2.0F;
+  for (const int factor : {1, 2, 4}) {
+    const cv::Mat weight = static_weight_image(log_odds, {8 * factor, factor}, -2.0);
+    ASSERT_EQ(weight.size(), cv::Size(8 * factor, factor));
+    for (int x = 0; x < weight.cols; ++x)
+      EXPECT_NEAR(weight.at<float>(factor - 1, x), x / factor % 2 == 0 ? 1.0 : 0.5, 1e-6)
+          << factor << ", " << x;
+  }
+}
+
 TEST(StaticWeight, WhereLittleIsKnownTheRestIsBelieved) {
   std::vector<float> known{0.9F, 0.9F, 0.9F, 0.1F};  // mean 0.7: at least 0.09
   raise_least_weight({1, 1, 1, 1}, known);

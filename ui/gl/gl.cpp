@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kOldestVersion = 33;
+constexpr int kOldestVersion = 33;  // OpenGL 3.3, as the shaders are written
 
 template <typename Function>
 Function lookup(const GetProcAddress& get_proc_address, const char* name) {

@@ -10,8 +10,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kAllLevels = 1000;  // as GL has it for a new texture
-constexpr std::uint64_t kOpaque = std::uint64_t{1} << 63U;
+constexpr int kAllLevels = 1000;                            // as GL has it for a new texture
+constexpr std::uint64_t kOpaque = std::uint64_t{1} << 63U;  // the highest bit, which no texture's number has
 
 struct PixelFormat {
   GLint internal;

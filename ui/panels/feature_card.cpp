@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint {
@@ -47,18 +48,18 @@ LegendEntry fate_look(FeatureFate fate, ThemeName theme) {
 void draw_explanation_marks(const UiFrame& frame, const ImageResponse& response,
                             const FeatureExplanation& explanation) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at = response.keypoint_to_screen(explanation.feature.pixel);
+  const ImVec2 at = response.to_screen(to_raster(explanation.feature.pixel));
   const float thick = 1.8F * frame.scale;
   std::vector<ImVec2> trail;
   for (const TrailPoint& point : explanation.trail)
-    trail.push_back(response.keypoint_to_screen(point.feature.pixel));
+    trail.push_back(response.to_screen(to_raster(point.feature.pixel)));
   for (const auto& [ink, width] :
        {std::pair{kShade, thick + 2.0F * frame.scale}, std::pair{to_u32(okabe_ito::kYellow), thick}})
     list.AddPolyline(trail.data(), static_cast<int>(trail.size()), ink, ImDrawFlags_None, width);
   for (std::size_t i = 1; i < trail.size(); ++i)
     list.AddCircleFilled(trail[i], 1.8F * frame.scale, to_u32(okabe_ito::kYellow));
   if (explanation.if_static) {
-    const ImVec2 still = response.to_screen((explanation.if_static->array() + 0.5).matrix());
+    const ImVec2 still = response.to_screen(to_raster(*explanation.if_static));
     const Rgb colour = role_colour(Role::kBackward, ThemeName::kDark);
     draw_arrow(list, still, at, kShade, thick + 2.0F * frame.scale);
     draw_arrow(list, still, at, to_u32(colour), thick);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/evaluation/tables.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -131,8 +132,8 @@ class FeaturePanel final : public FramePanel {
     told_ = session.current;
     const cv::Size size = view.frame.gray.size();
     view_.zoom = std::max(1.0, size.width / kShownPx);
-    view_.centre = {(static_cast<double>(explanation_.feature.pixel.x) + 0.5) / size.width,
-                    (static_cast<double>(explanation_.feature.pixel.y) + 0.5) / size.height};
+    view_.centre =
+        to_raster(explanation_.feature.pixel).px().cwiseQuotient(Eigen::Vector2d(size.width, size.height));
   }
 
   void draw_picture(const UiFrame& frame, const FramePlace& place, ImVec2 size) {

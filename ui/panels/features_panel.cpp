@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -103,7 +104,7 @@ class FeaturesPanel final : public FramePanel {
   void take_feature(const UiFrame& frame, const SessionView& session, const ImageResponse& response) {
     if (!response.image_point) return;
     const FrameRecord& record = *session.current->record;
-    const Eigen::Vector2d mouse = (response.image_point->array() - 0.5).matrix();
+    const Eigen::Vector2d mouse = to_pixel(*response.image_point);
     const double reach = kReach * static_cast<double>(frame.scale) / response.map.scale();
     const auto index = feature_near(record, mouse, reach);
     if (index && !shows(record.features[static_cast<std::size_t>(*index)])) return;
@@ -133,13 +134,13 @@ class FeaturesPanel final : public FramePanel {
     if (by_scale_ && moment_ == FeatureMoment::kAfter)
       radius = std::max(radius, static_cast<float>(response.map.scale()) * 2.0F *
                                     std::pow(1.2F, static_cast<float>(feature.octave)));
-    draw_sign(frame, *ImGui::GetWindowDrawList(), response.keypoint_to_screen(feature.pixel), radius,
+    draw_sign(frame, *ImGui::GetWindowDrawList(), response.to_screen(to_raster(feature.pixel)), radius,
               look.sign, to_u32(look.colour, strength(feature)));
   }
 
   /// The less a feature weighs in the pose, the fainter it is drawn.
   [[nodiscard]] float strength(const FeatureRecord& feature) const {
-    constexpr float kFaintest = 0.3F;
+    constexpr float kFaintest = 0.3F;  // opacity of a feature without weight: it is still seen
     const bool weighs = moment_ == FeatureMoment::kAfter && feature.fate == FeatureFate::inlier;
     return weighs ? kFaintest + (1.0F - kFaintest) * feature.static_weight : 1.0F;
   }

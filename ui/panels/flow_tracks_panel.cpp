@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/sequence/frame.hpp"
 #include "ui/gl/texture.hpp"
@@ -69,9 +70,9 @@ class FlowTracksPanel final : public FramePanel {
     const LegendEntry look = look_of(kind_of(track), frame.theme.name);
     const ImU32 colour = to_u32(look.colour);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const ImVec2 to = response.keypoint_to_screen(track.at);
+    const ImVec2 to = response.to_screen(to_raster(track.at));
     const ImVec2 from =
-        response.keypoint_to_screen(track.at + length_ * (track.from.value_or(track.at) - track.at));
+        response.to_screen(to_raster(track.at + length_ * (track.from.value_or(track.at) - track.at)));
     list.AddLine(from, to, to_u32(look.colour, 0.8F), 1.3F * frame.scale);
     draw_sign(frame, list, to, (look.sign == Sign::kCircle ? 2.2F : 3.2F) * frame.scale, look.sign, colour);
   }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/pins.hpp"
@@ -25,10 +26,6 @@ namespace {
 
 constexpr double kFeatureReach = 12.0;  // px of the frame, for the menu's feature
 
-ImVec2 place_of(const ImageResponse& response, const Eigen::Vector2d& pixel) {
-  return response.to_screen((pixel.array() + 0.5).matrix());
-}
-
 void cross(ImDrawList& list, ImVec2 at, float from, float to, ImU32 ink, float thick) {
   list.AddLine({at.x - to, at.y}, {at.x - from, at.y}, ink, thick);
   list.AddLine({at.x + from, at.y}, {at.x + to, at.y}, ink, thick);
@@ -39,15 +36,16 @@ void cross(ImDrawList& list, ImVec2 at, float from, float to, ImU32 ink, float t
 /// A cross that reads on any picture; a frame about the pixel where pixels are large.
 void draw_crosshair(const UiFrame& frame, const ImageResponse& response, const Eigen::Vector2d& pixel) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at = place_of(response, pixel);
+  const ImVec2 at = response.to_screen(to_raster(pixel));
   const auto scale = static_cast<float>(response.map.scale());
   const float gap = std::max(4.0F * frame.scale, 0.5F * scale + 2.0F), arm = gap + 13.0F * frame.scale;
   const Rgb colour = role_colour(Role::kCursor, ThemeName::kDark);
   cross(list, at, gap - 1.0F, arm + 1.0F, IM_COL32(0, 0, 0, 170), 3.5F * frame.scale);
   cross(list, at, gap, arm, to_u32(colour), 1.5F * frame.scale);
   if (scale < 6.0F) return;
-  const Eigen::Vector2d middle = pixel.array().round().matrix();
-  const ImVec2 low = response.to_screen(middle), high = response.to_screen((middle.array() + 1.0).matrix());
+  const Eigen::Vector2d corner = pixel.array().round().matrix();  // of the nearest pixel, in the raster
+  const ImVec2 low = response.to_screen(RasterPoint(corner)),
+               high = response.to_screen(RasterPoint((corner.array() + 1.0).matrix()));
   list.AddRect(low, high, to_u32(colour), 0.0F, ImDrawFlags_None, 1.5F * frame.scale);
 }
 
@@ -57,7 +55,7 @@ void draw_pins(const UiFrame& frame, const ImageResponse& response, const PairGe
   for (const Pin& pin : place.session.debug.pins) {
     const auto there = scene_point_in(pair, place.space, {pin.x, pin.y});
     if (!there) continue;
-    const ImVec2 at = place_of(response, there->pixel);
+    const ImVec2 at = response.to_screen(to_raster(there->pixel));
     const float r = 4.5F * frame.scale;
     list.AddCircleFilled(at, r + 1.5F * frame.scale, IM_COL32(0, 0, 0, 170));
     list.AddCircle(at, r, IM_COL32(255, 255, 255, 255), 0, 1.8F * frame.scale);
@@ -76,7 +74,7 @@ void draw_chosen_feature(const UiFrame& frame, const ImageResponse& response, Pa
       scene_point_in(pair, place.space, {static_cast<double>(pixel.x), static_cast<double>(pixel.y)});
   if (!there) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at = place_of(response, there->pixel);
+  const ImVec2 at = response.to_screen(to_raster(there->pixel));
   const float r = 8.0F * frame.scale;
   const ImVec2 corners[] = {{at.x - r, at.y}, {at.x, at.y - r}, {at.x + r, at.y}, {at.x, at.y + r}};
   list.AddPolyline(corners, 4, IM_COL32(0, 0, 0, 170), ImDrawFlags_Closed, 4.0F * frame.scale);
@@ -115,7 +113,7 @@ void take_mouse(const char* id, const ImageResponse& response, PanelsShared& sha
   if (response.image_point) {
     ImageCursor cursor;
     cursor.space = place.space;
-    cursor.pixel = (response.image_point->array() - 0.5).matrix();
+    cursor.pixel = to_pixel(*response.image_point);
     if (place.space == FrameSpace::kTarget) cursor.pixel = response.pixel->cast<double>();
     if (const auto target = target_point(shared.geometry(place.session), place.space, cursor.pixel))
       cursor.target = target->pixel;

@@ -63,7 +63,7 @@ cv::Mat plain_mask(const cv::Mat& mask, Rgb colour, Rgb ground) {
 
 cv::Mat coloured(const cv::Mat& values, const ColourScale& scale, bool zero_is_none) {
   if (values.empty()) return {};
-  constexpr int kSteps = 512;
+  constexpr int kSteps = 512;  // colours of a scale: more than a channel's 256 levels tell apart
   std::array<cv::Vec3b, kSteps> table;
   for (int i = 0; i < kSteps; ++i) {
     const double share = static_cast<double>(i) / (kSteps - 1);
@@ -116,9 +116,9 @@ Outlines outlines_of(const cv::Mat& mask) {
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(mask, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_SIMPLE);
   for (const auto& contour : contours) {
-    std::vector<Eigen::Vector2d> outline;
+    std::vector<RasterPoint> outline;
     outline.reserve(contour.size());
-    for (const cv::Point& point : contour) outline.emplace_back(point.x + 0.5, point.y + 0.5);
+    for (const cv::Point& point : contour) outline.push_back(to_raster(Eigen::Vector2d(point.x, point.y)));
     outlines.push_back(std::move(outline));
   }
   return outlines;
@@ -130,7 +130,7 @@ void draw_outlines(const UiFrame& frame, const ImageResponse& response, const Ou
   std::vector<ImVec2> points;
   for (const auto& outline : outlines) {
     points.clear();
-    for (const Eigen::Vector2d& point : outline) points.push_back(response.to_screen(point));
+    for (const RasterPoint& point : outline) points.push_back(response.to_screen(point));
     list.AddPolyline(points.data(), static_cast<int>(points.size()), to_u32(colour), ImDrawFlags_Closed,
                      1.5F * frame.scale);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "ui/panels/frame_marks.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/view/image_widget.hpp"
@@ -60,8 +61,8 @@ struct ComparisonColours {
 [[nodiscard]] cv::Mat compared_masks(const cv::Mat& mask, const cv::Mat& truth,
                                      const ComparisonColours& colours = {});
 
-/// The outlines of a mask, image coordinates.
-using Outlines = std::vector<std::vector<Eigen::Vector2d>>;
+/// The outlines of a mask.
+using Outlines = std::vector<std::vector<RasterPoint>>;
 [[nodiscard]] Outlines outlines_of(const cv::Mat& mask);
 void draw_outlines(const UiFrame& frame, const ImageResponse& response, const Outlines& outlines, Rgb colour);
 

@@ -299,8 +299,8 @@ class InspectorPanel final : public FramePanel {
     ImGui::PopFont();
   }
 
-  static constexpr std::size_t kMostColumns = 8;
-  static constexpr float kLeastColumn = 84.0F;  // design px, of the readings at one point
+  static constexpr std::size_t kMostColumns = 8;  // pins: more have no room
+  static constexpr float kLeastColumn = 84.0F;    // design px, of the readings at one point
 
   int what_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/evaluation/mask_scores.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/motion/regions.hpp"
@@ -149,8 +150,8 @@ class MaskPanel final : public FramePanel {
     const ImU32 ink = to_u32(colour(frame));
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       const cv::Rect& box = regions_[i].box;
-      const ImVec2 low = response.to_screen(Eigen::Vector2d(box.x, box.y));
-      const ImVec2 high = response.to_screen(Eigen::Vector2d(box.x + box.width, box.y + box.height));
+      const ImVec2 low = response.to_screen(RasterPoint(box.x, box.y));
+      const ImVec2 high = response.to_screen(RasterPoint(box.x + box.width, box.y + box.height));
       list.AddRect(low, high, ink, 0.0F, ImDrawFlags_None, frame.scale);
       // A number inside a small region would cover it.
       const bool inside = high.y - low.y > 36.0F * frame.scale && high.x - low.x > 30.0F * frame.scale;

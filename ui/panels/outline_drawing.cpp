@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_widget.hpp"
@@ -11,7 +12,7 @@
 namespace stillpoint {
 
 ImVec2 corner_on(const ImageResponse& response, const Corner& corner) {
-  return response.to_screen(Eigen::Vector2d(corner.x + 0.5, corner.y + 0.5));
+  return response.to_screen(to_raster(Eigen::Vector2d(corner.x, corner.y)));
 }
 
 float distance_between(ImVec2 a, ImVec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }

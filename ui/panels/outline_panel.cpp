@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
@@ -19,7 +20,7 @@ namespace stillpoint {
 namespace {
 
 constexpr float kCornerReach = 8.0F, kEdgeReach = 5.0F;  // design px, for the mouse
-constexpr std::size_t kLeastCorners = 3;
+constexpr std::size_t kLeastCorners = 3;                 // corners: fewer enclose nothing
 
 /// Truth by hand: outlines are drawn round what moves in some frames, and carried to the others.
 class OutlinePanel final : public FramePanel {
@@ -268,12 +269,14 @@ class OutlinePanel final : public FramePanel {
                   const ImageResponse& response) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const auto corner_under_mouse = [&] {
-      const Eigen::Vector2d at = response.map.to_image({static_cast<double>(mouse.x - response.panel_min.x),
-                                                        static_cast<double>(mouse.y - response.panel_min.y)});
+      const Eigen::Vector2d at =
+          to_pixel(response.map.to_image({static_cast<double>(mouse.x - response.panel_min.x),
+                                          static_cast<double>(mouse.y - response.panel_min.y)}));
       const cv::Size size = session.current->frame.gray.size();
       // A tenth of a pixel is finer than anybody points.
       const auto tidy = [](double value, int limit) {
-        return std::clamp(std::round(10.0 * (value - 0.5)) / 10.0, -0.5, limit - 0.5);
+        return std::clamp(std::round(10.0 * value) / 10.0, to_pixel(RasterCoordinate(0.0)),
+                          to_pixel(RasterCoordinate<double>(limit)));
       };
       return Corner{tidy(at.x(), size.width), tidy(at.y(), size.height)};
     };

@@ -13,7 +13,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr float kBarWidth = 12.0F;  // design px
+constexpr float kBarWidth = 12.0F;  // design px: wide enough to compare colours
 
 ImVec2 small_extent(const UiFrame& frame, const std::string& text, float wrap = 0.0F) {
   const ImFont* font = frame.fonts.small;
@@ -202,7 +202,7 @@ void draw_colour_scale(const UiFrame& frame, const ColourScale& scale, float hei
               bottom = corner.y + std::max(height - none_room - 0.5F * line, 2.0F * line);
   const float width = kBarWidth * frame.scale;
   small_text(frame, corner, scale.unit, frame.theme.text_dim);
-  constexpr int kSteps = 64;
+  constexpr int kSteps = 64;  // bands of the scale: it looks even
   for (int i = 0; i < kSteps; ++i) {
     const double share = 1.0 - (i + 0.5) / kSteps;
     const float from = top + (bottom - top) * static_cast<float>(i) / kSteps;

@@ -20,11 +20,11 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kMostErrorLines = 400;
-constexpr double kMostRoom = 0.5;    // … but no more than so many times the extent of the paths
-constexpr double kLeastSight = 0.1;  // m, along each axis
-constexpr double kRoomShare = 0.3;   // of the way from the paths out to the map points
-constexpr double kTruthBreak = 0.5;  // s without ground truth that breaks its line
+constexpr std::size_t kMostErrorLines = 400;  // lines: more cover each other
+constexpr double kMostRoom = 0.5;             // … but no more than so many times the extent of the paths
+constexpr double kLeastSight = 0.1;           // m, along each axis
+constexpr double kRoomShare = 0.3;            // of the way from the paths out to the map points
+constexpr double kTruthBreak = 0.5;           // s without ground truth that breaks its line
 
 Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()); }
 
@@ -122,7 +122,7 @@ void add_errors(const TrajectoryEvaluation& evaluation, const Pose& world_from_e
 /// Where the frame's position may lie, by its covariance: the three ellipses through the axes of its
 /// ellipsoid.
 void add_uncertainty(const FrameRecord& record, const Pose& world_from_camera, SceneData& data) {
-  constexpr int kSteps = 48;
+  constexpr int kSteps = 48;        // corners of an ellipse: it looks round
   constexpr double kSigmas = 20.0;  // one would be thinner than a line: a millimetre, in a room
   const Eigen::Matrix3d covariance = record.pose_covariance.topLeftCorner<3, 3>();
   if (covariance.isZero(0.0)) return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/theme/colormap.hpp"
 
@@ -84,9 +85,9 @@ void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::v
   const float size = std::clamp(static_cast<float>(response.map.scale()) * 3.6F, 1.3F, 3.0F) * frame.scale;
   for (const Mark& dot : dots) {
     const LegendEntry look = look_of(dot.kind, frame.theme.name);
-    const ImVec2 at = response.keypoint_to_screen(dot.at);
+    const ImVec2 at = response.to_screen(to_raster(dot.at));
     if (dot.from)
-      list.AddLine(response.keypoint_to_screen(dot.at + 2.0F * (*dot.from - dot.at)), at,
+      list.AddLine(response.to_screen(to_raster(dot.at + 2.0F * (*dot.from - dot.at))), at,
                    to_u32(look.colour, 0.8F), 0.45F * size);
     draw_sign(frame, list, at, look.sign == Sign::kCircle ? 0.8F * size : size, look.sign,
               to_u32(look.colour));

@@ -20,12 +20,12 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kWheelFactor = 1.2;
+constexpr double kWheelFactor = 1.2;       // times the range, a notch of the wheel
 constexpr double kLeastFrames = 4.0;       // in sight when zoomed in furthest
 constexpr float kRoomForControls = 95.0F;  // design px, height of the panel
-constexpr float kLeastLane = 20.0F;        // design px
+constexpr float kLeastLane = 20.0F;        // design px of a lane: a curve can still be read
 constexpr float kGrip = 5.0F;              // design px about an end of the range
-constexpr std::size_t kWorstShown = 5;
+constexpr std::size_t kWorstShown = 5;     // frames that are marked: more would hide the rest
 
 std::string earlier(const char* what) { return std::string(icons::kChevronLeft) + "  " + what; }
 std::string later(const char* what) { return std::string(what) + "  " + icons::kChevronRight; }

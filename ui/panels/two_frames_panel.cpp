@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/frame_pair.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -167,7 +168,7 @@ class TwoFramesPanel final : public NamedPanel {
                                                       const ImageResponse& right) const {
     const ImageResponse& under = right.image_point ? right : left;
     if (!under.image_point) return std::nullopt;
-    const Eigen::Vector2d mouse = (under.image_point->array() - 0.5).matrix();
+    const Eigen::Vector2d mouse = to_pixel(*under.image_point);
     double nearest = kReach * static_cast<double>(frame.scale) / under.map.scale();
     std::optional<std::size_t> found;
     for (std::size_t i = 0; i < pair_.features.size(); ++i) {
@@ -180,7 +181,7 @@ class TwoFramesPanel final : public NamedPanel {
   }
 
   static ImVec2 on_screen(const ImageResponse& response, const Eigen::Vector2d& pixel) {
-    return response.keypoint_to_screen({static_cast<float>(pixel.x()), static_cast<float>(pixel.y())});
+    return response.to_screen(to_raster(pixel));
   }
 
   static bool in_view(const ImageResponse& response, ImVec2 at) {
@@ -229,7 +230,7 @@ class TwoFramesPanel final : public NamedPanel {
     const bool here = right.image_point.has_value();
     const ImageResponse &under = here ? right : left, &across = here ? left : right;
     if (!under.image_point) return;
-    const Eigen::Vector2d pixel = (under.image_point->array() - 0.5).matrix();
+    const Eigen::Vector2d pixel = to_pixel(*under.image_point);
     const Pose motion = here ? pair_.here_from_other->inverse() : *pair_.here_from_other;
     const Frame& measured = here ? session.current->frame : session.debug.other->frame;
     std::vector<ImVec2> points;

@@ -12,9 +12,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kMargin = 0.06;  // of the values' extent, above and below
-constexpr double kWheelFactor = 1.2;
-constexpr float kPixelsATickX = 90.0F, kPixelsATickY = 38.0F;
+constexpr double kMargin = 0.06;                               // of the values' extent, above and below
+constexpr double kWheelFactor = 1.2;                           // times the range, a notch of the wheel
+constexpr float kPixelsATickX = 90.0F, kPixelsATickY = 38.0F;  // design px: labels keep apart
 
 /// All the values of y that lie in a stretch of x.
 AxisRange y_extent(const Plot& plot, const AxisRange& x, AxisScale scale) {

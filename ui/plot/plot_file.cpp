@@ -54,7 +54,7 @@ cairo_font_face_t* figure_font() {
 
 /// A colour that was chosen for a dark ground or a light one, as it reads on white.
 Rgb on_paper(Rgb colour) {
-  constexpr double kBrightest = 0.62 * 255.0;
+  constexpr double kBrightest = 0.62 * 255.0;  // of luminance: brighter lines vanish on white paper
   const double luminance = 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b;
   const double factor = std::min(1.0, kBrightest / std::max(1.0, luminance));
   const auto darker = [factor](std::uint8_t channel) { return static_cast<std::uint8_t>(factor * channel); };
@@ -101,7 +101,7 @@ class FigurePaint {
 
  private:
   void set_ticks() {
-    constexpr int kMostTicksY = 6, kMostTicksX = 9;
+    constexpr int kMostTicksY = 6, kMostTicksX = 9;  // labels: they keep apart
     y_ticks_ =
         y_.scale == AxisScale::kLog ? log_ticks(y_.range, kMostTicksY) : linear_ticks(y_.range, kMostTicksY);
     double widest = 0.0;
@@ -147,6 +147,7 @@ class FigurePaint {
   }
 
   void dash(SeriesStyle style) const {
+    // Drawn and left out in turn, pt.
     static constexpr double kDashes[] = {5.0, 3.0}, kDots[] = {1.2, 2.6}, kDashDots[] = {7.0, 2.6, 1.2, 2.6};
     if (style == SeriesStyle::kDashed) cairo_set_dash(&cairo_, kDashes, 2, 0.0);
     if (style == SeriesStyle::kDotted) cairo_set_dash(&cairo_, kDots, 2, 0.0);
@@ -242,7 +243,7 @@ class FigurePaint {
   /// @returns rows taken
   double lay_out_legend(bool draws) const {
     if (!plot_.legend) return 0.0;
-    constexpr double kSwatch = 16.0, kGap = 14.0;
+    constexpr double kSwatch = 16.0, kGap = 14.0;  // pt: a line before a name, and between two of these
     double x = 8.0, row = 0.0;
     bool any = false;
     for (const PlotSeries& series : plot_.series) {

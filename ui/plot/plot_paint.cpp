@@ -13,7 +13,7 @@ namespace stillpoint {
 namespace {
 
 constexpr float kDash = 6.0F, kGap = 4.0F;  // design px
-constexpr float kSwatchLength = 16.0F;
+constexpr float kSwatchLength = 16.0F;      // design px: a broken line shows its pattern
 
 /// A stroke of a broken line's pattern, design px from where the pattern begins.
 struct Stroke {
@@ -21,7 +21,7 @@ struct Stroke {
 };
 
 std::vector<Stroke> strokes_of(SeriesStyle style) {
-  constexpr float kDot = 2.0F;
+  constexpr float kDot = 2.0F;  // design px
   if (style == SeriesStyle::kDotted) return {{0.0F, kDot}};
   if (style == SeriesStyle::kDashDot) return {{0.0F, 2.0F * kDash}, {2.0F * kDash + kGap, kDot}};
   return {{0.0F, kDash}};
@@ -33,7 +33,7 @@ bool is_broken(SeriesStyle style) {
 
 /// Whether a line turns by more than 60° at `at`.
 bool is_sharp(ImVec2 before, ImVec2 at, ImVec2 after) {
-  constexpr float kCosine = 0.5F;
+  constexpr float kCosine = 0.5F;  // of 60°: corners that are sharper are drawn pointed
   const ImVec2 in{at.x - before.x, at.y - before.y}, out{after.x - at.x, after.y - at.y};
   return in.x * out.x + in.y * out.y < kCosine * std::hypot(in.x, in.y) * std::hypot(out.x, out.y);
 }

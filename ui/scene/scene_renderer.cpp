@@ -7,12 +7,12 @@ namespace stillpoint {
 namespace {
 
 constexpr float kGridWidth = 1.0F, kAxesWidth = 2.0F, kErrorWidth = 1.6F, kKeyframeWidth = 1.1F,
-                kCurrentWidth = 2.0F;
-constexpr float kPointSize = 2.5F, kRemovedPointSize = 4.0F;
+                kCurrentWidth = 2.0F;  // design px of lines, and of points: the more they matter, the wider
+constexpr float kPointSize = 2.5F, kRemovedPointSize = 4.0F;  // design px: points removed stand out
 // Above so many, points lie so close that their round edges are not seen, but are paid for.
 constexpr GLsizei kManyPoints = 20000;
-constexpr float kPlainPointSize = 2.0F;
-constexpr float kImageOpacity = 0.92F;
+constexpr float kPlainPointSize = 2.0F;  // design px
+constexpr float kImageOpacity = 0.92F;   // so that what lies behind a frame's picture is still made out
 
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 

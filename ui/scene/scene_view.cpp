@@ -8,10 +8,12 @@
 namespace stillpoint {
 namespace {
 
+// Times the distance to what is looked at: from within reach to the horizon.
 constexpr double kNearShare = 0.02, kFarShare = 200.0;
-constexpr double kLeastDistance = 1e-3, kMostDistance = 1e5;
-constexpr double kPoleMargin = 0.01;  // rad
-constexpr double kFitMargin = 1.1;
+// To what is looked at: within, single precision holds.
+constexpr double kLeastDistance = 1e-3, kMostDistance = 1e5;  // m
+constexpr double kPoleMargin = 0.01;  // rad off straight up or down, where sideways has no meaning
+constexpr double kFitMargin = 1.1;    // times what just fits, so that nothing touches the rim
 
 /// Two horizontal axes that with `up` make a right-handed frame; the world's own x and y when up is z.
 std::array<Eigen::Vector3d, 2> horizontal_axes(const Eigen::Vector3d& up) {
@@ -169,7 +171,7 @@ void follow(SceneView& view, const Pose& world_from_camera) {
 std::optional<Picked> pick(const SceneView& view, const Viewport& viewport,
                            std::span<const Eigen::Vector3f> positions, const Eigen::Vector2d& cursor,
                            double radius_px) {
-  constexpr double kSamePixel = 0.5;
+  constexpr double kSamePixel = 0.5;  // px: as near as that, what is nearer to the eye is picked
   std::optional<Picked> best;
   double best_depth = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {

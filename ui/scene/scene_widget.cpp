@@ -15,9 +15,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kPickRadius = 9.0;  // design px
-constexpr double kWheelFactor = 0.87;
-constexpr float kClickSlack = 4.0F;
+constexpr double kPickRadius = 9.0;    // design px about the mouse: what one points at
+constexpr double kWheelFactor = 0.87;  // times the distance, a notch of the wheel
+constexpr float kClickSlack = 4.0F;    // px: a hand moves a little in a click
 // Lines, points and pictures' outlines are smooth by their shaders; samples would cost a software renderer
 // most of a frame and change little.
 constexpr int kSamples = 0;
@@ -72,7 +72,7 @@ class Overlay {
     const float half = 0.5F * frame_.fonts.small->FontSize;
     backdrop({corner.x - 8.0F * scale_, low_.y + 8.0F * scale_},
              {high_.x - 8.0F * scale_, corner.y + height + half + 5.0F * scale_});
-    constexpr int kSteps = 32;
+    constexpr int kSteps = 32;  // bands of the scale: it looks even
     for (int i = 0; i < kSteps; ++i) {
       const float value = 1.0F - (static_cast<float>(i) + 0.5F) / kSteps;
       const float from = corner.y + height * static_cast<float>(i) / kSteps;

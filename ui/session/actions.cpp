@@ -87,6 +87,7 @@ std::string key_text(const Action& action) {
 }
 
 std::optional<int> match_score(std::string_view title, std::string_view query) {
+  // Points: where a letter begins a word, or follows the last one found.
   constexpr int kWordStart = 8, kFollows = 4;
   int score = 0;
   std::size_t at = 0, last = std::string_view::npos;

@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr auto kNewsEvery = std::chrono::milliseconds(100);
+constexpr auto kNewsEvery = std::chrono::milliseconds(100);  // so often that a bar moves evenly
 
 }  // namespace
 

@@ -15,7 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kProgressInterval = std::chrono::milliseconds(150);
+constexpr auto kProgressInterval = std::chrono::milliseconds(150);  // so often that a bar moves evenly
+// How long a slider rests before its value is taken for meant.
 constexpr auto kSliderRests = std::chrono::milliseconds(250);
 
 }  // namespace

@@ -8,6 +8,7 @@
 namespace stillpoint {
 namespace {
 
+// Times the design size: text stays readable, and panels have room.
 constexpr float kLeastScale = 0.5F, kMostScale = 4.0F;
 
 }  // namespace

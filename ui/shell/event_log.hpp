@@ -17,7 +17,7 @@ struct LogEntry {
 /// What was said, oldest first. The same sentence is kept once, with how often and when last.
 class EventLog {
  public:
-  static constexpr std::size_t kKept = 400;
+  static constexpr std::size_t kKept = 400;  // lines: memory stays bounded
 
   void add(LogEntry entry);
   void clear();

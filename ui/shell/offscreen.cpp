@@ -8,8 +8,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kFrameSeconds = 1.0 / 60.0;
-constexpr int kSmallestSide = 16, kLargestSide = 16384;
+constexpr double kFrameSeconds = 1.0 / 60.0;  // s, as a usual display draws
+// From what anything can be seen in, to what drivers have textures for.
+constexpr int kSmallestSide = 16, kLargestSide = 16384;  // px
 
 void require_size(int width, int height) {
   if (width >= kSmallestSide && height >= kSmallestSide && width <= kLargestSide && height <= kLargestSide)

@@ -17,8 +17,9 @@ namespace {
 
 constexpr const char* kHead = "stillpoint recording";
 constexpr std::array<const char*, 3> kButtons{"left", "right", "middle"};
+// A window's side in px, and frames: more is a slip of the keyboard.
 constexpr int kLargestRecorded = 16384, kMostFrames = 100'000'000;
-constexpr double kLongestWait = 3600.0;  // s
+constexpr double kLongestWait = 3600.0;  // s: longer is a slip of the keyboard
 
 /// A line being read, word by word.
 class Words {

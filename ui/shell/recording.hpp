@@ -82,8 +82,8 @@ struct RecordingStart {
 };
 
 struct Recording {
-  static constexpr int kVersion = 1;
-  std::string file;  ///< for messages
+  static constexpr int kVersion = 1;  // of the format: readers refuse what is newer
+  std::string file;                   ///< for messages
   RecordingStart start;
   std::vector<RecordedLine> lines;
 };

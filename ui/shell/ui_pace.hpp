@@ -18,8 +18,8 @@ struct UiPace {
   // While frames of the sequence were being processed or opened.
   double longest_busy_ms = 0.0;
   long busy_frames = 0, busy_over_limit = 0;
-  static constexpr double kBinMs = 0.5;
-  std::array<long, 400> busy_by_ms{};  ///< how many took so long, the last bin and longer
+  static constexpr double kBinMs = 0.5;  // ms: far below what is felt
+  std::array<long, 400> busy_by_ms{};    ///< how many took so long, the last bin and longer
 
   /// ms: this share (0 to 1) of the frames drawn beside work took no longer, to half a
   /// millisecond; 0 where there were none.

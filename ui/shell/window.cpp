@@ -13,9 +13,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kCaretBlinkSeconds = 0.25;
-constexpr double kLeastSleepSeconds = 0.005;
-constexpr double kLongestSleepSeconds = 60.0;
+constexpr double kCaretBlinkSeconds = 0.25;    // s: a caret blinks about twice a second
+constexpr double kLeastSleepSeconds = 0.005;   // s: shorter naps only wake
+constexpr double kLongestSleepSeconds = 60.0;  // s at most, where nothing is due and nobody does anything
 
 std::string last_glfw_error() {
   const char* description = nullptr;

@@ -17,10 +17,10 @@ extern const unsigned char stillpoint_font_icons[], stillpoint_font_icons_end[];
 namespace stillpoint {
 namespace {
 
-constexpr float kTextSize = 15.0F;
-constexpr float kSmallSize = 12.5F;
-constexpr float kHeadingSize = 21.0F;
-constexpr float kMonoSize = 14.0F;
+constexpr float kTextSize = 15.0F;     // design px: of most text …
+constexpr float kSmallSize = 12.5F;    // … of footers and legends
+constexpr float kHeadingSize = 21.0F;  // … of pages' headings
+constexpr float kMonoSize = 14.0F;     // … of numbers, as high as text beside them
 
 // Latin with its supplements, Greek, punctuation, super- and subscripts, arrows, mathematics, simple shapes.
 constexpr ImWchar kTextRanges[] = {0x0020, 0x017F, 0x0370, 0x03FF, 0x2010, 0x203A, 0x2070, 0x209F,

@@ -5,7 +5,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kLeastZoom = 0.25;
+constexpr double kLeastZoom = 0.25;   // of the size that just fits: smaller, nothing is made out
 constexpr double kMostScale = 256.0;  // panel px an image px
 
 Eigen::Vector2d with_area(const Eigen::Vector2d& size) { return size.cwiseMax(1.0); }
@@ -28,23 +28,25 @@ ImageMap::ImageMap(const ImageView& view, const Eigen::Vector2d& image_size,
   origin_ = 0.5 * with_area(panel_size) - scale_ * view.centre.cwiseProduct(image_size_);
 }
 
-Eigen::Vector2d ImageMap::to_panel(const Eigen::Vector2d& image) const { return origin_ + scale_ * image; }
+Eigen::Vector2d ImageMap::to_panel(const RasterPoint& image) const { return origin_ + scale_ * image.px(); }
 
-Eigen::Vector2d ImageMap::to_image(const Eigen::Vector2d& panel) const { return (panel - origin_) / scale_; }
+RasterPoint ImageMap::to_image(const Eigen::Vector2d& panel) const {
+  return RasterPoint((panel - origin_) / scale_);
+}
 
 std::optional<Eigen::Vector2i> ImageMap::pixel_at(const Eigen::Vector2d& panel) const {
-  const Eigen::Vector2d point = to_image(panel).array().floor();
+  const Eigen::Vector2d point = to_image(panel).px();
   if ((point.array() < 0.0).any() || (point.array() >= image_size_.array()).any()) return std::nullopt;
-  return point.cast<int>();
+  return pixel_covering(RasterPoint(point));
 }
 
 void zoom_about(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
                 const Eigen::Vector2d& cursor, double factor) {
-  const Eigen::Vector2d fixed = ImageMap(view, image_size, panel_size).to_image(cursor);
+  const RasterPoint fixed = ImageMap(view, image_size, panel_size).to_image(cursor);
   const double fitting = fit_scale(image_size, panel_size);
   view.zoom = clamp_zoom(view.zoom * factor, fitting);
   const Eigen::Vector2d from_cursor = 0.5 * with_area(panel_size) - cursor;
-  view.centre = (fixed + from_cursor / (view.zoom * fitting)).cwiseQuotient(with_area(image_size));
+  view.centre = (fixed.px() + from_cursor / (view.zoom * fitting)).cwiseQuotient(with_area(image_size));
   keep_in_image(view);
 }
 
@@ -62,7 +64,7 @@ void set_scale(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::
 }
 
 void reveal(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
-            const Eigen::Vector2d& image_point) {
+            const RasterPoint& image_point) {
   const Eigen::Vector2d place = ImageMap(view, image_size, panel_size).to_panel(image_point);
   const Eigen::Vector2d inside = place.cwiseMax(0.0).cwiseMin(with_area(panel_size));
   pan_by(view, image_size, panel_size, inside - place);

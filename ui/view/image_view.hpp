@@ -5,13 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 
 // Zoom and pan of an image, without GL or ImGui.
 //
-// Image coordinates: pixel (i, j) covers [i, i+1) x [j, j+1), so its centre is at (i + 0.5, j + 0.5);
-// OpenCV's keypoints have centres at whole numbers and are half a pixel less. Panel coordinates: px from the
-// panel's upper left corner.
+// Points of an image are raster coordinates (core/geometry/pixel_conventions.hpp). Panel coordinates: px from
+// the panel's upper left corner.
 
 /// What part of an image is seen: plain data. Relative to the image's size, so that views of images of
 /// different size can be linked.
@@ -28,8 +29,8 @@ class ImageMap {
   ImageMap(const ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size);
 
   [[nodiscard]] double scale() const { return scale_; }  ///< panel px an image px
-  [[nodiscard]] Eigen::Vector2d to_panel(const Eigen::Vector2d& image) const;
-  [[nodiscard]] Eigen::Vector2d to_image(const Eigen::Vector2d& panel) const;
+  [[nodiscard]] Eigen::Vector2d to_panel(const RasterPoint& image) const;
+  [[nodiscard]] RasterPoint to_image(const Eigen::Vector2d& panel) const;
 
   /// The pixel under a panel point, or nothing beside the image.
   [[nodiscard]] std::optional<Eigen::Vector2i> pixel_at(const Eigen::Vector2d& panel) const;
@@ -57,7 +58,7 @@ void set_scale(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::
 
 /// Moves as little as brings an image point into view.
 void reveal(ImageView& view, const Eigen::Vector2d& image_size, const Eigen::Vector2d& panel_size,
-            const Eigen::Vector2d& image_point);
+            const RasterPoint& image_point);
 
 /// Views by name: panels that use one name zoom and pan together.
 class LinkedViews {

@@ -15,8 +15,8 @@ namespace stillpoint {
 namespace {
 
 constexpr double kNumbersFromScale = 28.0;  // panel px an image px, design px
-constexpr double kWheelFactor = 1.2;
-constexpr float kClickSlack = 4.0F;  // px the mouse may move in a click
+constexpr double kWheelFactor = 1.2;        // times the size, a notch of the wheel
+constexpr float kClickSlack = 4.0F;         // px the mouse may move in a click
 
 Eigen::Vector2d to_vector(ImVec2 v) { return {static_cast<double>(v.x), static_cast<double>(v.y)}; }
 
@@ -71,7 +71,7 @@ std::optional<bool> is_bright(const cv::Mat& image, int x, int y) {
 void draw_pixel_grid(const ImageResponse& response, int x0, int y0, int x1, int y1) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 ink = IM_COL32(128, 128, 128, 70);
-  const auto place = [&response](int x, int y) { return response.to_screen(Eigen::Vector2d(x, y)); };
+  const auto place = [&response](int x, int y) { return response.to_screen(RasterPoint(x, y)); };
   for (int x = x0; x <= x1 + 1; ++x) list.AddLine(place(x, y0), place(x, y1 + 1), ink);
   for (int y = y0; y <= y1 + 1; ++y) list.AddLine(place(x0, y), place(x1 + 1, y), ink);
 }
@@ -79,11 +79,10 @@ void draw_pixel_grid(const ImageResponse& response, int x0, int y0, int x1, int 
 /// Writes each visible pixel's numbers onto it, light or dark as its ground asks.
 void draw_numbers(const UiFrame& frame, const ImageResponse& response, const cv::Mat& values) {
   const Eigen::Vector2d size = to_vector(response.panel_max) - to_vector(response.panel_min);
-  const Eigen::Vector2d first = response.map.to_image({0.0, 0.0}), last = response.map.to_image(size);
-  const int x0 = std::max(0, static_cast<int>(std::floor(first.x())));
-  const int y0 = std::max(0, static_cast<int>(std::floor(first.y())));
-  const int x1 = std::min(values.cols - 1, static_cast<int>(std::floor(last.x())));
-  const int y1 = std::min(values.rows - 1, static_cast<int>(std::floor(last.y())));
+  const Eigen::Vector2i first = pixel_covering(response.map.to_image({0.0, 0.0})),
+                        last = pixel_covering(response.map.to_image(size));
+  const int x0 = std::max(0, first.x()), x1 = std::min(values.cols - 1, last.x());
+  const int y0 = std::max(0, first.y()), y1 = std::min(values.rows - 1, last.y());
   draw_pixel_grid(response, x0, y0, x1, y1);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = frame.fonts.mono;
@@ -96,7 +95,7 @@ void draw_numbers(const UiFrame& frame, const ImageResponse& response, const cv:
     for (int x = x0; x <= x1; ++x) {
       const std::string text = pixel_text(values, x, y);
       const ImVec2 extent = font->CalcTextSizeA(font_size, 1e6F, 0.0F, text.c_str());
-      const ImVec2 centre = response.to_screen({x + 0.5, y + 0.5});
+      const ImVec2 centre = response.to_screen(to_raster(Eigen::Vector2d(x, y)));
       const ImVec2 corner{std::round(centre.x - 0.5F * extent.x), std::round(centre.y - 0.5F * extent.y)};
       const std::optional<bool> bright = is_bright(values, x, y);
       if (!bright) list.AddText(font, font_size, {corner.x + 1.0F, corner.y + 1.0F}, kDark, text.c_str());
@@ -128,8 +127,8 @@ void draw_ground_beside(const UiFrame& frame, const ImageResponse& response,
     at = {std::round(at.x) + towards, std::round(at.y) + towards};
     return ImVec2{std::clamp(at.x, low.x, high.x), std::clamp(at.y, low.y, high.y)};
   };
-  const ImVec2 from = inside(response.to_screen({0.0, 0.0}), 1.0F);
-  const ImVec2 to = inside(response.to_screen(image_size), -1.0F);
+  const ImVec2 from = inside(response.to_screen(RasterPoint(0.0, 0.0)), 1.0F);
+  const ImVec2 to = inside(response.to_screen(RasterPoint(image_size)), -1.0F);
   if (from.x >= to.x || from.y >= to.y) return draw_ground(frame, low, high);
   draw_ground(frame, low, {high.x, from.y});
   draw_ground(frame, {low.x, to.y}, high);
@@ -143,7 +142,7 @@ void draw_pictures(const ImageContent& content, const ImageResponse& response,
   // An image pixel's edge that falls on the centre of a display pixel would go either way, by rounding that
   // differs from driver to driver; a hundredth of a pixel decides.
   constexpr float kDecide = 0.01F;
-  ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  ImVec2 low = response.to_screen(RasterPoint(0.0, 0.0)), high = response.to_screen(RasterPoint(image_size));
   for (float* coordinate : {&low.x, &low.y, &high.x, &high.y}) *coordinate += kDecide;
   if (content.wiped_to != nullptr) {
     list.AddImage(content.wiped_to->imgui_id(), low, high);
@@ -187,19 +186,16 @@ void handle_mouse(ImageView& view, bool drawn_on, const Eigen::Vector2d& image_s
 
 }  // namespace
 
-ImVec2 ImageResponse::to_screen(const Eigen::Vector2d& image) const {
+ImVec2 ImageResponse::to_screen(const RasterPoint& image) const {
   return to_imvec(to_vector(panel_min) + map.to_panel(image));
-}
-
-ImVec2 ImageResponse::keypoint_to_screen(const cv::Point2f& keypoint) const {
-  return to_screen({static_cast<double>(keypoint.x) + 0.5, static_cast<double>(keypoint.y) + 0.5});
 }
 
 namespace {
 
 /// The part of the display that a picture is seen in.
 void set_seen(PictureStrips::Place& place, const ImageResponse& response, const Eigen::Vector2d& image_size) {
-  const ImVec2 low = response.to_screen({0.0, 0.0}), high = response.to_screen(image_size);
+  const ImVec2 low = response.to_screen(RasterPoint(0.0, 0.0)),
+               high = response.to_screen(RasterPoint(image_size));
   place.from = std::clamp(low.x, place.low.x, place.high.x);
   place.to = std::clamp(high.x, place.low.x, place.high.x);
   place.top = std::clamp(low.y, place.low.y, place.high.y);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "ui/view/image_view.hpp"
 
 namespace stillpoint {
@@ -37,18 +38,16 @@ struct ImageResponse {
   ImageMap map{{}, {1.0, 1.0}, {1.0, 1.0}};
   ImVec2 panel_min, panel_max;  ///< px, of the display
   bool hovered = false;
-  std::optional<Eigen::Vector2d> image_point;  ///< under the mouse, image coordinates
-  std::optional<Eigen::Vector2i> pixel;        ///< under the mouse
-  bool clicked = false;                        ///< left, pressed and released in place
-  bool right_clicked = false;                  ///< the same of the right button
+  std::optional<RasterPoint> image_point;  ///< under the mouse
+  std::optional<Eigen::Vector2i> pixel;    ///< under the mouse
+  bool clicked = false;                    ///< left, pressed and released in place
+  bool right_clicked = false;              ///< the same of the right button
   ImVec2 clip_min,
       clip_max;             ///< px, of the display: what is seen of the panel, a strip where there are strips
   bool clips_anew = false;  ///< … which lies in what is clipped otherwise
 
-  /// Image coordinates to the display's.
-  [[nodiscard]] ImVec2 to_screen(const Eigen::Vector2d& image) const;
-  /// The same for an OpenCV keypoint, whose pixels have their centre at whole numbers.
-  [[nodiscard]] ImVec2 keypoint_to_screen(const cv::Point2f& keypoint) const;
+  /// Where a point of the image is on the display.
+  [[nodiscard]] ImVec2 to_screen(const RasterPoint& image) const;
 };
 
 /// Draws an image into the given size (0 takes what is left) at ImGui's cursor; wheel zooms about the cursor,

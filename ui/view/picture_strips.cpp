@@ -9,6 +9,7 @@
 namespace stillpoint {
 namespace {
 
+// About a divider, where it is taken hold of; and its width.
 constexpr float kReach = 5.0F, kDivider = 2.0F;  // design px
 constexpr float kLeastShare = 0.02F;             // of the width, between dividers
 

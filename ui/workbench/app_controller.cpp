@@ -53,7 +53,7 @@ std::vector<std::string> changed_settings(Config config) {
 /// processed on every processor.
 void give_way() {
 #ifdef __linux__
-  constexpr int kNicer = 5;
+  constexpr int kNicer = 5;  // of nice's 20 steps: drawing comes first, and work still goes on
   // On Linux 0 is the calling thread alone. Where it is refused, work goes on as before.
   (void)setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kNicer);
 #endif

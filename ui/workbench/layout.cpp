@@ -116,7 +116,7 @@ LayoutNode default_layout(std::string_view method, bool stereo) {
     tiles.push_back(tile(stages.size() > 1 ? 0.25 : 0.42, stages[i]));
   if (stages.size() == 1) tiles.push_back(tile(0.29, "features_after"));
   if (stereo) {
-    constexpr double kDisparity = 0.22;
+    constexpr double kDisparity = 0.22;  // share of the column that a pair's disparity takes
     for (LayoutNode& other : tiles) other.share *= 1.0 - kDisparity;
     tiles.push_back(tile(kDisparity, "disparity"));
   }

@@ -35,7 +35,7 @@ class LayoutReader {
   LayoutReader(const std::string& file, const std::vector<std::string>& known) : file_(file), known_(known) {}
 
   LayoutNode read(const Json& json, int depth = 0) {
-    constexpr int kDeepest = 32;
+    constexpr int kDeepest = 32;  // divisions: no screen has room for as many
     if (depth > kDeepest) refuse(fmt::format("tiles are divided more than {} times over", kDeepest));
     if (!json.is_object()) refuse("a tile must be an object with \"panel\", \"columns\" or \"rows\"");
     const auto keys = std::count_if(kContents.begin(), kContents.end(),

@@ -20,6 +20,7 @@ namespace {
 constexpr ImGuiWindowFlags kNoticeFlags =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize;
+// Time to read two sentences; and between pictures of what turns.
 constexpr double kErrorShownSeconds = 20.0, kTurnSeconds = 0.12;
 
 /// A sequence's name as a part of a file's.

@@ -14,7 +14,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kSettlingFrames = 4;
+constexpr int kSettlingFrames = 4;  // frames: a click, what it opens, its size, and that drawn
+// So short that waiting is not seen, and work has the processor.
 constexpr auto kNap = std::chrono::milliseconds(4);
 
 /// A recording on its way.

@@ -199,7 +199,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
 }
 
 void Workbench::remember_layout() {
-  constexpr std::size_t kKept = 50;
+  constexpr std::size_t kKept = 50;  // layouts that can be gone back to
   // A divider that is being dragged has not come to rest.
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left) || layout_seen_ == layout_) return;
   if (layout_seen_) layouts_before_.push_back(std::move(*layout_seen_));

@@ -129,7 +129,7 @@ void Workbench::add_view_actions() {
                   ThemeName& wanted = frame_->wanted_look.theme;
                   wanted = wanted == ThemeName::kDark ? ThemeName::kLight : ThemeName::kDark;
                 }});
-  constexpr float kStep = 1.1F;
+  constexpr float kStep = 1.1F;  // times the size, each press
   actions_.add({.name = "scale_up",
                 .title = "Larger interface",
                 .group = "View",

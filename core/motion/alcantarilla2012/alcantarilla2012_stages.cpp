@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -46,8 +48,7 @@ class Stages {
         const cv::Vec2f back = flow.at<cv::Vec2f>(y, x);
         length.at<float>(y, x) = kFull * std::sqrt(back.dot(back));
         if (y % kTrackStep == kTrackStep / 2 && x % kTrackStep == kTrackStep / 2) {
-          const cv::Point2f at((static_cast<float>(x) + 0.5F) * kFull - 0.5F,
-                               (static_cast<float>(y) + 0.5F) * kFull - 0.5F);
+          const cv::Point2f at = upsampled(cv::Point2f(static_cast<float>(x), static_cast<float>(y)), kFull);
           marks.push_back(
               {at, at + cv::Point2f(back[0], back[1]) * kFull,
                trace_.judged.at<std::uint8_t>(y, x) != 0 ? MarkKind::kInlier : MarkKind::kUnmatched});

@@ -237,6 +237,7 @@ class Stages {
     return sentences;
   }
 
+  // Groups with a colour of their own: more are hard to tell apart.
   static constexpr std::size_t kMostGroups = 12;
 
   const Dai2020Trace& trace_;

@@ -16,6 +16,7 @@
 namespace stillpoint {
 namespace {
 
+// Followed points: a motion has five numbers, and most of the points may move.
 constexpr int kFewestPairs = 40;
 constexpr int kMinSide = 64;            // px: smaller frames hold too few cells
 constexpr float kExpectedNoise = 0.3F;  // px, downsampled image: of a followed point
@@ -28,6 +29,7 @@ constexpr double kSure = 3.0;      // standard deviations beyond which places li
 constexpr double kPlainly = 4.0;   // so many times more must lie before the camera than behind infinity
 constexpr double kRestless = 1.5;  // the rate's own change, measured on few frames, is taken so much larger
 constexpr double kMostSay = 1.0;   // evidence of one frame
+// Bounds, in px of the downsampled image, of the noise that is measured of followed points.
 constexpr float kLeastNoise = 0.1F, kMostNoise = 0.4F;
 
 Eigen::Vector3d bearing(const cv::Point2f& pixel, const Camera& camera) {

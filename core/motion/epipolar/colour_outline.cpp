@@ -8,12 +8,12 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kShift = 5;  // of a channel's 8 bits, those that make no difference
-constexpr int kOutlineLevels = 256 >> kShift;
-constexpr float kPrior = 0.5F;           // pixels every colour is taken to have besides
-constexpr float kMostOutlineSay = 3.0F;  // log-odds of one pixel
-constexpr float kSureOutline = 1.0F;     // log-odds from which doubt ends
-constexpr int kWindow = 5;               // px: neighbours decide together
+constexpr int kShift = 5;                      // of a channel's 8 bits, those that make no difference
+constexpr int kOutlineLevels = 256 >> kShift;  // of a channel
+constexpr float kPrior = 0.5F;                 // pixels every colour is taken to have besides
+constexpr float kMostOutlineSay = 3.0F;        // log-odds of one pixel
+constexpr float kSureOutline = 1.0F;           // log-odds from which doubt ends
+constexpr int kWindow = 5;                     // px: neighbours decide together
 
 int bin_of(const std::uint8_t* pixel, int channels) {
   int bin = 0;

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -18,10 +20,12 @@ constexpr float kMaxReturn = 0.5F;  // px: forth and back must end where it bega
 constexpr int kCoarseLevel = 2;  // of the pyramid, at which parts of the picture are aligned first
 constexpr int kCoarseCell = 8, kCoarseWindow = 15;  // px at that level
 
-constexpr std::size_t kNeighbours = 8;
-constexpr float kMaxJump = 4.5F;  // px a frame: larger changes of velocity are slips
+constexpr std::size_t kNeighbours = 8;  // points: their median is no outlier while half of them are right
+constexpr float kMaxJump = 4.5F;        // px a frame: larger changes of velocity are slips
 
+// At most 12 steps, or one of 0.02 px, which is well below a followed point's noise.
 const cv::TermCriteria kStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 12, 0.02);
+// Grey levels² as OpenCV scales them, and its default: below, a window has no texture.
 constexpr double kMinEigen = 1e-4;
 
 int cells_across(int pixels, int cell) { return (pixels + cell - 1) / cell; }
@@ -41,11 +45,12 @@ bool inside(const cv::Point2f& point, cv::Size size) {
 cv::Mat coarse_shifts(const std::vector<cv::Mat>& from, const std::vector<cv::Mat>& to) {
   const cv::Mat a = from[2 * kCoarseLevel].clone(), b = to[2 * kCoarseLevel].clone();
   const int across = a.cols / kCoarseCell, down = a.rows / kCoarseCell;
+  // Cells' middles to half a pixel: their raster coordinates, which are followed as pixels.
   std::vector<cv::Point2f> places, ends;
   for (int y = 0; y < down; ++y)
     for (int x = 0; x < across; ++x)
-      places.emplace_back(static_cast<float>(kCoarseCell) * (static_cast<float>(x) + 0.5F),
-                          static_cast<float>(kCoarseCell) * (static_cast<float>(y) + 0.5F));
+      places.emplace_back((to_raster(static_cast<float>(x)) * kCoarseCell).px(),
+                          (to_raster(static_cast<float>(y)) * kCoarseCell).px());
   std::vector<std::uint8_t> found;
   std::vector<float> error;
   cv::calcOpticalFlowPyrLK(a, b, places, ends, found, error, {kCoarseWindow, kCoarseWindow}, 2, kStop);

@@ -14,9 +14,11 @@
 namespace stillpoint {
 namespace {
 
+// Gauss-Newton steps: of a rotation, whose scale shrinks at each; of starts that are only compared; of the
+// best, which are finished.
 constexpr int kRotationSteps = 12, kRoughSteps = 5, kMotionSteps = 10;
-constexpr std::size_t kBestStarts = 3;
-constexpr int kBestDirections = 3;  // that Gauss-Newton starts from
+constexpr std::size_t kBestStarts = 3;  // of the rough ones that are finished: the best need not end best
+constexpr int kBestDirections = 3;      // that Gauss-Newton starts from
 
 double geman_mcclure_weight(double squared, double scale) {
   const double q = 1.0 + squared / (scale * scale);

@@ -138,7 +138,7 @@ PropagatedEvidence propagate_evidence(const cv::Mat& image, const std::vector<Po
       value.at<float>(y, x) = value.at<float>(v, u);
     }
   };
-  constexpr float kDiagonal = 1.41421356F;
+  constexpr float kDiagonal = 1.41421356F;  // px: √2
   for (int pass = 0; pass < kPasses; ++pass) {
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < cols; ++x) {

@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -49,14 +51,14 @@ Yi2013Places places_by_depth(const cv::Mat& depths, const PixelRays& rays, const
       if (z <= 0.0) continue;
       const Eigen::Vector2d ray = rays.at(static_cast<float>(bx), static_cast<float>(by)).cast<double>();
       const Eigen::Vector3d there = last_from_here * Eigen::Vector3d(ray.x() * z, ray.y() * z, z);
-      cv::Point2d& place = places[static_cast<std::size_t>(by * depths.cols + bx)];
+      RasterPoint& place = places[static_cast<std::size_t>(by * depths.cols + bx)];
       if (there.z() < kNearest) {
-        place = {kNowhere, kNowhere};
+        place = RasterPoint(kNowhere, kNowhere);
         continue;
       }
       const Eigen::Vector2d straight = camera.project(there);
       const Eigen::Vector2d pixel = camera.has_distortion() ? camera.distort(straight) : straight;
-      place = {(pixel.x() + 0.5) / block_px, (pixel.y() + 0.5) / block_px};
+      place = to_raster(pixel) / block_px;
     }
   return places;
 }
@@ -77,7 +79,7 @@ cv::Mat block_deviations(const Yi2013Blocks& blocks, const Yi2013Model& chosen, 
 
 double exposure_gain(const Yi2013Blocks& blocks, const Yi2013Model& warped, double settled_age) {
   constexpr float kDark = 16.0F, kWhite = 230.0F;  // grey levels: ratios tell nothing there
-  constexpr std::size_t kLeast = 50;               // blocks
+  constexpr std::size_t kLeast = 50;               // blocks: a median of fewer follows what moves
   std::vector<float> ratios;
   for (int y = 0; y < blocks.mean.rows; ++y)
     for (int x = 0; x < blocks.mean.cols; ++x) {
@@ -93,6 +95,7 @@ double exposure_gain(const Yi2013Blocks& blocks, const Yi2013Model& warped, doub
 }
 
 void brighten(Yi2013Model& model, double gain) {
+  // What is nearly white may have been cut off, and nothing is above white.
   constexpr float kWhite = 245.0F, kWhitest = 255.0F;  // grey levels
   for (Yi2013Gaussians& gaussians : model)
     for (int y = 0; y < gaussians.mean.rows; ++y) {

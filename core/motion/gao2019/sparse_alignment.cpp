@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/motion/residual_motion.hpp"
 
 namespace stillpoint {
@@ -35,8 +36,9 @@ float level_at(const cv::Mat& image, float x, float y) {
 
 /// Where a full-size place lies in a level whose pixels are `scale` of it: the left upper pixel of its patch.
 cv::Point2f corner_in_level(const cv::Point2f& full, float scale) {
+  // From a patch's first pixel to its middle, px.
   constexpr float kMiddle = 0.5F * static_cast<float>(kPatchSide - 1);
-  return {(full.x + 0.5F) * scale - 0.5F - kMiddle, (full.y + 0.5F) * scale - 0.5F - kMiddle};
+  return upsampled(full, scale) - cv::Point2f(kMiddle, kMiddle);
 }
 
 bool patch_fits(const cv::Point2f& corner, const cv::Size& size) {

@@ -57,7 +57,7 @@ std::vector<VirtualPoint> transformed(const std::vector<VirtualPoint>& points, c
 }
 
 std::vector<cv::Point2f> projections(const std::vector<VirtualPoint>& points, const Camera& camera) {
-  constexpr double kNearest = 0.05;  // m
+  constexpr double kNearest = 0.05;  // m: nearer points are not projected
   constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
   std::vector<cv::Point2f> pixels;
   for (const VirtualPoint& point : points) {

@@ -25,7 +25,7 @@ double share_of(const cv::Mat& mask) {
 
 /// Log-odds of motion no larger than -20 where the outside mask says static: weight 1.
 void calm_outside(const cv::Mat& outside, cv::Mat& log_odds) {
-  constexpr double kStatic = -20.0;  // log-odds
+  constexpr double kStatic = -20.0;  // log-odds: a weight of 1 to the last bit
   if (log_odds.empty()) return;
   cv::Mat small;
   cv::resize(outside, small, log_odds.size(), 0, 0, cv::INTER_NEAREST);

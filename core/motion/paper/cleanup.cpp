@@ -11,7 +11,7 @@ namespace stillpoint {
 namespace {
 
 using Word = std::uint64_t;
-constexpr int kWordBits = 64;
+constexpr int kWordBits = 64;  // pixels a word
 
 /// The bytes of eight pixels by their bits: 255 where a bit is set.
 const std::array<Word, 256>& bytes_of_bits() {

@@ -12,6 +12,7 @@ namespace stillpoint {
 namespace {
 
 constexpr int kDark = 48, kBright = 215;  // grey levels: coarse steps below, cut off above
+// Ratios of grey levels: exposure hardly changes by more between two frames.
 constexpr double kLeastRatio = 0.5, kMostRatio = 2.0;
 
 /// Pixels that tell a ratio, and those of them whose ratio is too far from 1 to be left untold.

@@ -39,6 +39,7 @@ class WindowBytes {
   [[nodiscard]] const unsigned char* row(int y) const { return first_ + y * step_; }
 
  private:
+  // Bytes a line: kGradientBytes and a few, so that lines begin on whole words.
   static constexpr int kCopyStep = 104;
   const unsigned char* first_;
   std::ptrdiff_t step_;

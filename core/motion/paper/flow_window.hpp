@@ -10,8 +10,8 @@ namespace stillpoint {
 // Windows of pyramidal Lucas-Kanade, 21 px a side, by AVX2: for processors that have it (x86-64 alone).
 // Numbers are those of Debian 12's OpenCV to the last bit.
 
-constexpr int kWindow = 21;                                  ///< px
-constexpr std::size_t kLanedPixels = 16;                     ///< of a row, summed in lanes
+constexpr int kWindow = 21;               ///< px a side: OpenCV's own, and the paper's flow is OpenCV's
+constexpr std::size_t kLanedPixels = 16;  ///< of a row, summed in lanes
 constexpr std::size_t kRestPixels = kWindow - kLanedPixels;  ///< … one after the other
 constexpr int kWindowWeightBits = 14;                        ///< the weights of four pixels add up to 1 << 14
 
@@ -32,7 +32,7 @@ struct Window {
 struct WindowPlace {
   explicit WindowPlace(const cv::Point2f& at) : corner(cvFloor(at.x), cvFloor(at.y)) {
     const float a = at.x - static_cast<float>(corner.x), b = at.y - static_cast<float>(corner.y);
-    constexpr float kOne = 1 << kWindowWeightBits;
+    constexpr float kOne = 1 << kWindowWeightBits;  // the weight 1 as a whole number
     const int w00 = cvRound((1.0F - a) * (1.0F - b) * kOne);
     const int w01 = cvRound(a * (1.0F - b) * kOne);
     const int w10 = cvRound((1.0F - a) * b * kOne);

@@ -157,7 +157,7 @@ class GrayWarp {
   }
 
   static constexpr int kRowsReadOf = 3;  // four bytes are read of two lines: a third one has those at the end
-  static constexpr int kHalf = 1 << (2 * kFractionBits - 1);
+  static constexpr int kHalf = 1 << (2 * kFractionBits - 1);  // of the products' last place, for rounding
   const cv::Mat& source_;
   const std::array<double, 9>& m_;
 };

@@ -27,6 +27,7 @@ FollowedPoints ask_opencv(const std::vector<cv::Mat>& source, const std::vector<
 
 #if defined(__x86_64__)
 
+// From a window's first pixel to its middle, px.
 const cv::Point2f kHalf((kWindow - 1) * 0.5F, (kWindow - 1) * 0.5F);
 
 /// Follows one point from level to level, the coarsest first.

@@ -22,6 +22,7 @@ constexpr double kMinTexture = 3.0;      // grey levels, standard deviation: les
 constexpr double kUnexplained = 0.35;    // share of its texture by which the same surface may look different
 constexpr int kSideways = 4;             // px, to all sides: how far a superpixel may have gone beside
 constexpr double kSamePatchDepth = 4.0;  // standard deviations within which the nearer surface lies there
+// What a dynamic object typically goes along the axis between the frames compared.
 constexpr double kTypicalAxialStep = 0.1;  // m
 constexpr double kSurest = 20.0;           // log-odds: looks may deceive
 
@@ -87,7 +88,8 @@ struct Rimmed {
   static constexpr int kLanes = cv::v_float32x4::nlanes;
   static constexpr int kShifts = 2 * kSideways + 1;                         // to one side and the other
   static constexpr int kPadded = (kShifts + kLanes - 1) / kLanes * kLanes;  // of a row of shifts
-  static constexpr int kRim = kPadded + kSideways + 1;                      // px
+  // So broad, in px, that every shift of a pixel of the image lies inside, lanes beyond the last one too.
+  static constexpr int kRim = kPadded + kSideways + 1;
 
   cv::Size size;  // without the rim
   DepthNoise noise;

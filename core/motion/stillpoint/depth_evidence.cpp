@@ -78,8 +78,8 @@ void depth_residuals(const float* measured, const Expected& expected, int width,
 /// move; a median, so that other dynamic objects do not count.
 float registration_error(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
                          const StillpointConfig& config) {
-  constexpr int kEvery = 4;  // rows
-  constexpr std::size_t kFewest = 100;
+  constexpr int kEvery = 4;                  // rows: a quarter of the pixels tells a median as well
+  constexpr std::size_t kFewest = 100;       // pixels: fewer tell no median of noise
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
   DepthWarp warped(current.camera, reference.reference_from_current);
@@ -194,11 +194,11 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
 
 WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const Pose& previous_from_current,
                        const StillpointConfig& config) {
-  constexpr int kReach = 3;            // downsampled px a dynamic object may have gone in a frame
-  constexpr float kLikeDepth = 0.12F;  // m, and this share of the distance
-  constexpr float kDepthShare = 0.02F;
-  constexpr double kLikeSigmas = 2.0;  // … and of a stereo pair's depth, standard deviations
-  constexpr float kArrived = 1.5F;     // log-odds that a dynamic object's step warps at most
+  constexpr int kReach = 3;             // downsampled px a dynamic object may have gone in a frame
+  constexpr float kLikeDepth = 0.12F;   // m, and this share of the distance
+  constexpr float kDepthShare = 0.02F;  // … this one
+  constexpr double kLikeSigmas = 2.0;   // … and of a stereo pair's depth, standard deviations
+  constexpr float kArrived = 1.5F;      // log-odds that a dynamic object's step warps at most
   const cv::Size size = current.depth.size();
   WarpedPrior result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
   cv::Mat& prior = result.log_odds;

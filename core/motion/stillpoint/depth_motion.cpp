@@ -109,6 +109,7 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
 /// sides do. The image's end says nothing against it. A gap between a dynamic object and what stands behind
 /// it, the sensor's shadow, is open to one side.
 bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y, int reach) {
+  // One step to each side, px.
   constexpr std::array<std::array<int, 2>, 4> kSides{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   const cv::Rect image({0, 0}, mask.size());
   return std::all_of(kSides.begin(), kSides.end(), [&](const std::array<int, 2>& side) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/motion/regions.hpp"
 
 namespace stillpoint {
@@ -220,8 +221,8 @@ class StillpointStages {
 std::vector<std::string> explain_pixel(const StillpointTrace& trace, const StillpointConfig& config,
                                        const cv::Point2f& pixel, bool removed) {
   if (!removed) return {};
-  const int x = cvRound((pixel.x + 0.5F) / static_cast<float>(config.factor) - 0.5F);
-  const int y = cvRound((pixel.y + 0.5F) / static_cast<float>(config.factor) - 0.5F);
+  const cv::Point2f small = downsampled(pixel, static_cast<float>(config.factor));
+  const int x = cvRound(small.x), y = cvRound(small.y);
   const cv::Rect image({0, 0}, trace.labels.size());
   const int label = image.contains({x, y}) ? trace.labels.at<int>(y, x) : -1;
   if (label < 0)

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kRounds = 3;            // SLIC has settled by then
 constexpr float kDepthScale = 0.05F;  // share of the distance that weighs as much as a superpixel's side
-constexpr float kNearest = 1e-3F;     // m
-constexpr int kRelaxations = 15;
-constexpr float kMostSay = 2.5F;  // log-odds: the surest superpixel does not outvote its neighbours
+constexpr float kNearest = 1e-3F;     // m: nothing is divided by 0 where there is no depth
+constexpr int kRelaxations = 15;      // rounds: in each, evidence goes one superpixel farther
+constexpr float kMostSay = 2.5F;      // log-odds: the surest superpixel does not outvote its neighbours
 
 struct Sum {
   double x = 0, y = 0, z = 0;
@@ -63,7 +63,7 @@ class Candidates {
       for (std::size_t x = 0; x < candidate.x.size(); ++x) {
         const int c = std::min(static_cast<int>(x) / side_, columns_ - 1) - 1 + static_cast<int>(k) % 3;
         const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
-        constexpr float kNowhere = 1e9F;  // px
+        constexpr float kNowhere = 1e9F;  // px: beyond every image, so that it is nobody's nearest
         const Superpixel* superpixel =
             exists ? &superpixels[static_cast<std::size_t>(r * columns_ + c)] : nullptr;
         candidate.x[x] = superpixel ? superpixel->centre.x : kNowhere;
@@ -189,6 +189,7 @@ class Neighbours {
 /// off its own, and neighbours' cells are at most one apart: superpixels that touch lie within three cells.
 std::vector<AdjacencyEdge> find_adjacency(const RgbdView& view, const cv::Mat& labels,
                                           std::size_t superpixels, int columns) {
+  // Cells to a side and below; places of a superpixel's neighbours.
   constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;
   std::vector<int> counts(superpixels * kPlaces, 0);
   const auto look = [&](int a, int b, float za, float zb) {

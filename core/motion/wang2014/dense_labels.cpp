@@ -5,6 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/motion/stillpoint/superpixels.hpp"
 
 namespace stillpoint {
@@ -128,15 +129,16 @@ cv::Mat holes_filled(const cv::Mat& mask) {
 
 cv::Mat carried(const cv::Mat& image, const cv::Mat& last_from_here) {
   cv::Mat here = cv::Mat::zeros(image.size(), CV_8UC1);
+  const float first = to_pixel(RasterCoordinate(0.0F));  // the left and the upper side
+  const float right = to_pixel(RasterCoordinate(static_cast<float>(here.cols))),
+              bottom = to_pixel(RasterCoordinate(static_cast<float>(here.rows)));
   for (int y = 0; y < here.rows; ++y) {
     const auto* back = last_from_here.ptr<cv::Vec2f>(y);
     auto* out = here.ptr<std::uint8_t>(y);
     for (int x = 0; x < here.cols; ++x) {
       const float there_x = static_cast<float>(x) + back[x][0], there_y = static_cast<float>(y) + back[x][1];
       // Also false for NaN.
-      if (!(there_x > -0.5F && there_y > -0.5F && there_x < static_cast<float>(here.cols) - 0.5F &&
-            there_y < static_cast<float>(here.rows) - 0.5F))
-        continue;
+      if (!(there_x > first && there_y > first && there_x < right && there_y < bottom)) continue;
       out[x] = image.at<std::uint8_t>(std::clamp(cvRound(there_y), 0, here.rows - 1),
                                       std::clamp(cvRound(there_x), 0, here.cols - 1));
     }

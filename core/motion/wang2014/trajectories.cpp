@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -61,9 +63,8 @@ TrajectorySet advanced(const TrajectorySet& before, const FlowPair* flow, const 
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
       if (taken[static_cast<std::size_t>(row * columns + column)] == 0)
-        set.all.push_back({seen_at({(static_cast<float>(column) + 0.5F) * cell - 0.5F,
-                                    (static_cast<float>(row) + 0.5F) * cell - 0.5F},
-                                   here)});
+        set.all.push_back({seen_at(
+            upsampled(cv::Point2f(static_cast<float>(column), static_cast<float>(row)), cell), here)});
   return set;
 }
 

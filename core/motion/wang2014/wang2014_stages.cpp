@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/pixel_conventions.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -15,10 +17,6 @@ constexpr const char* kMask = "Mask";
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFull = static_cast<float>(kFlowFactor);
 constexpr int kDot = 2;  // small px about a trajectory that its value is painted over
-
-cv::Point2f full_size(const cv::Point2f& small) {
-  return {(small.x + 0.5F) * kFull - 0.5F, (small.y + 0.5F) * kFull - 0.5F};
-}
 
 class Stages {
  public:
@@ -85,7 +83,7 @@ class Stages {
       long_enough += fit ? 1 : 0;
       // Every fourth: more hide the image.
       if (number++ % 4 == 0 && one.size() > 1)
-        marks.push_back({full_size(one.back().small), full_size(one.front().small),
+        marks.push_back({upsampled(one.back().small, kFull), upsampled(one.front().small, kFull),
                          fit && one.back().measured() ? MarkKind::kInlier : MarkKind::kUnmatched});
     }
     Layer tracks = marked("Trajectories, and where they were", frame_, std::move(marks));
@@ -126,7 +124,8 @@ class Stages {
     for (const AffinityEdge& edge : segments.edges) {
       const auto a = static_cast<std::size_t>(edge.a), b = static_cast<std::size_t>(edge.b);
       if (a != shown && b != shown) continue;
-      marks.push_back({full_size(newest(a == shown ? b : a).small), full_size(newest(shown).small),
+      marks.push_back({upsampled(newest(a == shown ? b : a).small, kFull),
+                       upsampled(newest(shown).small, kFull),
                        edge.weight >= 0.5 ? MarkKind::kInlier : MarkKind::kOutlier});
     }
     Layer layer;

@@ -61,12 +61,13 @@ struct OldPlace {
   std::array<float, 4> share{};  ///< sum 1
 };
 
-OldPlace old_place(double u, double v, const cv::Size& size) {
+OldPlace old_place(const RasterPoint& middle, const cv::Size& size) {
   OldPlace place;
+  const double u = middle.px().x(), v = middle.px().y();
   // Also false for NaN, as of a place behind the camera.
   if (!(u > -1.0 && v > -1.0 && u < size.width + 1.0 && v < size.height + 1.0)) return place;
   const int bx = static_cast<int>(u + 1.0) - 1, by = static_cast<int>(v + 1.0) - 1;
-  const double dx = u - bx - 0.5, dy = v - by - 0.5;
+  const double dx = u - bx - 0.5, dy = v - by - 0.5;  // from that block's own middle
   const int nx = bx + (dx < 0.0 ? -1 : 1), ny = by + (dy < 0.0 ? -1 : 1);
   const double ax = std::abs(dx), ay = std::abs(dy);
   place.interior = bx >= 1 && by >= 1 && bx < size.width - 1 && by < size.height - 1;
@@ -93,12 +94,14 @@ OldPlace old_place(double u, double v, const cv::Size& size) {
 Yi2013Places yi2013_places(const cv::Size& size, const cv::Matx33d& last_from_here, int block_px) {
   Yi2013Places places;
   places.reserve(static_cast<std::size_t>(size.area()));
-  const double side = block_px, middle = 0.5 * side;
+  const double side = block_px;
+  // The homography is of pixel coordinates, half a pixel aside: a turn of 1° about the optical axis makes
+  // 0.01 px of that.
   const cv::Matx33d& h = last_from_here;
   for (int by = 0; by < size.height; ++by) {
-    const double y = by * side + middle;
+    const double y = (to_raster(static_cast<double>(by)) * side).px();
     for (int bx = 0; bx < size.width; ++bx) {
-      const double x = bx * side + middle;
+      const double x = (to_raster(static_cast<double>(bx)) * side).px();
       const double depth = h(2, 0) * x + h(2, 1) * y + h(2, 2);
       const double scale = depth > 0.0 ? 1.0 / (depth * side) : std::numeric_limits<double>::quiet_NaN();
       places.emplace_back(scale * (h(0, 0) * x + h(0, 1) * y + h(0, 2)),
@@ -130,8 +133,7 @@ Yi2013Model yi2013_warped(const Yi2013Model& last, const Yi2013Places& places, c
     for (int bx = 0; bx < size.width; ++bx) {
       OldPlace place;
       if (!begins) {
-        const cv::Point2d& at = places[static_cast<std::size_t>(by * size.width + bx)];
-        place = old_place(at.x, at.y, size);
+        place = old_place(places[static_cast<std::size_t>(by * size.width + bx)], size);
       }
       for (std::size_t mode = 0; mode < 2; ++mode) {
         const auto *means = last[mode].mean.ptr<float>(), *variances = last[mode].variance.ptr<float>(),

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/motion/yi2013/yi2013_config.hpp"
 
 namespace stillpoint {
@@ -34,9 +35,8 @@ enum Yi2013Match : std::uint8_t { kMatchApparent = 0, kMatchCandidate = 1, kMatc
 /// @param gray CV_8UC1
 [[nodiscard]] Yi2013Blocks yi2013_blocks(const cv::Mat& gray, int block_px);
 
-/// Where the middle of each block was in the last frame, in blocks: row by row, (0, 0) the left upper corner
-/// of the first block. NaN where it was nowhere.
-using Yi2013Places = std::vector<cv::Point2d>;
+/// Where the middle of each block was in the last frame, in blocks: row by row. NaN where it was nowhere.
+using Yi2013Places = std::vector<RasterPoint>;
 
 /// The places that a homography gives. @param size in blocks
 [[nodiscard]] Yi2013Places yi2013_places(const cv::Size& size, const cv::Matx33d& last_from_here,

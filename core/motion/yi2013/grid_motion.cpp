@@ -8,7 +8,8 @@
 namespace stillpoint {
 namespace {
 
-/// Centres of the grid's whole cells.
+/// Centres of the grid's whole cells, to half a pixel: their raster coordinates, which are followed as
+/// pixels.
 std::vector<cv::Point2f> grid_points(const cv::Size& size, const Yi2013Config& config) {
   std::vector<cv::Point2f> points;
   const int w = config.cell_width_px, h = config.cell_height_px;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/odometry/engines.hpp"
 
 namespace stillpoint {
@@ -116,8 +117,7 @@ std::vector<FeatureRecord> BamvoTracker::sampled(const Levels& target,
       const int u = static_cast<int>(std::lround(at.x())), v = static_cast<int>(std::lround(at.y()));
       if (u < 0 || v < 0 || u >= to.depth.cols || v >= to.depth.rows) continue;
       FeatureRecord feature;
-      const auto factor = static_cast<double>(config_.image_factor);
-      const Eigen::Vector2d full = (at.array() + 0.5) * factor - 0.5;
+      const Eigen::Vector2d full = upsampled(at, static_cast<double>(config_.image_factor));
       feature.pixel =
           rectifier_.to_image(cv::Point2f(static_cast<float>(full.x()), static_cast<float>(full.y())));
       const Camera& camera = rectifier_.pinhole();

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 
 namespace stillpoint {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 using Matrix8d = Eigen::Matrix<double, 8, 8>;
 
-constexpr std::array<int, 5> kIterations = {10, 20, 50, 50, 50};  // finest first
+constexpr std::array<int, 5> kIterations = {10, 20, 50, 50, 50};  // at most, finest first: DSO's
 
 struct State {
   Pose frame_from_reference = Pose::Identity();
@@ -105,8 +106,8 @@ class Way {
   [[nodiscard]] float weight_of(const CoarsePoint& point, double x, double y, int level) const {
     float weight = 1.0F;
     if (!looked_.weight.empty()) {
-      const int u = static_cast<int>(std::lround((x + 0.5) * (1 << level) - 0.5)),
-                v = static_cast<int>(std::lround((y + 0.5) * (1 << level) - 0.5));
+      const int u = static_cast<int>(std::lround(upsampled(x, 1 << level))),
+                v = static_cast<int>(std::lround(upsampled(y, 1 << level)));
       weight = looked_.weight.at<float>(std::clamp(v, 0, looked_.weight.rows - 1),
                                         std::clamp(u, 0, looked_.weight.cols - 1));
     }
@@ -117,6 +118,8 @@ class Way {
   }
 
   double run_level(int level, State& state, int& iterations, double& cutoff) {
+    // The damping begins at kFirst and goes by factors, as in DSO. Ends: a gain that is no larger share of
+    // the energy, a step of fewer m and rad at full size.
     constexpr double kWorse = 4.0, kBetter = 0.5, kFirst = 0.01, kLeastGain = 1e-5, kStill = 2e-5,
                      kMostCutoffs = 3;
     cutoff = config_.cutoff;

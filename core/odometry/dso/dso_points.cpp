@@ -7,7 +7,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNearest = 0.1;  // m
+constexpr double kNearest = 0.1;  // m: nearer, nothing is measured, and pixels run off to infinity
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 namespace stillpoint {
 namespace {
 
+// Full colour, in grey levels: larger residuals are cut off, or nearly.
 constexpr double kShownGreyLevels = 30.0;
 
 cv::Mat nothing(const cv::Size& size) {
@@ -20,7 +21,7 @@ cv::Mat nothing(const cv::Size& size) {
 
 /// A square about a point, so that it can be seen and pointed at.
 void put(cv::Mat& values, const cv::Point2f& at, float value) {
-  constexpr int kHalf = 2;
+  constexpr int kHalf = 2;  // px to each side of the point
   const cv::Rect square(cvRound(at.x) - kHalf, cvRound(at.y) - kHalf, 2 * kHalf + 1, 2 * kHalf + 1);
   values(square & cv::Rect({0, 0}, values.size())).setTo(value);
 }

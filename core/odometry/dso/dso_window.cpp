@@ -218,6 +218,7 @@ double rmse(const Equations& sum) {
 /// DSO adapts a frame's bound to its own residuals: half of 1.5 times their 70th percentile, half of 26.
 void adapt_outlier_energy(DsoWindow& window, std::size_t frame, const Camera& camera,
                           const DsoConfig& config) {
+  // A share, a factor, and grey levels over a whole pattern.
   constexpr double kQuantile = 0.7, kTimes = 1.5, kConstant = 26.0;
   std::vector<double> energies;
   DsoFrame& target = window.frames[frame];
@@ -248,6 +249,7 @@ DsoOptimisation DsoWindow::optimise(const Camera& camera, const DsoConfig& confi
   auto now = std::make_unique<Linearisation>(*this, camera, config, threads);
   done.rmse_before = rmse(now->sum());
   for (int i = 0; i < config.iterations; ++i) {
+    // The damping goes by factors, as in DSO, down to kLeast. A smaller step than kStill changes nothing.
     constexpr double kWorse = 100.0, kBetter = 0.25, kLeast = 1e-5, kStill = 1e-6;
     std::vector<double> of_points;
     const Eigen::VectorXd change = now->step(damping, of_points);

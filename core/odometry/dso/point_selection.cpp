@@ -7,8 +7,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kBlock = 32;  // px
-constexpr float kCoarser = 0.75F;
+constexpr int kBlock = 32;         // px: blocks of one threshold, as DSO has them
+constexpr float kCoarser = 0.75F;  // of the threshold a level, as DSO has it: averages are less steep
 
 float steepness(const cv::Mat& level, int x, int y) {
   const cv::Vec3f& pixel = level.at<cv::Vec3f>(y, x);
@@ -94,8 +94,9 @@ std::vector<DsoCandidate> select_in_cells(const DsoImage& image, const cv::Mat& 
 
 std::vector<DsoCandidate> select_candidates(const DsoImage& image, const cv::Mat& thresholds,
                                             const cv::Mat& usable, int wanted, int& d) {
+  // A few rounds do, for the last frame's cells nearly fit. Cells of more px would leave whole walls bare.
   constexpr int kTries = 3, kMost = 64;
-  constexpr double kEnough = 0.75, kTooMany = 1.25;
+  constexpr double kEnough = 0.75, kTooMany = 1.25;  // shares of the number wanted, between which it will do
   std::vector<DsoCandidate> chosen;
   for (int i = 0; i < kTries; ++i) {
     chosen = select_in_cells(image, thresholds, usable, d);

@@ -10,7 +10,7 @@ namespace stillpoint {
 /// Constants of engine `ptam`: Klein & Murray 2007, with depth from the sensor.
 struct PtamConfig {
   static constexpr const char* kSection = "ptam";
-  static constexpr int kLevels = 4;
+  static constexpr int kLevels = 4;  // full size to an eighth, as Klein & Murray have it
   PtamConfig() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const PtamConfig&) const = default;

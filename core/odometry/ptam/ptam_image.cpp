@@ -12,7 +12,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kSmallFactor = 16;
+constexpr int kSmallFactor = 16;  // full-size px a side of one: 40 x 30 of 640 x 480, as PTAM has it
 
 float between(const cv::Mat& image, double x, double y) {
   const int u = static_cast<int>(x), v = static_cast<int>(y);
@@ -34,7 +34,7 @@ float between_small(const cv::Mat& image, double x, double y) {
 /// Moves a found patch between pixels: inverse compositional, over place and mean. False where it strays.
 bool refine(const PtamPatch& patch, const cv::Mat& image, int steps, Eigen::Vector2d& at) {
   constexpr double kStill = 0.03, kFar = 2.0;  // px of the level
-  constexpr int kHalf = kPatch / 2;
+  constexpr int kHalf = kPatch / 2;            // px from a patch's corner to its middle
   const Eigen::Vector2d begun = at;
   Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
   std::array<Eigen::Vector3d, kPatch * kPatch> by;
@@ -99,7 +99,7 @@ std::shared_ptr<const PtamImage> make_ptam_image(const cv::Mat& gray, const Ptam
 }
 
 double shi_tomasi(const cv::Mat& level, const cv::Point& at) {
-  constexpr int kHalf = 3;
+  constexpr int kHalf = 3;  // px to each side: 7x7
   double xx = 0.0, xy = 0.0, yy = 0.0;
   for (int y = at.y - kHalf; y <= at.y + kHalf; ++y)
     for (int x = at.x - kHalf; x <= at.x + kHalf; ++x) {
@@ -107,15 +107,15 @@ double shi_tomasi(const cv::Mat& level, const cv::Point& at) {
                    gy = level.at<std::uint8_t>(y + 1, x) - level.at<std::uint8_t>(y - 1, x);
       xx += gx * gx, xy += gx * gy, yy += gy * gy;
     }
-  constexpr double kPixels = (2 * kHalf + 1) * (2 * kHalf + 1);
+  constexpr double kPixels = (2 * kHalf + 1) * (2 * kHalf + 1);  // of the 7x7
   // Half a mean scatter, as PTAM has it.
   xx /= 2.0 * kPixels, xy /= 2.0 * kPixels, yy /= 2.0 * kPixels;
   return 0.5 * (xx + yy - std::sqrt((xx + yy) * (xx + yy) - 4.0 * (xx * yy - xy * xy)));
 }
 
 SmallTurn turn_between(const cv::Mat& then, const cv::Mat& now, const Camera& full) {
-  constexpr int kSteps = 10;
-  constexpr double kStill = 1e-5;
+  constexpr int kSteps = 10;       // at most, as PTAM has it: from the last frame's turn a few do
+  constexpr double kStill = 1e-5;  // rad: less than a thousandth of a small pixel
   SmallTurn turn;
   const Camera camera = full.scaled_to(now.cols, now.rows);
   for (int step = 0; step <= kSteps; ++step) {
@@ -156,7 +156,7 @@ SmallTurn turn_between(const cv::Mat& then, const cv::Mat& now, const Camera& fu
 }
 
 double PtamPatch::difference(const cv::Mat& image, const cv::Point& at) const {
-  constexpr int kHalf = kPatch / 2;
+  constexpr int kHalf = kPatch / 2;  // px from a patch's corner to its middle
   if (at.x < kHalf || at.y < kHalf || at.x + kHalf > image.cols || at.y + kHalf > image.rows)
     return std::numeric_limits<double>::infinity();
   float squares = 0.0F, across = 0.0F;
@@ -174,8 +174,9 @@ double PtamPatch::difference(const cv::Mat& image, const cv::Point& at) const {
 
 std::optional<PtamPatch> warped_patch(const cv::Mat& source, const cv::Point& at,
                                       const Eigen::Matrix2d& warp) {
+  // How many px² of the level one of the patch may cover, as PTAM has it.
   constexpr double kLargest = 3.0, kSmallest = 0.25;
-  constexpr int kHalf = kPatch / 2;
+  constexpr int kHalf = kPatch / 2;  // px from a patch's corner to its middle
   PtamPatch patch;
   double area = warp.determinant();
   while (area > kLargest && patch.level < PtamConfig::kLevels - 1) area *= 0.25, ++patch.level;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/odometry/masked_engine.hpp"
 #include "core/odometry/ptam/ptam_config.hpp"
@@ -23,12 +24,12 @@ struct PtamImage final : TrackerPreparation {
 
 [[nodiscard]] std::shared_ptr<const PtamImage> make_ptam_image(const cv::Mat& gray, const PtamConfig& config);
 
-/// A pixel of the full image as one of a level, and back: middles of pixels lie at whole numbers.
+/// A pixel of the full image as one of a level, and back.
 [[nodiscard]] inline Eigen::Vector2d to_level(const Eigen::Vector2d& pixel, int level) {
-  return ((pixel.array() + 0.5) / (1 << level) - 0.5).matrix();
+  return downsampled(pixel, 1 << level);
 }
 [[nodiscard]] inline Eigen::Vector2d from_level(const Eigen::Vector2d& pixel, int level) {
-  return ((pixel.array() + 0.5) * (1 << level) - 0.5).matrix();
+  return upsampled(pixel, 1 << level);
 }
 
 /// Smaller eigenvalue of the gradients' scatter over 7x7 px: Shi & Tomasi's score.

@@ -18,7 +18,7 @@ struct Candidate {
 /// Maximal FAST corners with a score that suffices, off the places taken, the best first.
 std::vector<Candidate> candidates_of(const cv::Mat& level, int threshold, const std::vector<cv::Point>& taken,
                                      const PtamConfig& config) {
-  constexpr int kRim = kPatch / 2 + 6;
+  constexpr int kRim = kPatch / 2 + 6;  // px: half a patch, and room to find it again beside
   cv::Mat free(level.size(), CV_8UC1, cv::Scalar(255));
   const auto take = [&](const cv::Point& at) {
     const cv::Rect about(at.x - config.apart_px, at.y - config.apart_px, 2 * config.apart_px + 1,

@@ -176,6 +176,7 @@ PtamPose solve_ptam_pose(std::vector<PtamSight>& sights, const Pose& start, cons
 }
 
 void solve_ptam_bundle(PtamBundle& bundle, const Camera& camera, const PtamConfig& config) {
+  // The damping goes by factors. A step of fewer m² and rad² over all that moves ends it.
   constexpr double kWorse = 4.0, kBetter = 0.3, kStill = 1e-6;
   std::vector<int> place;  // of each view among the free ones
   int free = 0;

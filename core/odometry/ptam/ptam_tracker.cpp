@@ -11,7 +11,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kNearest = 0.1;                         // m
+constexpr double kNearest = 0.1;  // m: nearer, nothing is measured, and pixels run off to infinity
 constexpr double kCoarseBound = 1.0, kFineBound = 16.0;  // px² of a level: Tukey's, late
 
 /// So many of them, spread evenly over the list.

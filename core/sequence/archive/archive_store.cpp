@@ -17,7 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;  // bytes unpacked
+// Bytes unpacked, a hundred times an image's: what claims more is damaged, or meant to fill the memory.
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 
 /// Folders whose images are a sequence's: what holds one of these alone is the sequence's folder itself.
 const std::set<std::string>& part_names() {

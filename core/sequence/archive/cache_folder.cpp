@@ -25,9 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPart = ".part-";
-constexpr std::uint64_t kGigabyte = 1'000'000'000;
-constexpr double kUsualLimit = 20.0;            // GB
-constexpr std::uint64_t kLeftFree = kGigabyte;  // of the disk
+constexpr std::uint64_t kGigabyte = 1'000'000'000;  // bytes, as disks are sold
+constexpr double kUsualLimit = 20.0;                // GB: tens of sequences, and a small part of most disks
+constexpr std::uint64_t kLeftFree = kGigabyte;      // of the disk
+// Bytes: room is made for many files at a time, as looking through the cache is slow.
 constexpr std::uint64_t kRoomAtOnce = 256 << 20;
 
 std::uint64_t limit() {

@@ -9,7 +9,7 @@ namespace {
 
 // The format: POSIX.1-2001, pax; GNU tar's manual, "Basic Tar Format".
 
-constexpr std::uint64_t kBlock = 512;
+constexpr std::uint64_t kBlock = 512;             // bytes: the format's unit
 constexpr std::uint64_t kLargestName = 64 << 10;  // bytes, of what says a name
 
 std::string_view field(ByteView block, std::size_t at, std::size_t size) {
@@ -38,7 +38,7 @@ std::optional<std::uint64_t> number(ByteView block, std::size_t at, std::size_t 
 }
 
 bool is_header(ByteView block) {
-  constexpr std::size_t kAt = 148, kSize = 8;
+  constexpr std::size_t kAt = 148, kSize = 8;  // bytes: where the checksum lies, which is summed as blanks
   const auto told = number(block, kAt, kSize);
   std::uint64_t sum = kSize * ' ';
   for (std::size_t i = 0; i < kBlock; ++i)

@@ -22,7 +22,7 @@ using Reader = std::unique_ptr<archive, int (*)(archive*)>;
 
 enum class Packing { none, tar, zip, stream, other };
 
-constexpr std::size_t kTarBlock = 512;
+constexpr std::size_t kTarBlock = 512;  // bytes: what a tar's first header fills
 
 Packing packing_of(const RandomFile& file) {
   const Bytes start = file.read(0, kTarBlock);
@@ -46,7 +46,7 @@ void refuse(const std::string& path, archive* reader) {
 }
 
 Reader open_reader(const std::string& path, bool as_stream) {
-  constexpr std::size_t kAtOnce = 1 << 20;
+  constexpr std::size_t kAtOnce = 1 << 20;  // bytes a read: disks are slow in small pieces
   Reader reader(archive_read_new(), archive_read_free);
   archive_read_support_filter_all(reader.get());
   if (as_stream)

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint32_t kEndSignature = 0x06054b50, kEnd64Signature = 0x06064b50,
                         kLocatorSignature = 0x07064b50, kEntrySignature = 0x02014b50,
-                        kLocalSignature = 0x04034b50;
+                        kLocalSignature = 0x04034b50;  // as the format has them
+// Bytes of the parts that do not vary, and the most of a comment, whose length has 16 bits.
 constexpr std::uint64_t kEndSize = 22, kLocatorSize = 20, kLocalSize = 30, kMostComment = 0xFFFF;
 constexpr std::uint32_t kIn64 = 0xFFFFFFFF;  // the value stands in the extra field
 
@@ -96,7 +97,7 @@ std::optional<ArchiveIndex> read_zip_index(const RandomFile& file) try {
     const Entry entry = next_entry(reader);
     const std::string name = archived_name(entry.name);
     if (name.empty() || entry.name.ends_with('/')) continue;
-    constexpr std::uint16_t kStored = 0, kDeflated = 8;
+    constexpr std::uint16_t kStored = 0, kDeflated = 8;  // the format's numbers; other packings are rare
     if ((entry.flags & 1U) != 0 || (entry.method != kStored && entry.method != kDeflated))
       return std::nullopt;
     if (entry.local > file.size() || entry.packed > file.size() - entry.local) return std::nullopt;

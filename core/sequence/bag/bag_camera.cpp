@@ -13,8 +13,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::uint32_t kSmallestSide = 32;  // px
-constexpr double kFitRemarkable = 0.05;      // px
+constexpr std::uint32_t kSmallestSide = 32;  // px: below it, features have no room
+constexpr double kFitRemarkable = 0.05;      // px: what the model leaves beyond is told, as features see it
 
 /// Camera's radial terms nearest to OpenCV's rational ones over the image, each place of the image weighing
 /// the same. @return the largest difference, px
@@ -22,6 +22,7 @@ double fit_radial(Camera& camera, const std::vector<double>& d) {
   const auto rational = [&](double r2) {
     return (1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]))) / (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
   };
+  // Places along either side at which both models are compared: six coefficients need few.
   constexpr int kSteps = 40;
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

@@ -90,7 +90,7 @@ ImageRead raw_image(const ImageMessage& message, const std::string& path) {
 /// compressed_depth_image_transport: twelve bytes (a format, and two parameters of inverse depth), then a
 /// PNG.
 ImageRead compressed_depth(const ImageMessage& message, const std::string& path) {
-  constexpr std::size_t kHead = 12;
+  constexpr std::size_t kHead = 12;  // bytes: an int32 and two floats
   ImageRead read;
   if (message.encoding.find("rvl") != std::string::npos) {
     read.problem = fmt::format("{} is depth compressed by RVL, which is not read", path);

@@ -49,6 +49,7 @@ class ChunkedLog : public MessageLog {
   void set_topics(std::vector<std::pair<LoggedTopic, std::vector<Place>>> topics);
   void add_chunk(const Chunk& chunk) { chunks_.push_back(chunk); }
 
+  // Bytes that are read first: a record's head fits, and a small message with it.
   static constexpr std::uint64_t kRecordStart = 512;
 
   RandomFile file_;

@@ -13,6 +13,7 @@
 namespace stillpoint {
 namespace {
 
+// Bytes: room grows by doubling, and by no more than this at once, whatever a damaged size claims.
 constexpr std::size_t kFirstOutput = 64 << 10, kMostGrowth = 16 << 20;
 
 /// Output that doubles up to what is wanted.

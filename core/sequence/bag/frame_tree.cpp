@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kMoves = 1e-6;   // of a pose's numbers; less is what calculating leaves
 constexpr double kMaxGap = 0.25;  // s, between samples of a frame that another's samples are joined with
-constexpr std::size_t kMostFrames = 64;
+constexpr std::size_t kMostFrames = 64;  // frames of a way to the root: one that goes in a circle ends here
 
 }  // namespace
 
 double seconds_of(std::int64_t nanoseconds) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
+  constexpr std::int64_t kSecond = 1'000'000'000;  // ns
   const std::string digits = fmt::format("{}{}.{:09}", nanoseconds < 0 ? "-" : "",
                                          std::abs(nanoseconds / kSecond), std::abs(nanoseconds % kSecond));
   double value = 0;

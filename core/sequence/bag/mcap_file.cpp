@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 constexpr std::uint64_t kRecordHead = 9;  // bytes: opcode and length
+// Bytes, at most: two times, the size unpacked, a CRC, the compression's name after its length, the size.
 constexpr std::uint64_t kChunkHead = 8 + 8 + 8 + 4 + 4 + 64 + 8;
 constexpr std::uint64_t kLargestRecord = 64 << 20;  // bytes, of records that are read whole
 enum Op : std::uint8_t {
@@ -48,7 +49,7 @@ class McapFile final : public ChunkedLog {
     ByteReader reader(record);
     reader.take(1);
     const auto size = reader.number<std::uint64_t>();
-    constexpr std::uint64_t kHead = 2 + 4 + 8 + 8;
+    constexpr std::uint64_t kHead = 2 + 4 + 8 + 8;  // bytes: channel, sequence number and two times
     if (size < kHead || size > kLargestChunk) throw MalformedBytes("is damaged");
     return {kRecordHead + kHead, size - kHead};
   }

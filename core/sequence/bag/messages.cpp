@@ -9,9 +9,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr std::size_t kLeastTransform = 60;  // bytes of one in a message of many
-constexpr std::uint32_t kMostDistortion = 64;
-constexpr double kLengthTolerance = 0.01;  // as trajectory files have it
+constexpr std::size_t kLeastTransform = 60;    // bytes of one in a message of many
+constexpr std::uint32_t kMostDistortion = 64;  // coefficients: far more than any model has
+constexpr double kLengthTolerance = 0.01;      // as trajectory files have it
 
 /// Values of a message one after another.
 class MessageReader {

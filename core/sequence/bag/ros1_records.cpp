@@ -3,7 +3,7 @@
 namespace stillpoint::ros1 {
 namespace {
 
-constexpr std::uint64_t kLargestHeader = 1 << 20;  // bytes
+constexpr std::uint64_t kLargestHeader = 1 << 20;  // bytes: headers hold a few names, so that more is damage
 
 }  // namespace
 

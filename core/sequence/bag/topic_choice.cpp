@@ -170,7 +170,7 @@ class Chooser {
     for (const LoggedTopic& topic : log_.topics())
       holds.push_back(fmt::format("{} ({}{})", topic.name, topic.type,
                                   topic.format == WireFormat::other ? ", as '" + topic.encoding + "'" : ""));
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMost = 8;  // topics: a hint, and no listing
     if (holds.size() > kMost) holds.resize(kMost), holds.emplace_back("…");
     return fmt::format("{}: holds no colour images that can be read; it holds {}", log_.path(),
                        holds.empty() ? "no messages" : fmt::format("{}", fmt::join(holds, ", ")));

@@ -16,8 +16,9 @@ namespace {
 
 using namespace ros1;
 
-constexpr std::uint64_t kMany = 4 << 20;  // bytes packed
-constexpr std::size_t kAtOnce = 4;        // chunks that are unpacked side by side
+// Bytes packed by bzip2, which is slow to unpack: from there on one waits for a bag.
+constexpr std::uint64_t kMany = 4 << 20;
+constexpr std::size_t kAtOnce = 4;  // chunks that are unpacked side by side
 
 template <typename T>
 std::string raw(T value) {

@@ -11,7 +11,7 @@
 namespace stillpoint::generated {
 namespace {
 
-const Vector2d kLeftSeat(-0.78, 1.55), kRightSeat(0.8, 1.52);
+const Vector2d kLeftSeat(-0.78, 1.55), kRightSeat(0.8, 1.52);  // m in the room: before either desk
 
 /// The room with all that stands in it but chairs.
 void furnish(Furnisher& f) {

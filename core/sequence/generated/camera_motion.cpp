@@ -5,7 +5,7 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+constexpr double kDegree = M_PI / 180;  // rad
 
 /// Camera axes (x right, y down, z ahead) for someone who looks from one point at another.
 Pose look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {

@@ -7,7 +7,7 @@
 namespace stillpoint::generated {
 namespace {
 
-const Vector3d kUp(0, 0, 1);
+const Vector3d kUp(0, 0, 1);  // the room's z axis
 
 Vector3d turn(const Vector3d& v, const Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis.normalized()) * v;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/geometry/pixel_conventions.hpp"
 #include "core/sequence/generated/act.hpp"
 #include "core/sequence/generated/ray_caster.hpp"
 #include "core/sequence/generated/sensor.hpp"
@@ -21,8 +22,9 @@ namespace {
 
 using namespace generated;
 
+// Frames: 10 s unless asked for, and at most 55 minutes, for more is a slip of the keyboard.
 constexpr int kOwnLength = 300, kMostFrames = 100000;
-constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz
+constexpr double kFrameRate = 30.0, kTruthRate = 100.0;  // Hz: a Kinect's, and TUM's motion capture's
 constexpr double kBaseline = 0.12;                       // m, of the stereo pair
 constexpr double kMostBlur = 24.0;                       // px, that four instants of an exposure stand for
 constexpr double kEpoch = 1000.0;                        // s, the first frame's stamp
@@ -137,7 +139,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
   /// @param look what a camera sees whose image is a band, and whose middle row is that row of the whole one
   template <typename Look>
   [[nodiscard]] Rendering film(double readout_s, int beyond, const Look& look) const {
-    if (readout_s == 0.0) return look(filming_, 0.5 * filming_.height - 0.5);
+    if (readout_s == 0.0) return look(filming_, filming_.middle_row());
     constexpr int kBand = 8;  // rows: at 30 ms for an image half a band is 0.25 ms
     Rendering whole;
     for (int top = 0; top < filming_.height; top += kBand) {
@@ -145,7 +147,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
       Camera band = filming_;
       band.height = rows + 2 * beyond;
       band.cy -= top - beyond;
-      const Rendering seen = look(band, top + 0.5 * rows - 0.5);
+      const Rendering seen = look(band, to_pixel(RasterCoordinate(top + 0.5 * rows)));
       const auto put = [&](const cv::Mat& from, cv::Mat& to) {
         if (from.empty()) return;
         if (to.empty()) to.create(filming_.height, filming_.width, from.type());
@@ -182,7 +184,7 @@ class GeneratedSequence : public FrameSource, public FilmedScene {
   /// @param aside m, to the right of the sequence's camera
   [[nodiscard]] Rendering expose(const Camera& camera, double seconds, const Instant& middle,
                                  double aside) const {
-    constexpr double kStep = 1.5;  // px
+    constexpr double kStep = 1.5;  // px between instants: closer than what the eye tells from a smear
     const auto at = [&](int k, int count) {
       return instant(seconds + act_.exposure * (k - 0.5 * (count - 1)) / count, aside);
     };
@@ -263,6 +265,7 @@ namespace {
 /// @param endings ":readout_s=0.02:…", or nothing
 /// @throws InputError for a name or a number that is none
 SensorTiming timing_from(std::string_view endings) {
+  // An image is read out within its 33 ms: far more is an error of units.
   constexpr double kLongest = 0.1;  // s
   SensorTiming timing;
   while (!endings.empty()) {

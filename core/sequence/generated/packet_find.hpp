@@ -60,8 +60,8 @@ STILLPOINT_PACKET Shorts<N> ids_beside(const cv::Mat& id, const PacketPlace& pla
 /// The few primitives that the samples of a packet's pixels can meet: those seen about each at mid exposure.
 template <int N>
 struct Nearby {
-  static constexpr int kMost = 12;  // a pixel
-  static constexpr std::int32_t kAbsent = 1 << 20;
+  static constexpr int kMost = 12;  // primitives a pixel: what is met after so many is left out
+  static constexpr std::int32_t kAbsent = 1 << 20;  // a rank beyond all ids, which are of 16 bits
   int count = 0;
   std::array<std::int32_t, kMost * N> ids;
   std::array<Ints<N>, kMost * N> ranks;  ///< in which order a pixel looks at them; kAbsent: it does not
@@ -70,8 +70,8 @@ struct Nearby {
 /// Candidates of each pixel of a packet, first come first.
 template <int N>
 struct PixelLists {
-  static constexpr std::uint16_t kNone = 0xFFFF;
-  std::array<Shorts<N>, Nearby<N>::kMost> ids;  ///< kNone past a pixel's last
+  static constexpr std::uint16_t kNone = 0xFFFF;  // an id beyond those that scenes have
+  std::array<Shorts<N>, Nearby<N>::kMost> ids;    ///< kNone past a pixel's last
   Shorts<N> counts{};
   int longest = 0;
 };

@@ -26,7 +26,7 @@ struct FacePoints {
 /// atan2 to about 0.01 rad: picture coordinates need no better, and it runs for every sample on a limb.
 template <int N>
 STILLPOINT_PACKET Floats<N> quick_atan2(const Floats<N>& y, const Floats<N>& x) {
-  constexpr float kPi = 3.14159265f;
+  constexpr float kPi = 3.14159265f;  // single precision, as all of a packet is
   const Floats<N> ax = absolute<N>(x), ay = absolute<N>(y);
   const Floats<N> q = lesser<N>(ax, ay) / (greater<N>(ax, ay) + 1e-20f);
   Floats<N> a = q * (kPi / 4 + 0.273f * (1 - q));
@@ -44,7 +44,7 @@ STILLPOINT_PACKET Floats<N> quick_log2(const Floats<N>& x) {
 /// Where points of a face (local coordinates) lie on its picture, from -1 to 1, and their normals.
 template <int N>
 STILLPOINT_PACKET FacePoints<N> describe(const Primitive& p, const Vectors<N>& local, int face) {
-  constexpr float kPi = 3.14159265f;
+  constexpr float kPi = 3.14159265f;  // single precision, as all of a packet is
   const float sign = face % 2 == 1 ? 1.0f : -1.0f;
   FacePoints<N> points{local, -local.x, -local.z};
   switch (p.shape) {

@@ -7,7 +7,7 @@
 namespace stillpoint::generated {
 namespace {
 
-constexpr float kPi = 3.14159265f;
+constexpr float kPi = 3.14159265f;  // single precision, as all of a primitive is
 
 }  // namespace
 

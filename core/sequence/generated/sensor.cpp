@@ -11,7 +11,7 @@ namespace {
 constexpr double kLensBlur = 0.6;                     // px, deviation: the lens and the colour mosaic
 constexpr float kBase = 0.075f;                       // m between projector and depth camera
 constexpr float kSteps = 8.0f;                        // disparity steps a pixel
-constexpr float kMinDepth = 0.45f, kMaxDepth = 6.0f;  // m
+constexpr float kMinDepth = 0.45f, kMaxDepth = 6.0f;  // m: a Kinect measures little nearer or farther
 constexpr float kSteepest = 6.0f;  // depth gained a metre across, beyond which nothing comes back
 constexpr float kEdge = 0.04f;     // relative depth step that makes an outline
 
@@ -126,7 +126,7 @@ void measure_row_by_four(const DepthRow& row) { measure_row<4>(row); }
 
 /// Value noise on a lattice of 4 px along a row, as lattice() has it.
 void draw_lattice(std::uint32_t key, int y, std::vector<float>& row) {
-  constexpr int kPitch = 4;
+  constexpr int kPitch = 4;  // px between the lattice's nodes
   const int j = y / kPitch, width = static_cast<int>(row.size());
   const float b = (static_cast<float>(y % kPitch) + 0.5f) / static_cast<float>(kPitch);
   float above = node(key, 0, j), below = node(key, 0, j + 1);

@@ -51,7 +51,7 @@ class SeenFaces {
   }
 
  private:
-  static constexpr std::size_t kMost = 6;
+  static constexpr std::size_t kMost = 6;  // faces of a primitive: a box has the most
   void look(std::uint16_t id, int face, SeenFace& seen) const;
   const Scene* scene_;
   const View* view_;
@@ -65,7 +65,7 @@ struct ImageBounds {
 
   /// Whether pixels `first` to `last` of a row may show it.
   [[nodiscard]] bool reach(float first, float last, float y) const {
-    constexpr float kMargin = 2;  // px
+    constexpr float kMargin = 2;  // px: samples of a pixel and bounds in single precision reach over a side
     return is_clipped ||
            (first <= right + kMargin && last >= left - kMargin && y <= down + kMargin && y >= up - kMargin);
   }
@@ -79,7 +79,7 @@ struct Candidate {
 
 /// For each tile of the image, the primitives that may show in it, nearest first. The room is in every list.
 struct TileLists {
-  static constexpr int kSide = 16;  // px
+  static constexpr int kSide = 16;  // px of a tile: its list is short, and there are few tiles
   TileLists(const View& view, const Camera& camera);
 
   [[nodiscard]] std::span<const Candidate> at(int x, int y) const {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPairOfSteps = 1.38;  // m, at full stride
 constexpr double kFullSpeed = 1.15;    // m/s at which steps are longest
-constexpr double kTurnRate = 2.6;      // rad/s
+constexpr double kTurnRate = 2.6;      // rad/s: a quarter turn takes a walker over half a second
 constexpr double kStroll = 0.75;       // people in a room are in no hurry
 constexpr double kElbowRoom = 0.75;    // m people keep from each other
 

@@ -19,7 +19,7 @@ struct Stop {
 /// rest.
 class Walk {
  public:
-  static constexpr double kRate = 120.0;  // Hz
+  static constexpr double kRate = 120.0;  // Hz: four steps of a simulation a frame
   /// One list of stops a person, gone through again and again.
   Walk(const std::vector<std::vector<Stop>>& routes, double seconds);
 

@@ -94,7 +94,7 @@ std::optional<Pose> pose_of_block(std::span<const TextLine> block) {
 
 /// Poses at the stamps of the images whose places they name.
 FolderTruth read_log(const FileStore& folder, const std::string& name, const ImageList& images) {
-  constexpr std::size_t kLines = 5;  // a pose
+  constexpr std::size_t kLines = 5;  // lines a pose: three numbers of which it is, then a 4x4 matrix
   FolderTruth truth;
   truth.path = folder.path_of(name);
   const auto lines = text_lines(folder.read_text(name));

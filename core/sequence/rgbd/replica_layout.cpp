@@ -16,7 +16,7 @@ namespace stillpoint {
 namespace {
 
 constexpr const char *kResults = "results", *kTrajectory = "traj.txt", *kParameters = "cam_params.json";
-constexpr double kReplicaScale = 6553.5;
+constexpr double kReplicaScale = 6553.5;  // raw values a metre: 16 bits are 10 m
 
 Camera replica_camera(const FileStore& folder) {
   std::string name = kParameters;

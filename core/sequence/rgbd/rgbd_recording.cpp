@@ -44,7 +44,7 @@ Camera given_camera_or(const FileStore& folder, const OpenOptions& options,
 }
 
 int pixels_of(double number) {
-  constexpr double kMost = 1e6;
+  constexpr double kMost = 1e6;  // px: what claims more is not converted to int
   return number > 0 && number < kMost ? static_cast<int>(number) : 0;
 }
 

@@ -72,7 +72,7 @@ Camera camera_of(const FileStore& folder, const Pair& pair, StereoRecording& rec
         fmt::format("{}: is missing; it holds P0 to P3, without which a KITTI sequence has no scale", path));
   const auto all = projections_of(folder, kName);
   const Projection &left = projection(all, pair.left, path), &right = projection(all, pair.right, path);
-  constexpr double kSame = 1e-3;  // px
+  constexpr double kSame = 1e-3;  // px: what printing the numbers leaves of equal ones
   if ((left.leftCols<3>() - right.leftCols<3>()).cwiseAbs().maxCoeff() > kSame)
     throw InputError(
         fmt::format("{}: P{} and P{} have different focal lengths or centres, expected a rectified pair",

@@ -12,9 +12,10 @@ namespace {
 constexpr int kCorners = 800, kLevels = 3;  // fine levels alone: rows are wanted to a fraction of a pixel
 constexpr int kFewestMatches = 40;          // over all pairs: fewer say nothing
 constexpr float kMostDistance = 40.0F;      // bits, of descriptors
-constexpr double kMostAside = 0.08, kMostAlong = 0.4;   // of the image's sides: farther apart is chance
-constexpr double kLeastShift = 0.5;                     // px: nearer to 0 is far away
-constexpr double kExchanged = 0.85;                     // of the matches
+constexpr double kMostAside = 0.08, kMostAlong = 0.4;  // of the image's sides: farther apart is chance
+constexpr double kLeastShift = 0.5;                    // px: nearer to 0 is far away
+constexpr double kExchanged = 0.85;                    // of the matches
+// Between rows of a pair: beyond either, matching along rows finds little.
 constexpr double kMostOffset = 1.0, kMostSpread = 2.5;  // px
 
 double quantile(std::vector<double> values, double share) {

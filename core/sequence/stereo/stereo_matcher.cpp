@@ -13,8 +13,9 @@ namespace {
 
 constexpr int kMostDisparities = 128;  // px, where the images' width alone decides
 constexpr double kShareOfWidth = 0.2;  // … of it
-constexpr int kBlock = 5;              // px
-constexpr int kUnique = 10;            // %, by which the best match must be better than the second
+// A side of what is matched: OpenCV advises 3 to 11, and small ones keep outlines.
+constexpr int kBlock = 5;    // px
+constexpr int kUnique = 10;  // %, by which the best match must be better than the second
 constexpr int kSpecklePixels = 100, kSpeckleRange = 2;  // px: of full-size images
 constexpr float kLeastDisparity = 1.0F;  // px: farther, the noise of depth is a large part of depth
 

@@ -10,8 +10,9 @@
 namespace stillpoint {
 namespace {
 
+// Bytes of decoded frames: 145 of 640 x 480, to step back among.
 constexpr std::size_t kKeptBytes = std::size_t{128} << 20;
-constexpr std::size_t kFewestKept = 8;
+constexpr std::size_t kFewestKept = 8;     // frames, however large
 constexpr std::size_t kMostHeldBack = 16;  // frames, of H.264 and H.265
 constexpr double kUsualRate = 30.0;        // Hz, where the file names none that can be
 

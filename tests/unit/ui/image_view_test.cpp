@@ -15,8 +15,8 @@ const Eigen::Vector2d kPanel{800.0, 480.0};
 TEST(ImageMapTest, FitsWholeImageInTheMiddle) {
   const ImageMap map({}, kImage, kPanel);
   EXPECT_DOUBLE_EQ(map.scale(), 1.0);
-  EXPECT_TRUE(map.to_panel({0.0, 0.0}).isApprox(Eigen::Vector2d(80.0, 0.0)));
-  EXPECT_TRUE(map.to_panel(kImage).isApprox(Eigen::Vector2d(720.0, 480.0)));
+  EXPECT_TRUE(map.to_panel(RasterPoint(0.0, 0.0)).isApprox(Eigen::Vector2d(80.0, 0.0)));
+  EXPECT_TRUE(map.to_panel(RasterPoint(kImage)).isApprox(Eigen::Vector2d(720.0, 480.0)));
 }
 
 TEST(ImageMapTest, RoundTrips) {
@@ -24,7 +24,7 @@ TEST(ImageMapTest, RoundTrips) {
   const ImageMap map(view, kImage, kPanel);
   for (const Eigen::Vector2d& point :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(12.5, 479.9), Eigen::Vector2d(-8, 700)}) {
-    EXPECT_TRUE(map.to_image(map.to_panel(point)).isApprox(point, 1e-12));
+    EXPECT_TRUE(map.to_image(map.to_panel(RasterPoint(point))).px().isApprox(point, 1e-12));
   }
 }
 
@@ -41,9 +41,9 @@ TEST(ImageViewTest, ZoomKeepsThePointUnderTheCursor) {
   ImageView view;
   const Eigen::Vector2d cursor{300.0, 200.0};
   for (const double factor : {1.2, 3.0, 0.7, 2.0}) {
-    const Eigen::Vector2d before = ImageMap(view, kImage, kPanel).to_image(cursor);
+    const Eigen::Vector2d before = ImageMap(view, kImage, kPanel).to_image(cursor).px();
     zoom_about(view, kImage, kPanel, cursor, factor);
-    EXPECT_TRUE(ImageMap(view, kImage, kPanel).to_image(cursor).isApprox(before, 1e-9));
+    EXPECT_TRUE(ImageMap(view, kImage, kPanel).to_image(cursor).px().isApprox(before, 1e-9));
   }
 }
 
@@ -57,10 +57,10 @@ TEST(ImageViewTest, ZoomHasEnds) {
 
 TEST(ImageViewTest, PanFollowsTheMouseAndStopsAtTheImagesEdge) {
   ImageView view{{0.5, 0.5}, 4.0};
-  const Eigen::Vector2d before = ImageMap(view, kImage, kPanel).to_panel({100.0, 100.0});
+  const Eigen::Vector2d before = ImageMap(view, kImage, kPanel).to_panel(RasterPoint(100.0, 100.0));
   pan_by(view, kImage, kPanel, {30.0, -20.0});
   EXPECT_TRUE(ImageMap(view, kImage, kPanel)
-                  .to_panel({100.0, 100.0})
+                  .to_panel(RasterPoint(100.0, 100.0))
                   .isApprox(before + Eigen::Vector2d(30.0, -20.0)));
   pan_by(view, kImage, kPanel, {1e6, 1e6});
   EXPECT_EQ(view.centre, Eigen::Vector2d(0.0, 0.0));
@@ -75,21 +75,21 @@ TEST(ImageViewTest, SetScaleShowsPixelsAsTheyAre) {
 TEST(ImageViewTest, RevealMovesNoMoreThanNeeded) {
   ImageView view{{0.5, 0.5}, 4.0};
   const ImageView seen = view;
-  reveal(view, kImage, kPanel, {320.0, 240.0});
+  reveal(view, kImage, kPanel, RasterPoint(320.0, 240.0));
   EXPECT_EQ(view, seen);
-  reveal(view, kImage, kPanel, {600.0, 240.0});
-  EXPECT_NEAR(ImageMap(view, kImage, kPanel).to_panel({600.0, 240.0}).x(), kPanel.x(), 1e-9);
+  reveal(view, kImage, kPanel, RasterPoint(600.0, 240.0));
+  EXPECT_NEAR(ImageMap(view, kImage, kPanel).to_panel(RasterPoint(600.0, 240.0)).x(), kPanel.x(), 1e-9);
 }
 
 TEST(ImageViewTest, OneViewServesImagesOfDifferentSize) {
   const ImageView view{{0.25, 0.75}, 5.0};
   const ImageMap large(view, kImage, kPanel), small(view, kImage / 2.0, kPanel);
-  EXPECT_TRUE(large.to_image({10.0, 20.0}).isApprox(2.0 * small.to_image({10.0, 20.0})));
+  EXPECT_TRUE(large.to_image({10.0, 20.0}).px().isApprox(2.0 * small.to_image({10.0, 20.0}).px()));
 }
 
 TEST(ImageViewTest, AnEmptyImageOrPanelDoesNoHarm) {
   const ImageMap map({}, {0.0, 0.0}, {0.0, 0.0});
-  EXPECT_TRUE(map.to_panel({0.5, 0.5}).allFinite());
+  EXPECT_TRUE(map.to_panel(RasterPoint(0.5, 0.5)).allFinite());
 }
 
 TEST(LinkedViewsTest, PanelsOfOneKeyShareOneView) {
