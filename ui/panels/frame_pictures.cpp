@@ -142,10 +142,7 @@ void draw_heading(const UiFrame& frame, const ImageResponse& response, const std
   push_clip(response);
   const float gap = 5.0F * frame.scale;
   const ImFont* font = frame.fonts.small;
-  // Each run's stands in its own strip, where there are strips.
-  const float left = std::max(response.panel_min.x, response.clip_min.x),
-              right = std::min(response.panel_max.x, response.clip_max.x);
-  const float room = right - left - 3.0F * gap;
+  const float room = response.panel_max.x - response.panel_min.x - 3.0F * gap;
   const auto fits = [&](const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str()).x <= room;
   };
@@ -153,7 +150,7 @@ void draw_heading(const UiFrame& frame, const ImageResponse& response, const std
   std::string shown = heading;
   while (!fits(shown) && shown.find(',') != std::string::npos) shown.resize(shown.rfind(','));
   shown = cut_to(*font, shown, room);
-  draw_label(frame, {left + gap, response.panel_min.y + gap}, shown, frame.theme.text);
+  draw_label(frame, {response.panel_min.x + gap, response.panel_min.y + gap}, shown, frame.theme.text);
   pop_clip();
 }
 

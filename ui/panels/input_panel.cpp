@@ -76,10 +76,15 @@ class InputPanel final : public FramePanel {
     ImVec2 room = room_above(frame, footer);
     const bool has_histogram = histogram_ && room.y > 2.5F * kHistogram * frame.scale;
     if (has_histogram) room.y -= kHistogram * frame.scale + ImGui::GetStyle().ItemSpacing.y;
+    const ImageResponse response = draw_frame_image(frame, "image", content, *shared_, room, place);
     // Runs side by side may compare the frame with different ones.
-    const bool several = what_ == kReference && frame.strips != nullptr && frame.strips->several();
-    draw_frame_image(frame, "image", content, *shared_, room, place,
-                     several ? frame_text(session, shown) : std::string());
+    if (what_ == kReference && frame.strips != nullptr && frame.strips->several()) {
+      const float gap = 5.0F * frame.scale;
+      push_clip(response);
+      draw_label(frame, {response.clip_min.x + gap, response.clip_min.y + gap}, frame_text(session, shown),
+                 frame.theme.text);
+      pop_clip();
+    }
     if (has_histogram) draw_histogram(frame, session, picture);
     footer.draw(frame);
   }

@@ -30,13 +30,19 @@ const std::string& maker_of(const SessionView& session) {
   return session.outside.empty() ? session.config.run.method : session.outside;
 }
 
-std::string run_words(const SessionView& session) {
-  if (!session.outside.empty()) return "another program's run " + session.outside;
+const std::string& judge_of(const SessionView& session) {
   const std::string& stand_in = method_of(session.config).without_depth;
   const Frame& frame = session.current->frame;
-  if (stand_in.empty() || !frame.readable() || frame.has_depth()) return run_words(session.config);
+  const bool by_run = stand_in.empty() || !frame.readable() || frame.has_depth();
+  return by_run ? session.config.run.method : stand_in;
+}
+
+std::string run_words(const SessionView& session) {
+  if (!session.outside.empty()) return "another program's run " + session.outside;
+  const std::string& judge = judge_of(session);
+  if (judge == session.config.run.method) return run_words(session.config);
   Config judged = session.config;
-  judged.run.method = stand_in;
+  judged.run.method = judge;
   return fmt::format("{} in {}'s place", run_words(judged), session.config.run.method);
 }
 

@@ -53,8 +53,12 @@ struct SessionView {
 /// Whose work the run is: its method's name, or that of another program's run.
 [[nodiscard]] const std::string& maker_of(const SessionView& session);
 
-/// The same as words: "method paper", "another program's run orb3", and for a frame without depth, which
-/// another method judges, "method epipolar in stillpoint's place".
+/// The method that judged the frame shown: the run's, or the one that stands in for it where there is no
+/// depth.
+[[nodiscard]] const std::string& judge_of(const SessionView& session);
+
+/// Whose work the run is as words: "method paper", "another program's run orb3", and for a frame without
+/// depth, which another method judges, "method epipolar in stillpoint's place".
 [[nodiscard]] std::string run_words(const SessionView& session);
 
 }  // namespace stillpoint
