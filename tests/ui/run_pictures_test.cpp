@@ -112,6 +112,7 @@ TEST(RunPictures, EachStripIsItsOwnRuns) {
   strips.choices.want({{"Truth", "off"}});
   std::vector<cv::Mat> alone;
   for (const std::string& name : kRunNames) alone.push_back(strips.flipped_to(session, name));
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat wiped = strips.render(session);
   ASSERT_EQ(strips.runs.dividers.size(), 2U);
@@ -131,6 +132,7 @@ TEST(RunPictures, AllStripsFollowTheControls) {
   const SessionView session = three_runs();
   Strips strips("mask");
   strips.choices.want({{"Truth", "off"}});
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat overlay = strips.render(session);
   strips.choices.want({{"look", "Alone"}});
@@ -157,6 +159,7 @@ TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
   const SessionView session = three_runs();
   Strips strips("mask");
   strips.choices.want({{"Truth", "off"}});
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat before = strips.render(session);
   const int divider = divider_between(before, 120, 300, {60, 380});
@@ -182,6 +185,7 @@ TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
 TEST(RunPictures, DividersStayInOrder) {
   const SessionView session = three_runs();
   Strips strips("mask");
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   strips.runs.dividers = {0.4F, 0.5F};
   strips.choices.want({{"Truth", "off"}});
@@ -196,7 +200,7 @@ TEST(RunPictures, DividersStayInOrder) {
 
 TEST(RunPictures, PanelsWithoutARunsPictureAreAsTheyAre) {
   const SessionView session = three_runs();
-  for (const char* name : {"input", "trajectory", "timeline"}) {
+  for (const char* name : {"trajectory", "timeline", "disparity"}) {
     Strips strips(name);
     const cv::Mat before = strips.render(session);
     strips.runs.pictures = RunPictures::wiped;
