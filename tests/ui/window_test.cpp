@@ -130,8 +130,7 @@ TEST_F(WindowTest, WhatTheMouseWasOnIsLeftWithTheWindow) {
   glfwSetCursorPos(window.handle(), 123.0, 77.0);
   ASSERT_TRUE(until([&] { return mouse.x == 123.0F && tip; }));
   glfwSetCursorPos(window.handle(), 430.0, 320.0);
-  EXPECT_TRUE(until([&] { return !tip && !ImGui::IsMouseHoveringRect({0, 0}, {400, 300}); }));
-  EXPECT_LT(mouse.x, -1000.0F);
+  EXPECT_TRUE(until([&] { return !tip && mouse.x < -1000.0F; }));
 }
 
 TEST_F(WindowTest, RunsUntilToldToQuitAndSleepsBetween) {
