@@ -37,10 +37,23 @@ struct SnapshotArguments {
   std::string out, video, frames, when, panels, size, theme = "dark", layout;
   double scale = 1.0, fps = 0.0;     ///< fps: 0 = frames' own times
   std::vector<std::string> compare;  ///< methods and presets that run beside
-  std::string wipe, flip;            ///< runs by name; empty = none
+  std::vector<std::string> wipe;     ///< lists of runs by name; empty = none
+  std::string flip;                  ///< a run by name; empty = none
   std::string beside;                ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
+
+/// The names in lists, of which one may hold a comma that is written \,.
+/// @throws InputError for a list without any
+std::vector<std::string> names_in(const std::vector<std::string>& lists, const char* option) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists) {
+    const std::vector<std::string> some = split_names(list);
+    if (some.empty()) throw InputError(fmt::format("{} '{}': names nothing", option, list));
+    names.insert(names.end(), some.begin(), some.end());
+  }
+  return names;
+}
 
 PainterOptions painter_options(const SnapshotArguments& arguments) {
   PainterOptions options;
@@ -49,17 +62,19 @@ PainterOptions painter_options(const SnapshotArguments& arguments) {
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
-  if (!arguments.wipe.empty()) options.runs.pictures = RunPictures::wiped;
-  if (!arguments.wipe.empty() && arguments.wipe != "all") options.runs.chosen = split_list(arguments.wipe);
+  if (!arguments.wipe.empty()) {
+    options.runs.pictures = RunPictures::wiped;
+    const std::vector<std::string> names = names_in(arguments.wipe, "--wipe");
+    if (names != std::vector<std::string>{"all"}) options.runs.only = names;
+  }
   if (!arguments.flip.empty())
-    options.runs = {
-        .pictures = RunPictures::flipped, .chosen = {arguments.flip}, .flipped_to = arguments.flip};
+    options.runs = {.pictures = RunPictures::flipped, .only = {arguments.flip}, .flipped_to = arguments.flip};
   return options;
 }
 
 /// Runs beside the session's own, each from the first frame on.
 void add_compared(Session& session, const SnapshotArguments& arguments, const Config& config) {
-  for (const std::string& name : arguments.compare) {
+  for (const std::string& name : names_in(arguments.compare, "--compare")) {
     const std::vector<std::string> methods = method_names();
     Config other = config;
     if (std::find(methods.begin(), methods.end(), name) != methods.end())
@@ -77,17 +92,45 @@ void refuse_unknown_runs(const SessionView& view, const RunsShown& runs) {
   std::vector<std::string> known, with_pictures;
   for (const ListedRun& run : listed_runs(view)) {
     known.push_back(run.name);
-    if (run.no_pictures.empty()) with_pictures.push_back(run.name);
+    if (!run.never_has_pictures) with_pictures.push_back(run.name);
   }
-  for (const std::string& name : runs.chosen)
+  for (const std::string& name : runs.only)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw InputError(fmt::format("there is no run {}; there are {}", name, fmt::join(known, ", ")));
-  if (runs.pictures == RunPictures::wiped && runs.chosen_of(view).size() < 2)
+  constexpr const char* kAdd = "--compare METHOD and --run NAME=FOLDER lay others beside";
+  if (runs.pictures == RunPictures::wiped && runs.chosen_of(view).size() < 2) {
+    if (!runs.only.empty())
+      throw InputError(
+          fmt::format("--wipe takes two runs at least; there are {}. {}", fmt::join(known, ", "), kAdd));
     throw InputError(
-        fmt::format("--wipe takes two runs with pictures at least, and of {} only {} has any. "
-                    "--compare METHOD and --run NAME=FOLDER lay others beside",
-                    fmt::join(known, ", "), fmt::join(with_pictures, ", ")));
+        fmt::format("--wipe takes two runs with pictures at least, and of {} only {} has any. {}",
+                    fmt::join(known, ", "), fmt::join(with_pictures, ", "), kAdd));
+  }
+  if (const auto flipped = runs.flipped(view); flipped && flipped->never_has_pictures)
+    throw InputError(fmt::format("--flip {}: {}", flipped->name, flipped->no_pictures));
 }
+
+/// Frames of which the run that pictures are of has none.
+class FramesWithout {
+ public:
+  /// Counts the frame shown, where it is one. @returns whether it is
+  bool take(const SessionView& view, const RunsShown& runs) {
+    const auto flipped = runs.flipped(view);
+    if (!flipped || flipped->no_pictures.empty()) return false;
+    if (++count_ == 1) why_ = fmt::format("--flip {}: {}", flipped->name, flipped->no_pictures);
+    return true;
+  }
+  /// @throws InputError where these are all there are
+  void tell(std::size_t of) const {
+    if (count_ == 0) return;
+    if (count_ == of) throw InputError(why_);
+    fmt::print(stderr, "stillpoint: warning: {} of {} frames are left out: {}\n", count_, of, why_);
+  }
+
+ private:
+  std::size_t count_ = 0;
+  std::string why_;
+};
 
 /// Whether the pictures show what a method's stages made.
 bool show_stages(const PictureChoice& chosen) {
@@ -104,7 +147,9 @@ class Pictures {
     if (!arguments.video.empty())
       video_.emplace(arguments.video, cv::Size(size.first, size.second), arguments.fps, step_s,
                      arguments.force);
-    if (!arguments.out.empty()) prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
+    if (arguments.out.empty()) return;
+    made_.emplace(folder_);
+    prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
   }
 
   /// Packed and written beside the drawing of the next one.
@@ -138,6 +183,7 @@ class Pictures {
 
  private:
   fs::path folder_;
+  std::optional<NewFolders> made_;  // gone again where nothing comes to lie in them
   std::optional<VideoFile> video_;
   std::string list_;
   int files_ = 0, frames_ = 0;
@@ -238,9 +284,11 @@ void snapshot(const SnapshotArguments& arguments) {
     if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
     add_compared(session, arguments, place.config);
     refuse_unknown_runs(*session.view(), options.runs);
+    session.request_baseline(options.runs.wants_baseline(*session.view()));
   };
   EarlySession early(place, prepare, condition ? std::nullopt : std::optional(frames.front()));
   Painter painter(options, chosen);
+  FramesWithout without;
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
     const auto on_status = [&](FrameStatus status) {
@@ -256,6 +304,7 @@ void snapshot(const SnapshotArguments& arguments) {
       }
       for (const int frame : frames) {
         session->go_to(frame, on_frame);
+        if (without.take(*session->view(), options.runs)) continue;
         if (chosen.draws("stages") || chosen.draws("workbench")) session->complete();
         pictures.add(*session->view(), painter);
         throw_if_interrupted();
@@ -266,6 +315,7 @@ void snapshot(const SnapshotArguments& arguments) {
   if (const auto left = painter.choices_left(); !left.empty())
     fmt::print(stderr, "stillpoint: warning: {}: no control could take {}\n", arguments.layout,
                fmt::join(left, ", "));
+  without.tell(frames.size());
   fmt::print("{}", pictures.finish(arguments.video));
   throw_if_interrupted();
 }
@@ -311,17 +361,20 @@ void add_snapshot_command(CLI::App& app) {
                    "Another method, whose stages are worked out for each frame as well: what its own panels "
                    "show")
       ->check(CLI::IsMember(method_names()));
-  command
-      ->add_option("--compare", arguments->compare,
-                   "Other methods or presets that run beside, with commas between; may be given again")
-      ->delimiter(',');
+  command->add_option(
+      "--compare", arguments->compare,
+      "Other methods or presets that run beside, with commas between (\\, is a comma within a "
+      "name); may be given again");
   CLI::Option* wipe = command->add_option(
       "--wipe", arguments->wipe,
-      "Pictures show several runs, each in a strip: all, or names of runs with commas between");
+      "Pictures show several runs, each in a strip: all, or names of runs with commas between (\\, is a "
+      "comma "
+      "within a name), as a picture has them: the baseline's is 'none (baseline)'; may be given again");
   command
       ->add_option("--flip", arguments->flip,
                    "Pictures are of this run, by its name, in place of the sequence's own")
       ->excludes(wipe);
+  wipe->allow_extra_args(false);
   command->add_flag("--no-baseline", arguments->no_baseline, "Do not run method none beside for comparison");
   command->add_flag("--timings", arguments->timings, "Show stage times, which differ from run to run");
   command->add_flag("--force", arguments->force, "Overwrite earlier images");

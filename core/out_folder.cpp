@@ -28,6 +28,21 @@ void prepare_out_folder(const std::filesystem::path& folder, std::initializer_li
         fmt::format("{}: the folder cannot be written to ({})", folder.string(), std::strerror(errno)));
 }
 
+NewFolders::NewFolders(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::filesystem::path path = std::filesystem::absolute(folder, failed).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();
+  for (; !path.empty() && path != path.root_path() && !std::filesystem::exists(path, failed);
+       path = path.parent_path())
+    missing_.push_back(path);
+}
+
+NewFolders::~NewFolders() {
+  std::error_code not_empty;
+  for (const std::filesystem::path& folder : missing_)
+    if (!std::filesystem::remove(folder, not_empty)) return;
+}
+
 WholeFile::WholeFile(std::filesystem::path path, std::string_view ending) : path_(std::move(path)) {
   std::error_code none;
   if (std::filesystem::is_symlink(path_, none)) path_ = std::filesystem::weakly_canonical(path_, none);

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stillpoint {
 
@@ -15,6 +16,19 @@ namespace stillpoint {
 /// not set
 void prepare_out_folder(const std::filesystem::path& folder, std::initializer_list<std::string_view> signs,
                         bool force);
+
+/// Folders that are made for results after this: where nothing has come to lie in them they go with it, so
+/// that what was refused leaves nothing behind.
+class NewFolders {
+ public:
+  explicit NewFolders(const std::filesystem::path& folder);
+  ~NewFolders();
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> missing_;  // when it began; the innermost first
+};
 
 /// A file that takes its name once it is whole: until keep() it is written beside, as PATH.part, and what was
 /// there before stays, whatever ends the program. Links are followed; what is no regular file (a device, a

@@ -86,17 +86,19 @@ Json truth_json(const ReportGroup& group) {
   for (const StampedPose& pose : group.runs.front().recorded().ground_truth)
     if (pose.timestamp >= from - 0.05 && pose.timestamp <= to + 0.05) truth.push_back(pose);
   const std::size_t step = 1 + truth.size() / kMostTruthPoses;
-  Json seconds = Json::array(), positions = Json::array();
+  Json seconds = Json::array(), positions = Json::array(), turns = Json::array();
   for (std::size_t i = 0; i < truth.size(); i += step) {
     if (i > 0 &&
         truth[i].timestamp - truth[i - step].timestamp > kTruthGap + static_cast<double>(step) * 0.05) {
       seconds.push_back(rounded(truth[i].timestamp - from, 1e4));
       positions.push_back(nullptr);
+      turns.push_back(nullptr);
     }
     seconds.push_back(rounded(truth[i].timestamp - from, 1e4));
+    turns.push_back(turn_json(truth[i].world_from_camera));
     positions.push_back(position_json(truth[i].world_from_camera.translation()));
   }
-  return {{"seconds", std::move(seconds)}, {"positions", std::move(positions)}};
+  return {{"seconds", std::move(seconds)}, {"positions", std::move(positions)}, {"turns", std::move(turns)}};
 }
 
 Json points_json(const std::vector<SavedPoint>& points, const Pose& world) {

@@ -9,9 +9,10 @@ namespace stillpoint {
 
 /// All that an interactive report shows but its pictures, as its scripts read it (assets/report):
 ///   figures    of frames: {name, title, unit, factor, digits, truth, usual, worse, help}
-///   sequences  {name, up, camera: [width, height, fx, fy], pictures, truth: {seconds, positions}, runs}
-///   runs       {name, colours: [light, dark], dash, frames, seconds, status, note, positions, turns,
-///   keyframes,
+///   sequences  {name, up, camera: [width, height, fx, fy], pictures,
+///              truth: {seconds, positions, turns}, runs}
+///   runs       {name, colours: [light, dark], dash, frames, seconds, status, note,
+///              positions, turns, keyframes,
 ///              points: {mm, colours, of}, figures: {NAME: […]}}
 /// Lists of a run have one entry a frame of it. Positions (m) and turns (quaternions: x, y, z, w) are those
 /// of the final trajectory, each run laid over the truth by its own alignment; null where a frame has no pose

@@ -14,8 +14,8 @@ std::string live_scripts(const nlohmann::ordered_json& data) {
       "<script type=\"application/json\" id=\"report-data\">" + script_json(data) + "</script>\n<script>\n";
   html += "(() => {\n\"use strict\";\n";
   // One scope; what a file uses stands in those before it.
-  for (const char* file :
-       {"cursor.js", "canvas.js", "orbit.js", "plots.js", "pictures.js", "table.js", "start.js"})
+  for (const char* file : {"cursor.js", "canvas.js", "poses.js", "orbit.js", "paths.js", "plots.js",
+                           "pictures.js", "table.js", "start.js"})
     html += embedded_report(file);
   return html + "})();\n</script>\n";
 }

@@ -100,9 +100,11 @@ std::unique_ptr<Session> session_of_report(const ReportGroup& group, const Repor
 }
 
 RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme) {
-  if (method_named(run.report.method).baseline)
+  // Another program's run is by none of our methods, the baseline's least of all.
+  const bool ours = run.recorded().outside.empty();
+  if (ours && method_named(run.report.method).baseline)
     return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
-  if (run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
+  if (ours && run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
   return ghost_look(place, theme);
 }
 

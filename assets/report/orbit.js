@@ -10,25 +10,6 @@ const orbit = (() => {
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const plus = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
 
-  /// A sequence's lines, the truth first. A path's frames say where a click on it goes to.
-  function pathsOf(shown) {
-    const all = [];
-    if (shown.truth.positions.some(Boolean))
-      all.push({name: "ground truth", positions: shown.truth.positions, truth: true, dash: [],
-                frames: shown.truth.seconds.map((s) => shown.frames[nearest(shown.seconds, s)])});
-    shown.runs.forEach((run, index) => {
-      // Frames the run does not have break the line as those without a pose do.
-      const positions = [], frames = [];
-      run.frames.forEach((frame, row) => {
-        if (row > 0 && frame !== run.frames[row - 1] + 1) { positions.push(null); frames.push(frame); }
-        positions.push(run.positions[row]);
-        frames.push(frame);
-      });
-      all.push({name: run.name, run, index, positions, frames, dash: run.dash});
-    });
-    return all;
-  }
-
   /// The directions of the screen in the world: to the right, up, and away from who looks.
   function lookAlong() {
     const up = sequence.up, side = Math.abs(up[2]) > 0.5 ? [1, 0, 0] : [0, 0, 1], front = cross(up, side);
@@ -125,18 +106,10 @@ const orbit = (() => {
       const at = p && project(p);
       if (at) fillDot(context, at[0], at[1], path.index === cursor.run ? 5 : 3.5, colourOf(path));
     }
-    const truth = truthNow(), at = truth && project(truth);
+    const place = truthAtCursor(sequence), at = place !== undefined && project(sequence.truth.positions[place]);
     if (at) fillDot(context, at[0], at[1], 3.5, pageColour("--truth"));
     if (cursor.row !== undefined) drawCamera(context, run, cursor.row, 0.09 * view.extent, pageColour("--cursor"), 1.8);
     note.textContent = hovered || legend();
-  }
-
-  /// The ground truth at the frame; null where none is near.
-  function truthNow() {
-    const {seconds, positions} = sequence.truth, now = sequence.seconds[cursor.place];
-    if (seconds.length === 0) return null;
-    const i = nearest(seconds, now);
-    return Math.abs(seconds[i] - now) < 0.1 ? positions[i] : null;
   }
 
   function legend() {

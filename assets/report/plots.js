@@ -7,18 +7,11 @@ const plots = (() => {
 
   const end = () => Math.max(1e-3, cursor.shown.seconds[cursor.shown.seconds.length - 1]);
 
-  /// Round numbers, some `count` of them, from `low` to `high`.
-  function ticks(low, high, count) {
-    const raw = (high - low) / Math.max(1, count), power = 10 ** Math.floor(Math.log10(raw));
-    const step = [1, 2, 5, 10].map((factor) => factor * power).find((size) => size >= raw) ?? raw;
-    const list = [];
-    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) list.push(i * step);
-    return {list, digits: Math.max(0, Math.min(6, -Math.floor(Math.log10(step) + 1e-9)))};
-  }
+  const valuesOf = (run, figure) => (figure.isPose ? run.pose : run.figures)[figure.name];
 
   /// [seconds, value] a frame; null where the value is not known, and where frames are missing between.
   function curveOf(run, figure) {
-    const values = run.figures[figure.name], curve = [];
+    const values = valuesOf(run, figure), curve = [];
     run.frames.forEach((frame, row) => {
       if (row > 0 && frame !== run.frames[row - 1] + 1) curve.push(null);
       curve.push(values[row] === null ? null : [run.seconds[row], figure.factor * values[row]]);
@@ -37,35 +30,30 @@ const plots = (() => {
     return stretches;
   }
 
-  function addPlot(wanted) {
+  /// @param chooses what of it is chosen: a list of figures, or the name of the one there is
+  function addPlot(parent, chooses, infoShown) {
     const figure = document.createElement("figure"), canvas = document.createElement("canvas");
-    const head = document.createElement("div"), select = document.createElement("select");
+    const head = document.createElement("div");
     const legend = document.createElement("span");
     figure.className = "plot";
     head.className = "toggles";
     legend.className = "legend";
     canvas.setAttribute("role", "img");
-    select.setAttribute("aria-label", "Figure");
-    for (const info of data.figures) {
-      const option = new Option(withUnit(info), info.name);
-      option.title = info.help;
-      select.append(option);
-    }
-    select.value = wanted;
-    head.append(select, legend);
+    head.append(chooses, legend);
     figure.append(head, canvas);
-    element("plots").append(figure);
+    parent.append(figure);
 
     const xOf = (s) => edges.left + (s - range.from) / (range.to - range.from) * (canvas.clientWidth - edges.left - edges.right);
     const secondsAt = (x) => range.from + (x - edges.left) / Math.max(1, canvas.clientWidth - edges.left - edges.right) * (range.to - range.from);
 
     function draw() {
-      const context = pen(canvas), info = figureNamed(select.value), runs = cursor.shown.runs;
+      const context = pen(canvas), info = infoShown(), {runs, truth} = cursor.shown;
       const width = canvas.clientWidth, bottom = canvas.clientHeight - edges.bottom;
       canvas.setAttribute("aria-label", `${withUnit(info)} over time`);
       const curves = runs.map((run) => curveOf(run, info));
+      const trueCurve = info.isPose ? truth.pose[info.name].map((value, i) => value === null ? null : [truth.seconds[i], value]) : [];
       let low = Infinity, high = -Infinity;
-      for (const curve of curves)
+      for (const curve of [...curves, trueCurve])
         for (const point of curve)
           if (point && point[0] >= range.from && point[0] <= range.to) {
             low = Math.min(low, point[1]);
@@ -73,8 +61,11 @@ const plots = (() => {
           }
       const known = low <= high;
       if (!known) [low, high] = [0, 1];
-      if (low >= 0) low = 0;
-      if (high - low < 1e-12) high = low + 1;
+      if (low >= 0 && !info.isPose) low = 0;
+      // What stands still is drawn as standing still, not as the noise of its last digit.
+      const least = !info.isPose ? 1e-12 : info.unit === "m" ? 0.01 : 0.1;
+      if (high - low < least) [low, high] = info.isPose ? [(low + high - least) / 2, (low + high + least) / 2] : [low, low + 1];
+      if (info.isPose) low -= 0.06 * (high - low);
       high += 0.06 * (high - low);
       const yOf = (value) => bottom - (value - low) / (high - low) * (bottom - edges.top);
 
@@ -101,6 +92,7 @@ const plots = (() => {
       context.beginPath();
       context.rect(edges.left, 0, width - edges.left - edges.right, canvas.clientHeight);
       context.clip();
+      strokeLine(context, trueCurve.map((point) => point && [xOf(point[0]), yOf(point[1])]), pageColour("--truth"), 2.4, []);
       const order = runs.map((_, i) => i).sort((a, b) => (a === cursor.run) - (b === cursor.run));
       for (const i of order)
         strokeLine(context, curves[i].map((point) => point && [xOf(point[0]), yOf(point[1])]), colourOfRun(runs[i]),
@@ -108,7 +100,7 @@ const plots = (() => {
       const now = xOf(cursor.shown.seconds[cursor.place]);
       strokeLine(context, [[now, edges.top], [now, bottom]], pageColour("--cursor"), 1.5, []);
       for (const i of order) {
-        const row = runs[i].rowOf.get(cursor.frame), value = row === undefined ? null : runs[i].figures[info.name][row];
+        const row = runs[i].rowOf.get(cursor.frame), value = row === undefined ? null : valuesOf(runs[i], info)[row];
         if (value !== null) fillDot(context, now, yOf(info.factor * value), 3.5, colourOfRun(runs[i]));
       }
       context.restore();
@@ -116,12 +108,18 @@ const plots = (() => {
 
     /// Each run's value at the cursor, which is what a plot alone does not tell.
     function tell() {
-      const info = figureNamed(select.value);
-      legend.replaceChildren(...cursor.shown.runs.map((run) => {
+      const info = infoShown();
+      const entries = cursor.shown.runs.map((run) => {
         const row = run.rowOf.get(cursor.frame);
-        const value = row === undefined ? null : run.figures[info.name][row];
+        const value = row === undefined ? null : valuesOf(run, info)[row];
         return legendEntry(`${run.name} ${shownValue(info, value)}`, lineOf(run), colourOfRun(run));
-      }));
+      });
+      const {truth} = cursor.shown;
+      if (info.isPose && truth.positions.some(Boolean)) {
+        const place = truthAtCursor(cursor.shown), value = place === undefined ? null : truth.pose[info.name][place];
+        entries.unshift(legendEntry(`ground truth ${shownValue(info, value)}`, "3px solid", pageColour("--truth")));
+      }
+      legend.replaceChildren(...entries);
     }
 
     const soon = drawsSoon(draw);
@@ -139,8 +137,29 @@ const plots = (() => {
       },
     });
     canvas.addEventListener("dblclick", () => setRange(0, end()));
-    select.addEventListener("input", () => { tell(); soon(); });
-    all.push({canvas, soon, tell, select});
+    all.push({canvas, soon, tell});
+    return all[all.length - 1];
+  }
+
+  /// A plot of any figure.
+  function addFigurePlot(wanted) {
+    const select = document.createElement("select");
+    select.setAttribute("aria-label", "Figure");
+    for (const info of data.figures) {
+      const option = new Option(withUnit(info), info.name);
+      option.title = info.help;
+      select.append(option);
+    }
+    select.value = wanted;
+    const plot = addPlot(element("plots"), select, () => figureNamed(select.value));
+    select.addEventListener("input", () => { plot.tell(); plot.soon(); });
+    plot.select = select;
+  }
+
+  function addPosePlot(info) {
+    const name = document.createElement("strong");
+    name.textContent = withUnit(info);
+    addPlot(element("poses"), name, () => info);
   }
 
   /// Within the sequence, and no less than some frames of it.
@@ -157,14 +176,16 @@ const plots = (() => {
 
   /// Plots of what the sequence knows nothing of show something that it knows.
   function chooseFigures() {
-    for (const plot of all) {
+    const chosen = all.filter((plot) => plot.select);
+    for (const plot of chosen) {
       if (isKnown(plot.select.value)) continue;
-      const free = usual.find((name) => isKnown(name) && all.every((other) => other.select.value !== name));
+      const free = usual.find((name) => isKnown(name) && chosen.every((other) => other.select.value !== name));
       if (free) plot.select.value = free;
     }
   }
 
-  for (const name of usual.filter(figureNamed).slice(0, 2)) addPlot(name);
+  for (const name of usual.filter(figureNamed).slice(0, 2)) addFigurePlot(name);
+  for (const info of poseInfos) addPosePlot(info);
 
   let sequence = null;
   cursor.followers.push(() => {

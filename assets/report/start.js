@@ -80,7 +80,7 @@ cursor.followers.push(() => {
 });
 
 function redraw() {
-  for (const view of [orbit, pictures, framesTable, ...plots.all]) view.soon();
+  for (const view of [orbit, flatPaths, pictures, framesTable, ...plots.all]) view.soon();
 }
 window.addEventListener("hashchange", () => {
   goToHash();
@@ -103,4 +103,5 @@ window.stillpointReport = {
   get frame() { return cursor.frame; },
   get run() { return cursor.run; },
   screenOf: orbit.screenOf,
+  pathScreenOf: flatPaths.screenOf,
 };

@@ -93,4 +93,18 @@ std::vector<std::string> split_list(std::string_view text) {
   return names;
 }
 
+std::vector<std::string> split_names(std::string_view text) {
+  // No text that is typed has this letter.
+  constexpr char kKept = '\x1f';
+  std::string kept;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool comma = text.substr(i).starts_with("\\,");
+    kept += comma ? kKept : text[i];
+    if (comma) ++i;
+  }
+  std::vector<std::string> names = split_list(kept);
+  for (std::string& name : names) std::replace(name.begin(), name.end(), kKept, ',');
+  return names;
+}
+
 }  // namespace stillpoint

@@ -21,4 +21,7 @@ namespace stillpoint {
 /// What stands between commas, blanks around it taken off; nothing for an empty text.
 [[nodiscard]] std::vector<std::string> split_list(std::string_view text);
 
+/// The same of names that people choose: a comma within one is written \,.
+[[nodiscard]] std::vector<std::string> split_names(std::string_view text);
+
 }  // namespace stillpoint

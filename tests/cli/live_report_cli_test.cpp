@@ -294,6 +294,12 @@ constexpr const char* kVisit = R"js(<script>
   found.where = $("#where").textContent;
   found.legend = $("#plots .legend").textContent;
   found.picture = Number($("#picture").dataset.frame);
+  found.poses = [...document.querySelectorAll("#poses strong")].map((name) => name.textContent);
+  found.poseLegends = [...document.querySelectorAll("#poses .legend")].map((legend) => legend.textContent);
+  found.poseInks = [...document.querySelectorAll("#poses canvas")].map(ink);
+  found.pathsNote = $("#paths-note").textContent;
+  found.pathsLegend = $("#paths-legend").textContent;
+  found.inkedPaths = ink($("#paths"));
   found.inked = {orbit: ink($("#orbit")), picture: ink($("#picture")), plot: ink($("#plots canvas"))};
   press("ArrowRight"); found.right = page.frame;
   press("ArrowLeft", {shiftKey: true}); found.tenBack = page.frame;
@@ -323,6 +329,8 @@ constexpr const char* kVisit = R"js(<script>
   found.turned = Math.hypot(after3d[3] - before3d[3], after3d[4] - before3d[4]) / before3d[2];
   $("#orbit").dispatchEvent(new MouseEvent("dblclick"));
   click($("#orbit"), page.screenOf(1, 2)); found.path = [page.run, page.frame];
+  click($("#paths"), page.pathScreenOf(1, 7)); found.flatPath = [page.run, page.frame];
+  click($("#poses canvas"), [$("#poses canvas").clientWidth - 13, 60]); found.poseEnd = page.frame;
   $("#frames tr[data-frame='8']").cells[1].click(); found.row = page.frame;
   const inliers = [...document.querySelectorAll("#frames th")].findIndex((th) => th.textContent.startsWith("Inliers"));
   const column = () => [...document.querySelectorAll("#frames tr[data-frame]")].map((row) => row.cells[inliers].textContent);
@@ -383,6 +391,22 @@ TEST_F(LiveReport, GoesAboutInABrowser) {
   EXPECT_GT(found.at("zoomed"), 1.3);
   EXPECT_GT(found.at("turned"), 0.3);
   EXPECT_EQ(found.at("path"), nlohmann::json({1, 2}));
+  // As the plain report has them: all paths in one scale, and each number of the poses over time.
+  EXPECT_EQ(found.at("flatPath"), nlohmann::json({1, 7}));
+  EXPECT_EQ(found.at("poseEnd"), 9);
+  EXPECT_GT(found.at("inkedPaths"), 0.005);
+  EXPECT_EQ(found.at("pathsLegend"), "ground truthnonestillpoint");
+  EXPECT_THAT(found.at("pathsNote").get<std::string>(), HasSubstr("All runs in one scale, along x and "));
+  const std::vector<std::string> poses = found.at("poses");
+  EXPECT_EQ(poses, (std::vector<std::string>{"Position x, m", "Position y, m", "Position z, m",
+                                             "Angle roll, °", "Angle pitch, °", "Angle yaw, °"}));
+  for (const double inked : found.at("poseInks")) EXPECT_GT(inked, 0.005);
+  // The truth goes 2 px a frame along x, and does not turn.
+  const std::vector<std::string> numbers = found.at("poseLegends");
+  EXPECT_THAT(numbers.at(0),
+              ::testing::StartsWith(fmt::format("ground truth {:.3f}none ",
+                                                5 * 2 * SmallSequence::kDepth / SmallSequence::kFocal)));
+  EXPECT_THAT(numbers.at(5), ::testing::StartsWith("ground truth 0.00none "));
   EXPECT_EQ(found.at("row"), 8);
   EXPECT_EQ(found.at("ariaSort"), "ascending");  // few inliers are the bad ones
   for (const char* list : {"sorted", "sortedBack"}) {

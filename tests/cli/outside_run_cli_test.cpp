@@ -65,6 +65,21 @@ TEST_F(OutsideRunCli, AsOurOwnRunIs) {
       {"report", sequence.path("own"), sequence.path("theirs"), "--out", sequence.path("report.html")});
   EXPECT_EQ(report.exit_code, 0) << report.err;
   EXPECT_THAT(sequence.folder.read("report.html"), HasSubstr("theirs"));
+  // Its colour is not that of the baseline, which is by a method of ours.
+  ASSERT_EQ(run_cli({"run", sequence.path(), "--method", "none", "--out", sequence.path("plain")}).exit_code,
+            0);
+  ASSERT_EQ(run_cli({"report", sequence.path("plain"), sequence.path("theirs"), "--interactive", "--worst",
+                     "0", "--picture-mb", "0", "--out", sequence.path("live.html")})
+                .exit_code,
+            0);
+  const std::string page = sequence.folder.read("live.html"), start = "\"report-data\">";
+  const std::size_t from = page.find(start) + start.size();
+  const auto runs = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from))
+                        .at("sequences")
+                        .at(0)
+                        .at("runs");
+  EXPECT_EQ(runs.at(1).at("name"), "theirs");
+  EXPECT_NE(runs.at(0).at("colours"), runs.at(1).at("colours"));
 }
 
 TEST_F(OutsideRunCli, IsDrawnBesideOrByItself) {

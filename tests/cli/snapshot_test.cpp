@@ -129,11 +129,14 @@ TEST_F(Snapshot, SetsRunsAgainstEachOther) {
   EXPECT_GT(cv::norm(alone, wiped, cv::NORM_INF), 50.0);
   EXPECT_GT(cv::norm(alone, flipped, cv::NORM_INF), 50.0);
   EXPECT_GT(cv::norm(wiped, flipped, cv::NORM_INF), 50.0);
-  expect_one_sentence(
-      snapshot({"--wipe", "all", "--frames", "4", "--out", out()}),
-      "--wipe takes two runs with pictures at least, and of stillpoint, baseline none only stillpoint");
+  expect_one_sentence(snapshot({"--wipe", "all", "--no-baseline", "--frames", "4", "--out", out()}),
+                      "--wipe takes two runs with pictures at least, and of stillpoint only stillpoint");
+  // The baseline is a run like the others, and removes nothing.
+  const cv::Mat plain = picture("plain", {"--flip", "none (baseline)"});
+  EXPECT_GT(cv::norm(alone, plain, cv::NORM_INF), 50.0);
+  EXPECT_GT(cv::norm(picture("both", {"--wipe", "all"}), alone, cv::NORM_INF), 50.0);
   expect_one_sentence(snapshot({"--compare", "none", "--wipe", "stillpoint,orb3", "--out", out()}),
-                      "there is no run orb3; there are stillpoint, baseline none, none");
+                      "there is no run orb3; there are stillpoint, none (baseline), none");
   expect_one_sentence(snapshot({"--compare", "nothing", "--out", out()}), "nothing");
   const std::string earlier = sequence_.path("earlier");
   ASSERT_EQ(run_cli({"run", sequence_.path(), "--method", "none", "--out", earlier}).exit_code, 0);
@@ -143,6 +146,74 @@ TEST_F(Snapshot, SetsRunsAgainstEachOther) {
   // Without masks these would remove nothing, under their own names.
   expect_one_sentence(snapshot({"--compare", "masks", "--out", out()}), "--masks DIR|LIST");
   expect_one_sentence(snapshot({"--method", "masks", "--out", out()}), "--masks DIR|LIST");
+}
+
+TEST_F(Snapshot, NamesOfRunsMayHoldCommas) {
+  const std::string earlier = sequence_.path("earlier");
+  ASSERT_EQ(run_cli({"run", sequence_.path(), "--method", "none", "--out", earlier}).exit_code, 0);
+  const std::vector<std::string> common = {"--frames", "4",     "--panels",
+                                           "mask",     "--run", "left,right=" + earlier};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), common.begin(), common.end());
+    more.insert(more.end(), {"--out", out(), "--force"});
+    return snapshot(more);
+  };
+  EXPECT_EQ(with({"--wipe", R"(stillpoint,left\,right)"}).exit_code, 0);
+  EXPECT_EQ(with({"--wipe", "stillpoint", "--wipe", R"(left\,right)"}).exit_code, 0);
+  EXPECT_EQ(with({"--flip", "left,right"}).exit_code, 0);
+  fs::remove_all(out());
+  expect_one_sentence(with({"--wipe", "stillpoint,left,right"}), "there is no run left; there are");
+  // A list of nothing is not one of all.
+  for (const char* list : {",", " ", ""})
+    expect_one_sentence(with({"--wipe", list}), fmt::format("--wipe '{}': names nothing", list));
+  expect_one_sentence(with({"--compare", ","}), "--compare ',': names nothing");
+  EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Snapshot, ARunWithoutPicturesIsRefused) {
+  std::string path;
+  for (int i = 0; i < 6; ++i)
+    path += fmt::format("{:.4f} {} 0 0 0 0 0 1\n", SmallSequence::stamp(i), 0.01 * i);
+  sequence_.folder.write("path.txt", path);
+  const std::vector<std::string> common = {
+      "--frames", "2:4",           "--panels", "mask",
+      "--out",    out() + "/deep", "--run",    "orb3=" + sequence_.path("path.txt")};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), common.begin(), common.end());
+    return snapshot(more);
+  };
+  expect_one_sentence(with({"--flip", "orb3"}),
+                      "--flip orb3: orb3 is another program's trajectory: it has no pictures");
+  // What was refused leaves no folder.
+  EXPECT_FALSE(fs::exists(out()));
+  expect_one_sentence(with({"--wipe", "all", "--no-baseline"}),
+                      "of stillpoint, orb3 only stillpoint has any");
+  EXPECT_FALSE(fs::exists(out()));
+  EXPECT_EQ(with({"--wipe", "stillpoint,orb3"}).exit_code, 0);
+}
+
+TEST_F(Snapshot, FramesWithoutPicturesOfARunAreLeftOutAndTold) {
+  // Masks of some frames alone.
+  std::string path;
+  for (int i = 0; i < 6; ++i)
+    path += fmt::format("{:.4f} {} 0 0 0 0 0 1\n", SmallSequence::stamp(i), 0.01 * i);
+  sequence_.folder.write("theirs/trajectory.txt", path);
+  cv::Mat mask(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1, cv::Scalar(0));
+  mask(cv::Rect(40, 60, 80, 80)).setTo(255);
+  for (const int i : {2, 3}) sequence_.folder.write(fmt::format("theirs/masks/{}.png", i), mask);
+  const auto flipped = [&](const std::string& frames) {
+    return snapshot({"--frames", frames, "--panels", "mask", "--out", out(), "--force", "--flip", "theirs",
+                     "--run", "theirs=" + sequence_.path("theirs")});
+  };
+  const CliResult some = flipped("1:5");
+  EXPECT_EQ(some.exit_code, 0) << some.err;
+  EXPECT_THAT(some.err, HasSubstr("2 of 4 frames are left out: --flip theirs: theirs left neither mask nor"));
+  EXPECT_THAT(some.out, HasSubstr("2 images of 2 frames"));
+  fs::remove_all(out());
+  const CliResult none = flipped("4");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("theirs left neither mask nor features of frame 4."));
+  EXPECT_FALSE(fs::exists(out()));
 }
 
 TEST_F(Snapshot, KeepsEarlierImagesUnlessForced) {

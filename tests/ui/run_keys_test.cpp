@@ -36,19 +36,62 @@ class RunKeys : public ::testing::Test {
 
 TEST_F(RunKeys, WipeAndFlip) {
   draw();
-  EXPECT_EQ(runs(), "none");
+  EXPECT_EQ(runs(), "alone");
+  strike(Key::kW);
+  EXPECT_EQ(runs(), "wipe stillpoint none (baseline) motion.border_px 7 method none");
+  strike(Key::kF);
+  EXPECT_EQ(runs(), "flip stillpoint none (baseline)* motion.border_px 7 method none");
+  strike(Key::kF);
+  EXPECT_EQ(runs(), "flip stillpoint none (baseline) motion.border_px 7* method none");
+  strike(Key::kF);
+  strike(Key::kF);
+  EXPECT_EQ(runs(), "flip stillpoint* none (baseline) motion.border_px 7 method none");
+  strike(Key::kF, {.shift = true});
+  EXPECT_EQ(runs(), "flip stillpoint none (baseline) motion.border_px 7 method none*");
+  strike(Key::kW);
+  strike(Key::kW);
+  EXPECT_EQ(runs(), "alone");
+}
+
+TEST_F(RunKeys, AKeyThatCanDoNothingSaysWhyAndHowToGoOn) {
+  session_.debug.ghosts.clear();
+  session_.baseline = nullptr;
+  draw();
+  for (const Key key : {Key::kW, Key::kF}) {
+    strike(key);
+    EXPECT_EQ(runs(), "alone");
+    EXPECT_EQ(workbench_.message(),
+              "There is no second run: \"Compare with method …\" in the palette (Ctrl+Shift+P) adds one.");
+  }
+  // Once there is one, nothing stands in the way any more.
+  session_.debug.ghosts = three_runs().debug.ghosts;
+  draw();
+  EXPECT_EQ(workbench_.message(), "");
   strike(Key::kW);
   EXPECT_EQ(runs(), "wipe stillpoint motion.border_px 7 method none");
+  RunsShown shown = workbench_.runs();
+  shown.left_out = {"motion.border_px 7", "method none"};
+  workbench_.set_runs(shown);
   strike(Key::kF);
-  EXPECT_EQ(runs(), "flip stillpoint motion.border_px 7* method none");
-  strike(Key::kF);
-  strike(Key::kF);
-  EXPECT_EQ(runs(), "flip stillpoint* motion.border_px 7 method none");
-  strike(Key::kF, {.shift = true});
-  EXPECT_EQ(runs(), "flip stillpoint motion.border_px 7 method none*");
+  EXPECT_EQ(workbench_.message(), "Only stillpoint is ticked: tick another run in Compare runs.");
+  // What is on is put off, whatever is left.
   strike(Key::kW);
-  strike(Key::kW);
-  EXPECT_EQ(runs(), "none");
+  EXPECT_EQ(runs(), "alone");
+}
+
+TEST_F(RunKeys, TheBaselineIsAskedForItsPicturesWhereTheyAreShown) {
+  std::vector<bool> told;
+  Workbench workbench(make_panels(), {.baseline = [&](bool wanted) { told.push_back(wanted); }});
+  const auto draw_again = [&] {
+    offscreen_.draw([&](UiFrame& frame) { workbench.draw(frame, &session_); });
+    return told.back();
+  };
+  EXPECT_FALSE(draw_again());
+  workbench.set_runs({.pictures = RunPictures::wiped});
+  EXPECT_TRUE(draw_again());
+  workbench.set_runs({.pictures = RunPictures::wiped, .left_out = {"none (baseline)"}});
+  EXPECT_FALSE(draw_again());
+  offscreen_.make_current();
 }
 
 TEST_F(RunKeys, ThePaletteChoosesAmongRuns) {
@@ -61,9 +104,10 @@ TEST_F(RunKeys, ThePaletteChoosesAmongRuns) {
   }
   draw();
   strike(Key::kEnter);
-  EXPECT_EQ(runs(), "wipe stillpoint method none");
+  EXPECT_EQ(runs(), "wipe stillpoint none (baseline) method none");
   // One run alone has nothing to be wiped against.
   session_.debug.ghosts.clear();
+  session_.baseline = nullptr;
   draw();
   EXPECT_FALSE(workbench_.actions().run("flip_runs"));
 }
@@ -133,10 +177,10 @@ TEST_F(RunKeys, AHiddenBaselineLeavesTheTrajectoryAndComesBackByTheList) {
     return cv::countNonZero(there);
   };
   EXPECT_GT(count(picture("trajectory", {})), 20);
-  EXPECT_EQ(count(picture("trajectory", {"baseline none"})), 0);
+  EXPECT_EQ(count(picture("trajectory", {"none (baseline)"})), 0);
   EXPECT_GT(count(picture("trajectory", {})), 20);
   // The list has it whether hidden or not.
-  EXPECT_GT(count(picture("compare", {"baseline none"})), 5);
+  EXPECT_GT(count(picture("compare", {"none (baseline)"})), 5);
 }
 
 }  // namespace

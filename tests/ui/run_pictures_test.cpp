@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "core/odometry/frame_record.hpp"
 #include "core/run/frame_figures.hpp"
 #include "tests/support/golden.hpp"
@@ -98,8 +100,8 @@ TEST(RunPictures, GoldenImageOfThreeRunsAndATrajectory) {
   const SessionView session = with_trajectory(three_runs());
   Strips strips("mask");
   strips.runs.pictures = RunPictures::wiped;
-  strips.runs.chosen = kRunNames;
-  strips.runs.chosen.emplace_back("orb3");
+  strips.runs.only = kRunNames;
+  strips.runs.only.emplace_back("orb3");
   strips.runs.dividers = {0.2F, 0.5F, 0.75F};
   EXPECT_TRUE(matches_golden(strips.render(session), "wiped_mask"));
 }
@@ -110,6 +112,7 @@ TEST(RunPictures, EachStripIsItsOwnRuns) {
   strips.choices.want({{"Truth", "off"}});
   std::vector<cv::Mat> alone;
   for (const std::string& name : kRunNames) alone.push_back(strips.flipped_to(session, name));
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat wiped = strips.render(session);
   ASSERT_EQ(strips.runs.dividers.size(), 2U);
@@ -129,6 +132,7 @@ TEST(RunPictures, AllStripsFollowTheControls) {
   const SessionView session = three_runs();
   Strips strips("mask");
   strips.choices.want({{"Truth", "off"}});
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat overlay = strips.render(session);
   strips.choices.want({{"look", "Alone"}});
@@ -145,9 +149,9 @@ TEST(RunPictures, ASingleRunTickedIsTheOneSeen) {
   const SessionView session = three_runs();
   Strips strips("mask");
   const cv::Mat other = strips.flipped_to(session, kRunNames[2]);
-  strips.runs = {.pictures = RunPictures::wiped, .chosen = {kRunNames[2]}};
+  strips.runs = {.pictures = RunPictures::wiped, .only = {kRunNames[2]}};
   EXPECT_TRUE(images_agree(strips.render(session), other, {2, 20.0, 0.0}));
-  strips.runs.chosen = {kRunNames[0]};
+  strips.runs.only = {kRunNames[0]};
   EXPECT_FALSE(images_agree(strips.render(session), other, {2, 20.0, 0.0}));
 }
 
@@ -155,6 +159,7 @@ TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
   const SessionView session = three_runs();
   Strips strips("mask");
   strips.choices.want({{"Truth", "off"}});
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   const cv::Mat before = strips.render(session);
   const int divider = divider_between(before, 120, 300, {60, 380});
@@ -180,6 +185,7 @@ TEST(RunPictures, DividersAreDraggedAndThePictureStays) {
 TEST(RunPictures, DividersStayInOrder) {
   const SessionView session = three_runs();
   Strips strips("mask");
+  strips.runs.only = kRunNames;
   strips.runs.pictures = RunPictures::wiped;
   strips.runs.dividers = {0.4F, 0.5F};
   strips.choices.want({{"Truth", "off"}});
@@ -194,12 +200,92 @@ TEST(RunPictures, DividersStayInOrder) {
 
 TEST(RunPictures, PanelsWithoutARunsPictureAreAsTheyAre) {
   const SessionView session = three_runs();
-  for (const char* name : {"input", "trajectory", "timeline"}) {
+  for (const char* name : {"trajectory", "timeline", "disparity"}) {
     Strips strips(name);
     const cv::Mat before = strips.render(session);
     strips.runs.pictures = RunPictures::wiped;
     EXPECT_TRUE(images_agree(strips.render(session), before, {0, 0.0, 0.0})) << name;
   }
+}
+
+/// The runs with second frames of their own: in each, other features were found.
+SessionView with_second_frames(SessionView session) {
+  session.debug.other_is = OtherFrame::before;
+  const Frame frame = session.current->frame;
+  const auto view_of = [&frame](const RunView& run, std::size_t row, int shift) {
+    struct Held {
+      FrameView view;
+      FrameRecord record;
+    };
+    auto held = std::make_shared<Held>();
+    held->record = run.records[row];
+    for (FeatureRecord& feature : held->record.features) {
+      feature.pixel.y += static_cast<float>(shift);
+      feature.fate = shift == 0 ? FeatureFate::inlier : FeatureFate::outlier;
+      feature.map_point = static_cast<int>(&feature - held->record.features.data());
+    }
+    held->view.index = held->record.index;
+    held->view.frame = frame;
+    held->view.record = &held->record;
+    return std::shared_ptr<const FrameView>(held, &held->view);
+  };
+  const auto row = static_cast<std::size_t>(session.current->index);
+  const auto pair = [&](const RunView& run, int shift) {
+    return BesideFrame{view_of(run, row, shift), view_of(run, row - 1, shift)};
+  };
+  const BesideFrame own = pair(*session.run, 0), ghost = pair(*session.run, 9);
+  session.current = own.current, session.debug.other = own.other;
+  session.debug.ghosts.resize(1);
+  session.debug.ghosts[0].current = ghost.current, session.debug.ghosts[0].other = ghost.other;
+  session.baseline = nullptr;
+  return session;
+}
+
+TEST(RunPictures, TwoFramesAreOfEachRun) {
+  const SessionView session = with_second_frames(three_runs());
+  Strips strips("two_frames");
+  strips.choices.want({{"Lines", "off"}});
+  const cv::Mat own = strips.render(session), other = strips.flipped_to(session, kRunNames[1]);
+  EXPECT_FALSE(images_agree(own, other, {2, 200.0, 0.0}));
+  strips.runs = {.pictures = RunPictures::wiped};
+  const cv::Mat wiped = strips.render(session);
+  // Of each of the two pictures the left part is the session's own run's, the right part the other's.
+  const cv::Range rows(60, 150);
+  const auto agree = [&](const cv::Mat& alone, int from, int to) {
+    return images_agree(wiped(rows, cv::Range(from, to)), alone(rows, cv::Range(from, to)), {2, 20.0, 0.0});
+  };
+  for (const int left : {20, 335}) {
+    EXPECT_TRUE(agree(own, left, left + 120));
+    EXPECT_FALSE(agree(other, left, left + 120));
+    EXPECT_TRUE(agree(other, left + 165, left + 280));
+    EXPECT_FALSE(agree(own, left + 165, left + 280));
+  }
+  // A line between them would cross what is another run's.
+  strips.choices.want({{"Lines", "on"}});
+  strips.render(session);
+  EXPECT_TRUE(images_agree(strips.render(session)(rows, cv::Range::all()), wiped(rows, cv::Range::all()),
+                           {2, 20.0, 0.0}));
+}
+
+TEST(RunPictures, TheInputIsEveryRunsButNotWhatItIsComparedWith) {
+  SessionView session = three_runs();
+  auto other = std::make_shared<FrameView>(*session.debug.ghosts[0].current);
+  other->reference.colour = cv::Mat(other->frame.colour.size(), CV_8UC3, cv::Scalar(20, 200, 40));
+  cv::cvtColor(other->reference.colour, other->reference.gray, cv::COLOR_BGR2GRAY);
+  session.debug.ghosts[0].current = other;
+  Strips strips("input");
+  const cv::Mat alone = strips.render(session);
+  const cv::Mat flipped = strips.flipped_to(session, kRunNames[1]);
+  // The picture is as it was; below it stands that it is every run's.
+  const cv::Range picture(60, 400);
+  EXPECT_TRUE(images_agree(alone.rowRange(picture), flipped.rowRange(picture), {2, 20.0, 0.0}));
+  EXPECT_FALSE(images_agree(alone, flipped, {2, 20.0, 0.0}));
+  strips.choices.want({{"what", "Frame t−1"}});
+  strips.render(session);
+  const cv::Mat reference = strips.render(session);
+  EXPECT_FALSE(images_agree(alone.rowRange(picture), reference.rowRange(picture), {2, 2000.0, 0.0}));
+  const cv::Vec3b middle = reference.at<cv::Vec3b>(230, 320);
+  EXPECT_EQ(middle, cv::Vec3b(20, 200, 40));
 }
 
 TEST(RunPictures, EveryPanelIsDrawnByRuns) {
@@ -214,8 +300,8 @@ TEST(RunPictures, EveryPanelIsDrawnByRuns) {
       strips.runs.pictures = pictures;
       for (const std::vector<std::string>& chosen : {std::vector<std::string>{},
                                                      {"orb3", "later"},
-                                                     {"stillpoint", "orb3", "baseline none", "later"}}) {
-        strips.runs.chosen = chosen;
+                                                     {"stillpoint", "orb3", "none (baseline)", "later"}}) {
+        strips.runs.only = chosen;
         strips.runs.flipped_to = chosen.empty() ? "" : chosen.back();
         EXPECT_FALSE(is_blank(strips.render(session), 8)) << name;
       }

@@ -106,6 +106,33 @@ TEST_F(WindowTest, TakesTheMouseFromTheDisplay) {
   EXPECT_EQ(mouse.y, 77.0F);
 }
 
+TEST_F(WindowTest, WhatTheMouseWasOnIsLeftWithTheWindow) {
+  Window window({.width = 400, .height = 300});
+  ImVec2 mouse{};
+  bool tip = false;
+  const FrameFunction function = [&](UiFrame&) {
+    mouse = ImGui::GetIO().MousePos;
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::Begin("all", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::Button("a button", {350, 250});
+    tip = ImGui::IsItemHovered();
+    if (tip) ImGui::SetTooltip("what it is for");
+    ImGui::End();
+  };
+  const auto until = [&](const std::function<bool()>& holds) {
+    for (int i = 0; i < 200 && !holds(); ++i) {
+      window.draw(function);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return holds();
+  };
+  window.draw(function);
+  glfwSetCursorPos(window.handle(), 123.0, 77.0);
+  ASSERT_TRUE(until([&] { return mouse.x == 123.0F && tip; }));
+  glfwSetCursorPos(window.handle(), 430.0, 320.0);
+  EXPECT_TRUE(until([&] { return !tip && mouse.x < -1000.0F; }));
+}
+
 TEST_F(WindowTest, RunsUntilToldToQuitAndSleepsBetween) {
   Window window({.width = 400, .height = 300});
   int frames = 0;

@@ -277,9 +277,10 @@ TEST(Settings, ComeBackAsTheyWereLeft) {
                          17,
                          {{"method none", {"run.method=none"}, 0}, {"later", {}, 5}},
                          {.pictures = RunPictures::wiped,
-                          .chosen = {"paper", "method none"},
+                          .ticked = {"method none"},
+                          .left_out = {"paper"},
                           .flipped_to = "method none",
-                          .hidden = {"baseline none"},
+                          .hidden = {"none (baseline)"},
                           .dividers = {0.25F}}},
       b{"b", {}, {}};
   remember(settings.recent, {"a", {}, {}});

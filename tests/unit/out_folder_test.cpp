@@ -13,6 +13,25 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
+TEST(NewFolders, GoAgainWhereNothingCameToLieInThem) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path("there"));
+  for (const char* name : {"there/a/b/", "there/a/b", "there"}) {
+    const NewFolders made(folder.path(name));
+    prepare_out_folder(folder.path(name), {}, false);
+    EXPECT_TRUE(fs::is_directory(folder.path(name)));
+  }
+  EXPECT_FALSE(fs::exists(folder.path("there/a")));
+  EXPECT_TRUE(fs::exists(folder.path("there")));
+  {
+    const NewFolders made(folder.path("there/a/b"));
+    prepare_out_folder(folder.path("there/a/b"), {}, false);
+    folder.write("there/a/c.txt", std::string("result"));
+  }
+  EXPECT_FALSE(fs::exists(folder.path("there/a/b")));
+  EXPECT_EQ(folder.read("there/a/c.txt"), "result");
+}
+
 TEST(WholeFile, LeavesWhatWasThereUntilItIsKept) {
   const TemporaryFolder folder;
   folder.write("page.html", std::string("earlier"));

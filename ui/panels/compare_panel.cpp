@@ -152,7 +152,7 @@ class ComparePanel final : public NamedPanel {
     if (frame.runs != nullptr && session.baseline) {
       run_row(frame, session, listed[1],
               {role_colour(Role::kBaseline, frame.theme.name), SeriesStyle::kDashed, Sign::kDashed},
-              session.baseline->name + " (baseline)", static_cast<int>(session.baseline->records.size()));
+              baseline_name(session), static_cast<int>(session.baseline->records.size()));
       ImGui::TableNextColumn();
       ImGui::TableNextColumn();
     }
@@ -202,8 +202,8 @@ class ComparePanel final : public NamedPanel {
     const GhostView& ghost = session.debug.ghosts[index];
     ImGui::PushID(static_cast<int>(index));
     const std::vector<ListedRun> listed = listed_runs(session);
-    run_row(frame, session, listed[listed.size() - session.debug.ghosts.size() + index],
-            ghost_look(session.debug.ghosts, index, frame.theme.name),
+    const ListedRun& own = listed[listed.size() - session.debug.ghosts.size() + index];
+    run_row(frame, session, own, ghost_look(session.debug.ghosts, index, frame.theme.name),
             ghost.name + (ghost.busy ? "  running…" : ""), static_cast<int>(ghost.run->records.size()));
     if (index == chosen_)
       ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, to_u32(frame.theme.accent, 0.18F));
@@ -216,8 +216,10 @@ class ComparePanel final : public NamedPanel {
       ImGui::TextDisabled(ghost.busy ? "…" : "nowhere");
     }
     ImGui::TableNextColumn();
-    if (ImGui::SmallButton(icons::kClose))
+    if (ImGui::SmallButton(icons::kClose)) {
       actions.requests.push_back(request::RemoveGhost{static_cast<int>(index)});
+      if (frame.runs != nullptr) frame.runs->forget(own.name);
+    }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove this run");
     // A click anywhere else in the row chooses the run.
     const ImVec2 low{ImGui::GetWindowPos().x, ImGui::GetItemRectMin().y};

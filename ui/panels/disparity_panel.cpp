@@ -65,7 +65,8 @@ class DisparityPanel final : public FramePanel {
       footer.caption += fmt::format(", median {:.1f} px: {:.2f} m, give or take {:.0f} mm", median_px_, z,
                                     1000.0 * session.camera.stereo_sigma(z));
     }
-    footer.caption += fmt::format(". Baseline {:.3f} m.", session.camera.baseline_m);
+    footer.caption +=
+        fmt::format(". Baseline {:.3f} m.", session.camera.baseline_m) + same_in_all_runs(frame);
     ImageContent content;
     content.texture = &texture;
     content.values = &disparity_;
@@ -80,7 +81,8 @@ class DisparityPanel final : public FramePanel {
     const cv::Mat& right = view.frame.stereo->right;
     Footer footer;
     footer.caption = fmt::format("{}, as the right camera saw it; rows correspond.",
-                                 frame_text(place.session, view.frame));
+                                 frame_text(place.session, view.frame)) +
+                     same_in_all_runs(frame);
     ImageContent content;
     content.texture = &right_.get(frame, place.session.current, 0, [&] { return right; });
     content.values = &right;
@@ -143,8 +145,9 @@ class StereoHolesPanel final : public FramePanel {
     for (std::size_t i = 0; i < kHoles.size(); ++i)
       footer.legend.push_back(
           {fmt::format("{} {:.1f} %", kHoles[i].name, 100.0 * shares_[i]), kHoles[i].colour, Sign::kSquare});
-    footer.caption =
-        fmt::format("{}. No depth on {:.1f} % of the pixels.", frame_text(session, view.frame), 100.0 * all_);
+    footer.caption = fmt::format("{}. No depth on {:.1f} % of the pixels.", frame_text(session, view.frame),
+                                 100.0 * all_) +
+                     same_in_all_runs(frame);
     ImageContent content;
     content.texture = &ground_.get(frame, session.current, 0, [&] { return picture_of(view.frame); });
     content.values = &view.frame.stereo->holes;

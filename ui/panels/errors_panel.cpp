@@ -80,7 +80,7 @@ class ErrorsPanel final : public NamedPanel {
     plot.y_label = per_second ? "RPE over " + evaluation_of(session).rpe_time.delta : "RPE per frame";
     plot.y_unit = of_ == kRotation ? "°" : "mm";
     if (!baseline.x.empty()) {
-      plot.series.push_back({session.baseline->name, baseline.x, baseline.y,
+      plot.series.push_back({baseline_name(session), baseline.x, baseline.y,
                              role_colour(Role::kBaseline, theme), SeriesStyle::kDashed});
     }
     add_ghosts(frame, session, which, plot);
@@ -145,7 +145,7 @@ class ErrorsPanel final : public NamedPanel {
                          1000.0 * evaluation.ate.translation_m.rmse);
     };
     std::string text = figures(*session.run, session.run->name);
-    if (session.baseline) text += ".  " + figures(*session.baseline, session.baseline->name);
+    if (session.baseline) text += ".  " + figures(*session.baseline, baseline_name(session));
     for (const GhostView& ghost : session.debug.ghosts)
       text += ".  " + figures(*ghost.run, shortened(ghost.name));
     return text + ". Each error stands at the end of its motion.";

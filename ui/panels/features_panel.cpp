@@ -164,7 +164,7 @@ class FeaturesPanel final : public FramePanel {
       // Another program's own mask, if it has one, need not be what took its features out.
       if (record.measured.solving)
         footer.caption += fmt::format("; method {} removes those in its mask, {:.1f} % of the image.",
-                                      session.config.run.method, 100.0 * record.mask_share);
+                                      judge_of(session), 100.0 * record.mask_share);
       else if (record.measured.mask)
         footer.caption += fmt::format("; the mask is {:.1f} % of the image.", 100.0 * record.mask_share);
       else

@@ -127,7 +127,7 @@ class FiguresPanel final : public NamedPanel {
             {name, curve.x, curve.y, colour, x_ == kTime ? line : SeriesStyle::kDots, width});
     };
     if (session.baseline)
-      add(session.baseline->name, baseline_, role_colour(Role::kBaseline, theme), SeriesStyle::kDashed, 1.6F);
+      add(baseline_name(session), baseline_, role_colour(Role::kBaseline, theme), SeriesStyle::kDashed, 1.6F);
     for (std::size_t i = 0; i < ghosts_.size(); ++i) {
       const RunLook look = ghost_look(session.debug.ghosts, i, theme);
       add(shortened(session.debug.ghosts[i].name, 24), ghosts_[i], look.colour, look.line, 2.0F);

@@ -12,6 +12,7 @@
 #include "ui/gl/texture.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
+#include "ui/session/shown_runs.hpp"
 #include "ui/theme/text.hpp"
 
 namespace stillpoint {
@@ -215,7 +216,7 @@ std::string missing_motion(const SessionView& session) {
   if (view.motion && !view.motion->note.empty())
     return fmt::format("Method {} has no stages here: {}.", view.motion->method, view.motion->note);
   return view.record == nullptr ? fmt::format("Frame {} has not been processed yet.", view.index)
-                                : fmt::format("Method {} has no stages here.", session.config.run.method);
+                                : fmt::format("Method {} has no stages here.", maker_of(session));
 }
 
 const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& session, PanelActions& actions,
@@ -230,12 +231,14 @@ const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& sessio
   Controls controls(frame);
   for (const MethodInfo& method : methods()) {
     if (std::find(method.panels.begin(), method.panels.end(), panel) == method.panels.end()) continue;
-    const bool is_runs = method.name == session.config.run.method;
+    const bool is_runs = session.outside.empty() && method.name == session.config.run.method;
     const bool beside = view.motion_beside && view.motion_beside->method == method.name;
     if (beside && !view.motion_beside->note.empty())
       text = fmt::format("Method {} has none here: {}.", method.name, view.motion_beside->note);
     if (is_runs || beside) continue;
-    text = fmt::format("The run's method, {}, has no such stage.", session.config.run.method);
+    text = session.outside.empty()
+               ? fmt::format("The run's method, {}, has no such stage.", session.config.run.method)
+               : fmt::format("{} was run by another program, whose stages are not known.", session.outside);
     const std::string label = fmt::format("Lay {}'s beside", method.name);
     // Stages are laid beside those of the session's own run alone.
     if (session.own_run &&
@@ -254,7 +257,12 @@ int round_shown(const StageLog& log, int chosen) {
 
 std::string whose_stages(const SessionView& session, const StageLog& log) {
   if (&log != session.current->motion_beside.get()) return {};
-  return fmt::format(" By method {}, laid beside; this run is by {}.", log.method, session.config.run.method);
+  return fmt::format(" By method {}, laid beside; this run is by {}.", log.method, maker_of(session));
+}
+
+std::string same_in_all_runs(const UiFrame& frame) {
+  const bool several = frame.runs != nullptr && frame.runs->pictures != RunPictures::alone;
+  return several ? " The same in every run." : "";
 }
 
 std::string frame_text(const SessionView& session, const Frame& frame) {

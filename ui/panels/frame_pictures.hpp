@@ -109,6 +109,10 @@ const StageLog* stages_or_absent(const UiFrame& frame, const SessionView& sessio
 /// the run's; else empty.
 [[nodiscard]] std::string whose_stages(const SessionView& session, const StageLog& log);
 
+/// " The same in every run.": told while pictures show several runs, of what does not depend on any; else
+/// empty.
+[[nodiscard]] std::string same_in_all_runs(const UiFrame& frame);
+
 /// "Frame 42, 1.400 s": place and time since the sequence's first frame.
 [[nodiscard]] std::string frame_text(const SessionView& session, const Frame& frame);
 

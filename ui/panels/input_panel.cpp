@@ -10,6 +10,7 @@
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/plot/plot.hpp"
 #include "ui/theme/colormap.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -19,7 +20,13 @@ class InputPanel final : public FramePanel {
  public:
   explicit InputPanel(Shared shared) : FramePanel("input", "Input", std::move(shared)) {}
 
-  [[nodiscard]] bool shows_a_run() const override { return false; }
+  /// The frame and its depth are every run's; what it is compared with is for the run's method to choose.
+  [[nodiscard]] bool shows_a_run() const override { return what_ == kReference; }
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    auto other = std::make_unique<InputPanel>(shared_);
+    other->what_ = kReference;
+    return other;
+  }
 
   [[nodiscard]] PanelSize least() const override { return {300.0F, 190.0F}; }
 
@@ -58,6 +65,7 @@ class InputPanel final : public FramePanel {
     footer.caption = fmt::format("{}, {}x{} px, {}.{}{}", frame_text(session, shown), shown.gray.cols,
                                  shown.gray.rows, shown.colour.empty() ? "grey" : "colour",
                                  shown.problem.empty() ? "" : " ", shown.problem);
+    footer.caption += what_ == kReference ? "" : same_in_all_runs(frame);
     ImageContent content;
     const cv::Mat& picture = picture_of(shown);
     const int variant = what_ + 2 * channel_ + 100 * static_cast<int>(std::lround(10.0F * stops_));
@@ -68,7 +76,15 @@ class InputPanel final : public FramePanel {
     ImVec2 room = room_above(frame, footer);
     const bool has_histogram = histogram_ && room.y > 2.5F * kHistogram * frame.scale;
     if (has_histogram) room.y -= kHistogram * frame.scale + ImGui::GetStyle().ItemSpacing.y;
-    draw_frame_image(frame, "image", content, *shared_, room, place);
+    const ImageResponse response = draw_frame_image(frame, "image", content, *shared_, room, place);
+    // Runs side by side may compare the frame with different ones.
+    if (what_ == kReference && frame.strips != nullptr && frame.strips->several()) {
+      const float gap = 5.0F * frame.scale;
+      push_clip(response);
+      draw_label(frame, {response.clip_min.x + gap, response.clip_min.y + gap}, frame_text(session, shown),
+                 frame.theme.text);
+      pop_clip();
+    }
     if (has_histogram) draw_histogram(frame, session, picture);
     footer.draw(frame);
   }
@@ -125,6 +141,7 @@ class InputPanel final : public FramePanel {
         "{}. Depth on {:.0f} % of the pixels, median {:.2f} m; taken {:+.0f} ms from the colour image.",
         frame_text(session, view.frame), 100.0 * covered_, median_m_,
         1000.0 * (view.frame.depth_timestamp - view.frame.timestamp));
+    footer.caption += same_in_all_runs(frame);
     ImageContent content;
     content.texture = &texture;
     content.values = &depth;

@@ -63,7 +63,7 @@ Rows record_rows(const SessionView& session, const FrameRecord& r) {
       {"Turned",
        fmt::format("{:.2f} °", rotation_angle(r.world_from_camera.linear()) * 180.0 / 3.14159265358979)},
       {"Pose", r.estimated ? "estimated" : "predicted"},
-      {"Pose begun from", r.measured.solving ? std::string(to_string(r.pose_start)) : "–"},
+      {"Pose begun from", r.pose_start != PoseStart::none ? std::string(to_string(r.pose_start)) : "–"},
       {"Refers to keyframe", r.reference_keyframe == kNone ? "–" : fmt::format("{}", r.reference_keyframe)}};
   const auto row = record_of(session, r.index);
   if (!row) return rows;

@@ -301,7 +301,7 @@ class ParametersPanel final : public NamedPanel {
   static void help(const Parameter& parameter, const Parameter& usual) {
     if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
     ImGui::SetTooltip("%s\n%s\ndefault %s%s%s; %s\nCtrl and click to type a value", parameter.key.c_str(),
-                      parameter.help.c_str(), value_text(usual).empty() ? "none" : value_text(usual).c_str(),
+                      parameter.help.c_str(), value_text(usual).empty() ? "empty" : value_text(usual).c_str(),
                       parameter.unit.empty() ? "" : " ", parameter.unit.c_str(),
                       range_text(parameter).c_str());
   }

@@ -118,7 +118,7 @@ class PosePanel final : public NamedPanel {
     if (truth_)
       add("ground truth", *truth_, role_colour(Role::kGroundTruth, theme), SeriesStyle::kLine, 1.6F);
     if (baseline_)
-      add(session.baseline->name, *baseline_, role_colour(Role::kBaseline, theme), SeriesStyle::kDashed,
+      add(baseline_name(session), *baseline_, role_colour(Role::kBaseline, theme), SeriesStyle::kDashed,
           1.6F);
     for (std::size_t i = 0; i < ghosts_.size(); ++i) {
       const RunLook look = ghost_look(session.debug.ghosts, i, theme);

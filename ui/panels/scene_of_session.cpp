@@ -189,10 +189,7 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
     const Pose other =
         aligned ? session.baseline->evaluation.ate.alignment.truth_from_estimate : Pose::Identity();
     add_run(session, *session.baseline, other,
-            {.name = "baseline: " + session.baseline->name,
-             .role = Role::kBaseline,
-             .width_px = 1.6F,
-             .pickable = true},
+            {.name = baseline_name(session), .role = Role::kBaseline, .width_px = 1.6F, .pickable = true},
             scene);
   }
   add_ghosts(session, world, scene);

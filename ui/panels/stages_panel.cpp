@@ -100,8 +100,7 @@ class StagesPanel final : public FramePanel {
     alone_ = find_stage(stages_, wanted);
     const Stage& stage = stages_[*alone_];
     if (!wanted.same_place(stage)) {
-      draw_absent(
-          frame, fmt::format("Method {} has no stage \"{}\".", place.session.config.run.method, wanted.name));
+      draw_absent(frame, fmt::format("Method {} has no stage \"{}\".", maker_of(place.session), wanted.name));
       return;
     }
     if (stage.sides.size() > 1) {

@@ -248,7 +248,7 @@ class TrajectoryPanel final : public NamedPanel {
         session.alignment.truth_from_estimate.translation().norm(), degrees,
         1000.0 * evaluation.ate.translation_m.rmse);
     if (session.baseline && !session.baseline->evaluation.matched.empty())
-      text += fmt::format(", {} {:.1f} mm", session.baseline->name,
+      text += fmt::format(", {} {:.1f} mm", baseline_name(session),
                           1000.0 * session.baseline->evaluation.ate.translation_m.rmse);
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
     const auto& ghosts = session.debug.ghosts;

@@ -14,6 +14,7 @@
 #include "ui/panels/panel_command.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/plot/plot.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -27,6 +28,10 @@ class TwoFramesPanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {420.0F, 240.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return false; }
+  [[nodiscard]] bool shows_a_run() const override { return true; }
+  [[nodiscard]] std::unique_ptr<Panel> another() const override {
+    return std::make_unique<TwoFramesPanel>(shared_);
+  }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     choose_frame(frame, session, actions);
@@ -41,7 +46,10 @@ class TwoFramesPanel final : public NamedPanel {
       return;
     }
     Controls controls(frame);
-    controls.toggle("Lines", lines_, "Joins where both frames have a map point");
+    controls.toggle(
+        "Lines", lines_,
+        "Joins where both frames have a map point; not where runs are wiped against each other, as a "
+        "line would cross what is another run's");
     controls.toggle("Arrows", arrows_, "From where the point would be had it stood still to where it is");
     controls.slider("##from", from_px_, 0.0F, kMostPx, "from %.1f px");
     collect(session);
@@ -197,6 +205,7 @@ class TwoFramesPanel final : public NamedPanel {
                      std::optional<std::size_t> pointed) const {
     const ThemeName theme = frame.theme.name;
     ImDrawList& list = *ImGui::GetWindowDrawList();
+    const bool joins = frame.strips == nullptr || !frame.strips->several();
     for (std::size_t i = 0; i < pair_.features.size(); ++i) {
       const PairedFeature& feature = pair_.features[i];
       if (!shows(feature)) continue;
@@ -205,7 +214,7 @@ class TwoFramesPanel final : public NamedPanel {
       const Sign sign = feature.inlier ? Sign::kCircle : Sign::kTriangle;
       const ImVec2 from = on_screen(left, feature.pixel_other), to = on_screen(right, feature.pixel_here);
       // A line is drawn where both its ends can be seen.
-      if ((lines_ || chosen) && in_view(left, from) && in_view(right, to))
+      if (joins && (lines_ || chosen) && in_view(left, from) && in_view(right, to))
         list.AddLine(from, to, to_u32(colour, chosen ? 1.0F : 0.22F), (chosen ? 2.0F : 1.0F) * frame.scale);
       const float radius = (chosen ? 4.0F : 2.4F) * frame.scale;
       push_clip(left);

@@ -65,22 +65,27 @@ const Action* Actions::for_key(const KeyChord& chord) const {
   return nullptr;
 }
 
-void Actions::run_pressed_keys(bool typing) {
+const Action* Actions::run_pressed_keys(bool typing) {
   for (const Action& action : actions_) {
     for (const KeyChord& chord : action.keys) {
       const bool commands = chord.modifiers.ctrl || chord.modifiers.alt || is_function_key(chord.key);
-      if ((typing && !commands) || !is_chord_pressed(chord, action.repeats) || !is_enabled(action)) continue;
+      if ((typing && !commands) || !is_chord_pressed(chord, action.repeats)) continue;
+      // A key that is held until its way ends asked for nothing anew.
+      if (!is_enabled(action)) return is_chord_pressed(chord) ? &action : nullptr;
       // A copy: what runs may change the actions there are.
       const auto run = action.run;
       held_ = !is_chord_pressed(chord);
       run();
       held_ = false;
-      return;
+      return nullptr;
     }
   }
+  return nullptr;
 }
 
 bool is_enabled(const Action& action) { return !action.enabled || action.enabled(); }
+
+std::string why_off(const Action& action) { return action.why_off ? action.why_off() : action.off; }
 
 std::string key_text(const Action& action) {
   return action.keys.empty() ? "" : to_string(action.keys.front());

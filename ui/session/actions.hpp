@@ -17,11 +17,12 @@ struct Action {
   std::string title;  ///< "Step back"
   std::string group;  ///< the menu it stands in
   std::string icon{};
-  std::vector<KeyChord> keys{};     ///< the first is printed
-  bool repeats = false;             ///< while its key is held
-  std::function<bool()> enabled{};  ///< always, when empty
-  std::string off{};                ///< why it is not, for people: "No frame after this one is lost."
-  std::function<bool()> checked{};  ///< whether it is on, for what is switched
+  std::vector<KeyChord> keys{};            ///< the first is printed
+  bool repeats = false;                    ///< while its key is held
+  std::function<bool()> enabled{};         ///< always, when empty
+  std::string off{};                       ///< why it is not, for people: "No frame after this one is lost."
+  std::function<std::string()> why_off{};  ///< the same where it depends
+  std::function<bool()> checked{};         ///< whether it is on, for what is switched
   std::function<void()> run;
 };
 
@@ -43,7 +44,8 @@ class Actions {
 
   /// Runs what the keys pressed in ImGui's current frame stand for.
   /// @param typing a text field has the keys: only those with Ctrl or Alt, and function keys, count
-  void run_pressed_keys(bool typing);
+  /// @returns the action whose key was struck and that is not enabled now; null where there is none
+  const Action* run_pressed_keys(bool typing);
   /// Whether what runs now does so for a key that was pressed before and is held.
   [[nodiscard]] bool key_is_held() const { return held_; }
 
@@ -53,6 +55,9 @@ class Actions {
 };
 
 [[nodiscard]] bool is_enabled(const Action& action);
+
+/// Why it is not enabled; empty where it does not tell.
+[[nodiscard]] std::string why_off(const Action& action);
 
 /// The key printed beside an action; empty when it has none.
 [[nodiscard]] std::string key_text(const Action& action);

@@ -21,6 +21,12 @@ struct SweepPoint;
 
 // What debugging adds to the session: its part of the snapshot panels draw, and what panels may ask for.
 
+/// The frame shown as a run beside the session's own has it; null where that has not come so far.
+struct BesideFrame {
+  std::shared_ptr<const FrameView> current;
+  std::shared_ptr<const FrameView> other;  ///< the frame that stands beside it, as DebugView::other has it
+};
+
 /// A second run beside the session's own, with another configuration.
 struct GhostView {
   std::string name;  ///< "difference.threshold 12": what differs, or its preset's name
@@ -29,6 +35,7 @@ struct GhostView {
   bool busy = false;                   ///< still processing
   std::shared_ptr<const RunView> run;  ///< never null
   std::shared_ptr<const FrameView> current;  ///< its view of the frame shown; null while not processed
+  std::shared_ptr<const FrameView> other{};  ///< … and of the frame beside it, as DebugView::other has it
   std::optional<int> diverged;        ///< first frame whose record, or of another program's run whose motion,
                                       ///< differs from the session's own run
   bool outside = false;               ///< another program's, in a world of its own

@@ -20,8 +20,8 @@ void Session::open_recorded() {
   run_->lay_beside(beside_);
   baseline_.reset();
   if (options_.recorded_baseline)
-    baseline_view_ = std::make_shared<const RunView>(
-        ReplayableRun(*source_, options_.recorded_baseline, {.keep_features = false}).view());
+    baseline_ =
+        std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, options_.recorded_baseline));
   message_ = options_.no_images;
 }
 

@@ -8,6 +8,7 @@
 #include "core/check/findings.hpp"
 #include "core/inspect/frame_neighbours.hpp"
 #include "core/inspect/run_view.hpp"
+#include "core/odometry/engines.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/sweep.hpp"
 
@@ -48,14 +49,14 @@ void Session::restart(const Config& config) {
   run_view_.reset();
   baseline_.reset();
   baseline_view_.reset();
+  baseline_frame_ = {};
   if (options_.baseline && !method_of(config).baseline && source_->has_depth()) {
     Config plain = config;
     plain.run.method = baseline_method().name;
-    baseline_ = std::make_unique<ReplayableRun>(*source_, plain,
-                                                ReplayableRunOptions{.max_checkpoints = 1,
-                                                                     .keep_features = false,
-                                                                     .keep_times = options_.keep_times,
-                                                                     .score_masks = false});
+    // Its pictures are made from its records; an engine with stages of its own goes back by checkpoints.
+    ReplayableRunOptions options{.keep_times = options_.keep_times, .score_masks = false};
+    if (!engine_of(plain).has_stages) options.max_checkpoints = 1;
+    baseline_ = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, plain, options));
   }
   for (Ghost& ghost : ghosts_) {
     ghost.diverged.reset();
@@ -70,11 +71,13 @@ void Session::process_one() {
     return;
   }
   const Frame frame = frames_.read_in_turn(run_->track().processed());
-  // The baseline sees the same frame at the same time; neither knows of the other.
-  std::future<FrameResult> beside;
-  if (baseline_)
-    beside = std::async(std::launch::async,
-                        [&] { return baseline_->process_next([&frame](int) { return frame; }); });
+  // The baseline sees the same frame at the same time; neither knows of the other. A finished run's goes no
+  // farther than it went.
+  const int index = run_->track().processed();
+  const bool level =
+      baseline_ && baseline_->track().processed() == index && baseline_->track().seen() == index;
+  std::future<void> beside;
+  if (level) beside = std::async(std::launch::async, [&] { baseline_->process(frame); });
   run_->process(frame);
   if (beside.valid()) beside.get();
   begin_waiting_ghosts();
@@ -98,7 +101,8 @@ void Session::show_image_first() {
   if (!image->frame.readable()) return;
   if (!current_->image_alone) whole_ = current_;
   current_ = std::move(image);
-  for (Ghost& ghost : ghosts_) ghost.current.reset();
+  for (Ghost& ghost : ghosts_) ghost.current.reset(), ghost.other.reset();
+  baseline_frame_ = {};
   debug_.other.reset();
   debug_.preview.reset();
   publish();
@@ -116,25 +120,45 @@ void Session::show(int frame) {
     else
       ghost.current = frame < track.begins_at() ? current_ : ghost.run->frame_view(frame);
   }
-  choose_other();
+  baseline_frame_ = {};
+  if (shows_baseline_ && lacks_baseline()) baseline_frame_.current = baseline_->frame_view(frame);
+  choose_others();
   debug_.preview.reset();
   preview_due_ = motion_preview_due_ = debug_.preview_config.has_value();
   publish();
 }
 
-void Session::choose_other() {
+void Session::choose_others() {
   // In a window a second frame is read once somebody looks at two; pictures made without one have it always.
   if (!debug_.other_is && worker_.joinable()) return;
+  debug_.other = other_of(*run_, current_.get());
+  for (Ghost& ghost : ghosts_) ghost.other = other_of(*ghost.run, ghost.current.get());
+  if (baseline_) baseline_frame_.other = other_of(*baseline_, baseline_frame_.current.get());
+}
+
+std::shared_ptr<const FrameView> Session::other_of(ShownRun& run, const FrameView* current) const {
+  if (current == nullptr) return nullptr;
   const OtherFrame which = debug_.other_is.value_or(OtherFrame::before);
-  const FrameRecord* record = current_->record;
+  const FrameRecord* record = current->record;
   std::optional<int> other;
-  if (which == OtherFrame::before) other = current_->index - 1;
+  if (which == OtherFrame::before) other = current->index - 1;
   if (which == OtherFrame::kept) other = debug_.kept_frame;
   if (which == OtherFrame::keyframe && record != nullptr)
-    for (const SavedKeyframe& keyframe : run_->track().keyframes())
+    for (const SavedKeyframe& keyframe : run.track().keyframes())
       if (keyframe.id == record->reference_keyframe) other = keyframe.frame_index;
-  const bool there = other && *other >= 0 && *other < run_->track().processed() && *other != current_->index;
-  debug_.other = there ? run_->record_view(*other) : nullptr;
+  const bool there = other && *other >= 0 && *other < run.track().processed() && *other != current->index;
+  return there ? run.record_view(*other) : nullptr;
+}
+
+bool Session::lacks_baseline() const {
+  return baseline_ && !current_->image_alone && current_->index < baseline_->track().processed() &&
+         (baseline_frame_.current == nullptr || baseline_frame_.current->index != current_->index);
+}
+
+void Session::show_baseline() {
+  baseline_frame_.current = baseline_->frame_view(current_->index);
+  choose_others();
+  publish();
 }
 
 bool Session::lacks_before() const {
@@ -163,6 +187,7 @@ DebugView Session::debug_view() {
                             .busy = ghost.run->track().processed() < run_->track().processed(),
                             .run = ghost.run_view,
                             .current = ghost.current,
+                            .other = ghost.other,
                             .diverged = ghost.diverged,
                             .outside = !ghost.run->track().outside().empty(),
                             .look = ghost.look});
@@ -188,7 +213,7 @@ bool Session::renew_runs() {
   if (grown) {
     run_view_ = run_->run_view();
     debug_.removal = removal_errors(run_view_->records, run_view_->evaluation);
-    if (baseline_) baseline_view_ = std::make_shared<const RunView>(baseline_->view());
+    if (baseline_) baseline_view_ = baseline_->run_view();
     ++revision_;
   }
   const auto end = Clock::now();
@@ -211,7 +236,10 @@ void Session::publish() {
   view->message = message_;
   view->current = current_;
   view->run = run_view_;
+  view->outside = run_->track().outside();
   view->baseline = baseline_view_;
+  if (baseline_) view->baseline_config = baseline_->track().config();
+  view->baseline_frame = baseline_frame_;
   view->ground_truth = source_->ground_truth();
   view->alignment = run_view_->evaluation.ate.alignment;
   view->debug = debug_view();
@@ -268,13 +296,21 @@ void Session::rest(const std::stop_token& stop, bool until_comparison) {
   std::unique_lock lock(mutex_);
   resting_ = true;
   asked_.wait(lock, stop, [&] {
-    return !requests_.empty() || news_ || (until_comparison && compares_ && lacks_before());
+    return !requests_.empty() || news_ ||
+           (until_comparison && ((compares_ && lacks_before()) || (shows_baseline_ && lacks_baseline())));
   });
   resting_ = false;
 }
 
 void Session::request_comparison(bool wanted) {
   if (compares_.exchange(wanted) == wanted) return;
+  const std::lock_guard lock(mutex_);
+  asked_.notify_all();
+}
+
+void Session::request_baseline(bool wanted) {
+  if (shows_baseline_.exchange(wanted) == wanted) return;
+  if (!worker_.joinable()) return settle();
   const std::lock_guard lock(mutex_);
   asked_.notify_all();
 }

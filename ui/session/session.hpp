@@ -84,6 +84,9 @@ class Session {
   [[nodiscard]] bool idle() const;
   /// Whether the frame before the one shown is wanted as well: made when there is nothing else to do.
   void request_comparison(bool wanted);
+  /// Whether SessionView::baseline_frame is wanted: made when there is nothing else to do, and from then on
+  /// with each frame shown. With or without a worker.
+  void request_baseline(bool wanted);
   /// Another config: the run begins anew and goes on to the frame shown.
   void request_config(const Config& config) { request(request::RunAll{config}); }
 
@@ -96,7 +99,8 @@ class Session {
     std::size_t look = 0;                        // keeps its colour when others go
     std::shared_ptr<const FrameView> current{};  // of the frame shown; null while it has not come so far
     std::optional<int> diverged{};
-    int compared = 0;  // frames
+    int compared = 0;                          // frames
+    std::shared_ptr<const FrameView> other{};  // that stands beside `current`
   };
 
   void restart(const Config& config);
@@ -107,7 +111,10 @@ class Session {
   void process_one();
   void show(int frame);
   void show_image_first();
-  void choose_other();
+  void choose_others();
+  [[nodiscard]] std::shared_ptr<const FrameView> other_of(ShownRun& run, const FrameView* current) const;
+  [[nodiscard]] bool lacks_baseline() const;
+  void show_baseline();
   void publish();
   [[nodiscard]] bool runs_may_wait() const;
   [[nodiscard]] bool renew_runs();
@@ -173,7 +180,8 @@ class Session {
   SessionOptions options_;
   FrameCache frames_;
   std::unique_ptr<ShownRun> run_;
-  std::unique_ptr<ReplayableRun> baseline_;
+  std::unique_ptr<ShownRun> baseline_;
+  BesideFrame baseline_frame_;  // of the frame shown, where it is wanted
   std::vector<Ghost> ghosts_;
   std::shared_ptr<const FrameView> current_;
   std::shared_ptr<const FrameView> whole_;  // shown before the image of the one that is worked out; else null
@@ -208,8 +216,9 @@ class Session {
   std::shared_ptr<const SessionView> view_;
   std::function<void()> on_change_;
   std::atomic<double> frames_per_second_ = 30.0;
-  std::atomic<bool> compares_ = false;  // FrameView::before is wanted
-  std::atomic<bool> news_ = false;      // of what goes on beside the session
+  std::atomic<bool> compares_ = false;        // FrameView::before is wanted
+  std::atomic<bool> shows_baseline_ = false;  // SessionView::baseline_frame is
+  std::atomic<bool> news_ = false;            // of what goes on beside the session
   std::atomic<bool> exporting_ = false, checking_ = false;
   std::optional<CheckView> checked_;  // what the last questioning found
   std::vector<SweepPoint> swept_;     // not yet taken into debug_.sweep

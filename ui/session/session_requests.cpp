@@ -203,6 +203,7 @@ void Session::carry_out(const request::AddGhost& wanted) {
   compare(ghost);
   if (current_->index < ghost.run->track().processed()) ghost.current = current_;
   add(std::move(ghost));
+  choose_others();
 }
 
 void Session::carry_out(const request::RemoveGhost& wanted) {
@@ -345,7 +346,7 @@ void Session::carry_out(const request::StagesBeside& wanted) {
 void Session::carry_out(const request::StandBeside& wanted) {
   debug_.other_is = wanted.which;
   if (wanted.keep) debug_.kept_frame = std::clamp(*wanted.keep, 0, source_->size() - 1);
-  choose_other();
+  choose_others();
 }
 
 void Session::carry_out(const request::SavePreset& wanted) {

@@ -28,7 +28,10 @@ struct SessionView {
   std::string message;                       ///< the last error, one sentence; empty when all is well
   std::shared_ptr<const FrameView> current;  ///< the frame shown; never null
   std::shared_ptr<const RunView> run;        ///< never null
+  std::string outside;                       ///< what another program's run is called, where `run` is one
   std::shared_ptr<const RunView> baseline;   ///< null where none is run
+  Config baseline_config;                    ///< … what it is run with
+  BesideFrame baseline_frame;                ///< … and its frame, where its pictures are wanted
   Trajectory ground_truth;                   ///< empty where there is none
   Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
   std::vector<SavedKeyframe> keyframes;
@@ -43,5 +46,19 @@ struct SessionView {
 /// What panels of the frame shown draw while there is a preview of it: the same session, whose frame, config
 /// and nothing else are the preview's. @pre shows_preview(session)
 [[nodiscard]] SessionView with_preview(const SessionView& session);
+
+/// What the baseline is called, wherever it stands beside other runs. @pre session.baseline
+[[nodiscard]] std::string baseline_name(const SessionView& session);
+
+/// Whose work the run is: its method's name, or that of another program's run.
+[[nodiscard]] const std::string& maker_of(const SessionView& session);
+
+/// The method that judged the frame shown: the run's, or the one that stands in for it where there is no
+/// depth.
+[[nodiscard]] const std::string& judge_of(const SessionView& session);
+
+/// Whose work the run is as words: "method paper", "another program's run orb3", and for a frame without
+/// depth, which another method judges, "method epipolar in stillpoint's place".
+[[nodiscard]] std::string run_words(const SessionView& session);
 
 }  // namespace stillpoint

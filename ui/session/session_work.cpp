@@ -48,9 +48,11 @@ void Session::work_step() {
     publish();
     return;
   }
-  // Ghosts that keep level do so frame by frame; one that lags catches up when there is time.
+  // Ghosts that keep level do so frame by frame; one that lags comes nearer with each frame shown, and
+  // catches up when there is time, of which play may leave none.
+  constexpr int kAtOnce = 2;
   for (Ghost& ghost : ghosts_)
-    if (ghost.run->track().processed() == target_) advance(ghost);
+    for (int i = 0; i < kAtOnce && ghost.run->track().processed() <= target_; ++i) advance(ghost);
   stop_playing_where_wanted();
   show(target_);
 }
@@ -58,7 +60,8 @@ void Session::work_step() {
 bool Session::has_background() const {
   const int processed = run_->track().processed();
   return preview_due_ || sidecar_due_ || (worker_.joinable() && !looked_over_) || processed < wanted_ ||
-         (compares_ && lacks_before()) || (worker_.joinable() && stages_are_missing()) ||
+         (compares_ && lacks_before()) || (shows_baseline_ && lacks_baseline()) ||
+         (worker_.joinable() && stages_are_missing()) ||
          std::any_of(ghosts_.begin(), ghosts_.end(),
                      [&](const Ghost& ghost) { return ghost.run->track().processed() < processed; });
 }
@@ -70,6 +73,10 @@ void Session::background_step() {
   }
   if (compares_ && lacks_before()) {
     complete();
+    return;
+  }
+  if (shows_baseline_ && lacks_baseline()) {
+    show_baseline();
     return;
   }
   if (sidecar_due_) {
@@ -102,7 +109,9 @@ void Session::advance(Ghost& ghost) {
   const int index = ghost.run->track().processed();
   ghost.run->process(frames_.read(index));
   compare(ghost);
-  if (index == current_->index) ghost.current = ghost.run->frame_view(index);
+  if (index != current_->index) return;
+  ghost.current = ghost.run->frame_view(index);
+  choose_others();
 }
 
 void Session::add(Ghost ghost) {

@@ -122,6 +122,8 @@ struct KeyChord {
 struct MouseMoved {
   float x = 0.0F, y = 0.0F;  ///< px
 };
+/// The mouse has left what it was over.
+inline constexpr MouseMoved kMouseNowhere{-1e5F, -1e5F};
 struct MouseButton {
   int button = 0;  ///< 0 left, 1 right, 2 middle
   bool down = false;

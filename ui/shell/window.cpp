@@ -68,6 +68,12 @@ void send_mouse_position(GLFWwindow* window, double x, double y) {
   self(window).receive(MouseMoved{static_cast<float>(x) * ratio_x, static_cast<float>(y) * ratio_y});
 }
 
+bool holds_button(GLFWwindow* window) {
+  for (int button = GLFW_MOUSE_BUTTON_1; button <= GLFW_MOUSE_BUTTON_LAST; ++button)
+    if (glfwGetMouseButton(window, button) == GLFW_PRESS) return true;
+  return false;
+}
+
 /// The modifiers held now, for events that GLFW reports without.
 Modifiers held_modifiers(GLFWwindow* window) {
   const auto held = [window](int left, int right) {
@@ -170,6 +176,10 @@ Window::~Window() {
 
 void Window::connect_input() {
   glfwSetCursorPosCallback(window_, send_mouse_position);
+  // Where the mouse is outside is not told any more: what it was on last is left. A drag goes on outside.
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
+    if (entered == GLFW_FALSE && !holds_button(window)) self(window).receive(kMouseNowhere);
+  });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int modifiers) {
     double x = 0.0, y = 0.0;
     glfwGetCursorPos(window, &x, &y);

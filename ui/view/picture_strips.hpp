@@ -44,6 +44,8 @@ class PictureStrips {
   Place& add(const char* id, ImVec2 low, ImVec2 high);
   /// Whether this is a pass that draws pictures and nothing else.
   [[nodiscard]] bool pictures_alone() const { return passes_ > 1; }
+  /// Whether a picture is of several, and not one in the place of another.
+  [[nodiscard]] bool several() const { return strips_.size() > 1; }
   [[nodiscard]] bool takes_clicks() const { return takes_clicks_; }
   /// Marks a picture as drawn in the strip at hand.
   void note_drawn(Place& place) { place.drawn[strip_] = true; }

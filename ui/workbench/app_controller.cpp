@@ -97,7 +97,8 @@ WorkbenchHost AppController::host() {
               },
           .reopen = [this](const std::string& with) { reopen(with); },
           .request = [this](SessionRequest wanted) { request(std::move(wanted)); },
-          .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); })};
+          .compare = ask([](Session& session, bool compare) { session.request_comparison(compare); }),
+          .baseline = ask([](Session& session, bool wanted) { session.request_baseline(wanted); })};
 }
 
 void AppController::request(SessionRequest wanted) {

@@ -7,7 +7,6 @@
 #include "core/inspect/frame_verdict.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
-#include "core/odometry/engines.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/shell/event_log.hpp"
@@ -257,7 +256,7 @@ void Workbench::draw_status_bar(float height) {
     list.AddCircleFilled({x + 3.0F * scale, top + 0.5F * height}, 4.0F * scale, to_u32(status.colour));
     x += 13.0F * scale;
     put(fmt::format("frame {}  {}", session_->current->index, status.text), theme.text);
-    put(run_words(session_->config), theme.text_dim);
+    put(run_words(*session_), theme.text_dim);
     if (const FrameRecord* record = session_->current->record; record != nullptr && record->measured.features)
       put(fmt::format("{} of {} features kept, {} inliers", record->features_kept, record->features_found,
                       record->inliers),
@@ -267,7 +266,8 @@ void Workbench::draw_status_bar(float height) {
       put(pace_text(), pace_->dropped > 0 ? role_colour(Role::kWarning, theme.name) : theme.text_dim);
     if (session_->busy && !session_->playing) put("working…", theme.accent);
   }
-  const std::string trouble = session_ == nullptr ? "" : trouble_of(*session_);
+  // A key that was struck is answered, whatever else there is to say.
+  const std::string trouble = session_ == nullptr || refused_ ? "" : trouble_of(*session_);
   const std::string message = trouble.empty() ? message_ : trouble;
   const bool error = !trouble.empty() || message_is_error_;
   if (!message.empty()) {

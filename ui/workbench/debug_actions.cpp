@@ -171,6 +171,23 @@ void Workbench::tell_notice() {
   if (!notice.empty()) say(notice);
 }
 
+void Workbench::tell_refused(const Action* refused) {
+  if (session_ == nullptr) return refused_.reset();
+  if (refused != nullptr && !why_off(*refused).empty()) {
+    message_ = why_off(*refused);
+    message_is_error_ = false;
+    refused_ = {refused->name, message_, session_->current->index};
+  }
+  if (!refused_) return;
+  // What stands in the way is told while it does.
+  const bool stands = refused_->told == message_ && refused_->frame == session_->current->index &&
+                      why_off(*actions_.find(refused_->action)) == refused_->told &&
+                      !is_enabled(*actions_.find(refused_->action));
+  if (stands) return;
+  if (refused_->told == message_) message_.clear();
+  refused_.reset();
+}
+
 void Workbench::add_layout_actions() {
   actions_.add({.name = "undo_layout",
                 .title = "Take back the last change of the tiles",

@@ -37,7 +37,8 @@ std::optional<std::string> Workbench::fact(const std::string& what, const Sessio
                                           : std::string(to_string(s.current->record->status));
     });
   if (what == "title") return of_session([](const SessionView& s) { return s.title; });
-  if (what == "method") return of_session([](const SessionView& s) { return s.config.run.method; });
+  // There "none" is a method.
+  if (what == "method") return session == nullptr ? "no sequence" : maker_of(*session);
   if (what == "message") return message_.empty() ? none : message_;
   if (what == "panels") return fmt::format("{}", fmt::join(panels_of(layout_), ","));
   if (what == "maximised") return maximised_.empty() ? none : maximised_;
@@ -52,7 +53,7 @@ std::optional<std::string> Workbench::fact(const std::string& what, const Sessio
     return text.empty() ? none : text;
   }
   if (what == "runs") {
-    if (session == nullptr || runs_.pictures == RunPictures::alone) return none;
+    if (session == nullptr || runs_.pictures == RunPictures::alone) return to_string(RunPictures::alone);
     std::string text = to_string(runs_.pictures);
     const auto flipped = runs_.flipped(*session);
     for (const ListedRun& run : runs_.chosen_of(*session))

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
+#include "core/run/records_file.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/session/opened_source.hpp"
 #include "ui/theme/icons.hpp"
@@ -55,8 +56,8 @@ PlaceLook look_at_place(const OpenAs& place, const std::function<OpenedSource(co
     const OpenedSource opened = opens(place);
     look.facts = sequence_facts(*opened.source);
     if (opened.options.recorded)
-      look.facts.insert(look.facts.begin(),
-                        {"Run", fmt::format("{} frames by {}", opened.frames, opened.config.run.method)});
+      look.facts.insert(look.facts.begin(), {"Run", fmt::format("{} frames by {}", opened.frames,
+                                                                run_name(*opened.options.recorded))});
     if (!opened.options.no_images.empty()) {
       look.findings.push_back({"images", opened.options.no_images});
       return look;

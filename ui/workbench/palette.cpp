@@ -162,9 +162,9 @@ std::vector<PaletteRow> Workbench::palette_rows() {
   for (const Action& action : actions_.all()) {
     PaletteRow row{.icon = action.icon, .title = action.title, .key = key_text(action), .run = action.run};
     if (!is_enabled(action))
-      row.off = session_ == nullptr  ? "No sequence is open."
-                : action.off.empty() ? "Not here: what it asks for is not at hand."
-                                     : action.off;
+      row.off = session_ == nullptr       ? "No sequence is open."
+                : why_off(action).empty() ? "Not here: what it asks for is not at hand."
+                                          : why_off(action);
     rows.push_back(std::move(row));
   }
   if (session_ == nullptr || !host_.request) return rows;

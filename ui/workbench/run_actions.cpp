@@ -11,17 +11,23 @@ namespace stillpoint {
 
 void Workbench::add_run_actions() {
   const auto has_several = [this] { return session_ != nullptr && runs_.chosen_of(*session_).size() > 1; };
-  constexpr const char* kOff =
-      "It takes two runs: compare this one with a method, a preset or a parameter first.";
+  const auto why_not = [this] {
+    return session_ == nullptr ? std::string() : runs_.why_not_several(*session_);
+  };
+  // What is on can be put off, whatever runs are left.
+  const auto has_several_or_wipes = [this, has_several] {
+    return has_several() || runs_.pictures == RunPictures::wiped;
+  };
   const auto add = [&](const char* name, const char* title, const char* icon, KeyChord key,
-                       std::function<bool()> checked, std::function<void()> run) {
+                       std::function<bool()> enabled, std::function<bool()> checked,
+                       std::function<void()> run) {
     actions_.add({.name = name,
                   .title = title,
                   .group = "View",
                   .icon = icon,
                   .keys = key.key == Key::kNone ? std::vector<KeyChord>{} : std::vector{key},
-                  .enabled = has_several,
-                  .off = kOff,
+                  .enabled = std::move(enabled),
+                  .why_off = why_not,
                   .checked = std::move(checked),
                   .run = std::move(run)});
   };
@@ -29,13 +35,13 @@ void Workbench::add_run_actions() {
     return [this, pictures] { return runs_.pictures == pictures; };
   };
   add("wipe_runs", "Wipe runs against each other in pictures", icons::kContrast, {Key::kW, {}},
-      is(RunPictures::wiped), [this] {
+      has_several_or_wipes, is(RunPictures::wiped), [this] {
         const bool wiped = runs_.pictures == RunPictures::wiped;
         runs_.pictures = wiped ? RunPictures::alone : RunPictures::wiped;
       });
-  add("flip_runs", "Flip pictures to the next run", icons::kSwap, {Key::kF, {}}, is(RunPictures::flipped),
-      [this] { runs_.flip(*session_, 1); });
-  add("flip_runs_back", "Flip pictures to the run before", icons::kSwap, {Key::kF, kShift}, {},
+  add("flip_runs", "Flip pictures to the next run", icons::kSwap, {Key::kF, {}}, has_several,
+      is(RunPictures::flipped), [this] { runs_.flip(*session_, 1); });
+  add("flip_runs_back", "Flip pictures to the run before", icons::kSwap, {Key::kF, kShift}, has_several, {},
       [this] { runs_.flip(*session_, -1); });
   actions_.add({.name = "runs_alone",
                 .title = "Pictures of this run alone",

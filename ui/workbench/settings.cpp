@@ -30,16 +30,14 @@ std::optional<std::string> read_whole(const fs::path& path) {
 }
 
 Json to_json(const RunsShown& runs) {
-  return {{"pictures", to_string(runs.pictures)},
-          {"chosen", runs.chosen},
-          {"flipped_to", runs.flipped_to},
-          {"hidden", runs.hidden},
-          {"dividers", runs.dividers}};
+  return {{"pictures", to_string(runs.pictures)}, {"chosen", runs.ticked}, {"left_out", runs.left_out},
+          {"flipped_to", runs.flipped_to},        {"hidden", runs.hidden}, {"dividers", runs.dividers}};
 }
 
 RunsShown runs_from(const Json& json) {
   RunsShown runs{.pictures = run_pictures(json.value("pictures", "")),
-                 .chosen = json.value("chosen", std::vector<std::string>{}),
+                 .ticked = json.value("chosen", std::vector<std::string>{}),
+                 .left_out = json.value("left_out", std::vector<std::string>{}),
                  .flipped_to = json.value("flipped_to", ""),
                  .hidden = json.value("hidden", std::vector<std::string>{}),
                  .dividers = json.value("dividers", std::vector<float>{})};

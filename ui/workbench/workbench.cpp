@@ -7,7 +7,6 @@
 
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
-#include "core/odometry/engines.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/saved_map.hpp"
 #include "core/run/sweep.hpp"
@@ -157,7 +156,8 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   if (const auto before = std::exchange(before_frame_, {})) before();
   frame.offer = &offered_;
   const bool overlay = palette_.open || open_dialog_.is_open() || hand_on_dialog_.open || save_dialog_.open;
-  if (!overlay) actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
+  const Action* refused = overlay ? nullptr : actions_.run_pressed_keys(ImGui::GetIO().WantTextInput);
+  tell_refused(refused);
 
   tell_notice();
   begin_root(frame, ImGuiWindowFlags_MenuBar);
@@ -189,6 +189,7 @@ void Workbench::draw(UiFrame& frame, const SessionView* session) {
   draw_exporting();
   look_ = frame.wanted_look;
   if (session != nullptr && host_.compare) host_.compare(compare_frames_);
+  if (session != nullptr && host_.baseline) host_.baseline(runs_.wants_baseline(*session));
   compare_frames_ = false;
   previewed_.reset();
   visible_.clear();
@@ -230,7 +231,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
   ImGui::PushFont(frame.fonts.small);
   const auto wide = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
   const std::string frame_text = fmt::format("frame {} of {}", session.current->index, session.frame_count),
-                    method = run_words(session.config);
+                    method = run_words(session);
   // Where there is no room for all of it, the time goes first.
   std::string where = fmt::format("{}   {}   {:.3f} s   {}", session.title, frame_text, seconds, method);
   if (wide(where) > room) where = fmt::format("{}   {}   {}", session.title, frame_text, method);

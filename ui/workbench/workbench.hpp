@@ -37,6 +37,7 @@ struct WorkbenchHost {
   std::function<void(const std::string& with)> reopen{};
   std::function<void(SessionRequest)> request{};  ///< what panels ask of the session
   std::function<void(bool)> compare{};            ///< whether FrameView::before is wanted; told each frame
+  std::function<void(bool)> baseline{};           ///< whether pictures of the baseline are; told each frame
 };
 
 /// The whole interface: menus, toolbar, tiles with panels, status bar, palette, shortcut sheet, start page.
@@ -125,6 +126,7 @@ class Workbench {
   void ask(SessionRequest request);
   void toggle_bookmark();
   void tell_notice();
+  void tell_refused(const Action* refused);
   [[nodiscard]] const std::vector<int>& worst();
   void toggle_panel(const std::string& name);
   void scale_by(float factor);
@@ -216,6 +218,11 @@ class Workbench {
   std::vector<int> worst_;
   std::optional<int> worst_gone_to_;  // the frame that list was last gone to
   std::string notice_;                // of the session, told last
+  struct Refused {
+    std::string action, told;
+    int frame = 0;  // that was shown
+  };
+  std::optional<Refused> refused_;  // while the status bar says why
 
   // For the frame of the interface being drawn only.
   UiFrame* frame_ = nullptr;

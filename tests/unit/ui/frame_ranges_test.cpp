@@ -55,5 +55,10 @@ TEST(List, IsSplitAtCommas) {
   EXPECT_THAT(split_list(" , "), ElementsAre());
 }
 
+TEST(List, OfNamesMayHoldACommaInAName) {
+  EXPECT_THAT(split_names(R"(left\,right, paper ,a\b)"), ElementsAre("left,right", "paper", R"(a\b)"));
+  EXPECT_THAT(split_names(" , "), ElementsAre());
+}
+
 }  // namespace
 }  // namespace stillpoint

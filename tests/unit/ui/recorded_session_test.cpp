@@ -23,14 +23,15 @@ class RecordedSession : public ::testing::TestWithParam<const char*> {
   }
 
   /// Runs the first `frames` frames, keeps their records in a folder, and opens that.
-  [[nodiscard]] OpenedRun recorded(int frames) const {
-    const std::string folder = out_.path("run");
+  [[nodiscard]] OpenedRun recorded(int frames) const { return recorded(frames, config_, "run"); }
+  [[nodiscard]] OpenedRun recorded(int frames, const Config& config, const std::string& name) const {
+    const std::string folder = out_.path(name);
     std::filesystem::create_directories(folder);
-    RecordsWriter writer(folder, origin_of(*source_, sequence_.path(), {}), config_);
+    RecordsWriter writer(folder, origin_of(*source_, sequence_.path(), {}), config);
     RunOptions options;
     options.count = frames;
     options.on_frame = [&](const FrameResult& frame) { writer.add(frame); };
-    const RunResult run = run_sequence(*source_, config_, options);
+    const RunResult run = run_sequence(*source_, config, options);
     writer.finish(run, source_->ground_truth());
     return open_run(folder);
   }
@@ -47,6 +48,28 @@ class RecordedSession : public ::testing::TestWithParam<const char*> {
   Config config_;
   std::shared_ptr<const FrameSource> source_;
 };
+
+TEST_P(RecordedSession, HasPicturesOfItsBaselineAsFarAsThatWent) {
+  Config plain = config_;
+  plain.run.method = "none";
+  const OpenedRun run = recorded(kFrames), baseline = recorded(6, plain, "none");
+  SessionOptions options = options_of(run);
+  options.recorded_baseline = baseline.recorded;
+  Session session(run.source, config_, options), live(source_, plain);
+  session.request_baseline(true);
+  for (const int index : {5, 2}) {
+    session.go_to(index);
+    live.go_to(index);
+    const auto shown = session.view()->baseline_frame.current;
+    ASSERT_NE(shown, nullptr);
+    EXPECT_EQ(run_hash({*shown->record}), run_hash({*live.view()->current->record}));
+    EXPECT_FALSE(shown->record->features.empty());
+  }
+  EXPECT_EQ(session.view()->baseline_config.run.method, "none");
+  session.go_to(kFrames - 1);
+  EXPECT_EQ(session.view()->baseline_frame.current, nullptr);
+  EXPECT_EQ(session.view()->baseline->records.size(), 6U);
+}
 
 TEST_P(RecordedSession, ShowsEveryFrameAtOnceAsItWas) {
   const OpenedRun run = recorded(kFrames);

@@ -157,6 +157,55 @@ TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   EXPECT_EQ(debug(*s).other->index, 2);
 }
 
+TEST_F(SessionDebug, EveryRunHasItsOwnSecondFrame) {
+  auto s = session(true);
+  s->request(request::GoTo{9});
+  Config none = config_;
+  none.run.method = "none";
+  s->request(request::AddGhost{none, "none", 0});
+  s->request_baseline(true);
+  const auto others = [&] {
+    const auto view = s->view();
+    return std::vector{view->debug.other, view->debug.ghosts[0].other, view->baseline_frame.other};
+  };
+  const auto expect_all_at = [&](int frame) {
+    for (const auto& other : others()) {
+      ASSERT_NE(other, nullptr);
+      EXPECT_EQ(other->index, frame);
+    }
+    EXPECT_NE(run_hash({*others()[0]->record}), run_hash({*others()[1]->record}));
+    EXPECT_EQ(run_hash({*others()[1]->record}), run_hash({*others()[2]->record}));
+  };
+  expect_all_at(8);
+  s->request(request::StandBeside{OtherFrame::kept, 4});
+  expect_all_at(4);
+  s->request(request::GoTo{6});
+  expect_all_at(4);
+  s->request(request::GoTo{4});
+  for (const auto& other : others()) EXPECT_EQ(other, nullptr);
+}
+
+TEST_F(SessionDebug, AGhostAddedDuringPlayComesOnWhileItPlays) {
+  StartedSession s(session());
+  s->request(request::GoTo{kDebugFrames - 1});
+  ASSERT_TRUE(
+      s.wait_for([](const SessionView& view) { return view.processed == kDebugFrames && !view.busy; }));
+  // Round and round, faster than frames can be shown and never where the ghost is: nothing is left for what
+  // waits for time, and no frame shown is the ghost's next.
+  s->request_speed(1000.0);
+  s->request(request::Span{FrameSpan{kDebugFrames / 2, kDebugFrames - 1}, true});
+  s->request(request::Play{true});
+  ASSERT_TRUE(s.wait_for([](const SessionView& view) { return view.playing; }));
+  Config other = config_;
+  other.features.count = 300;
+  s->request(request::AddGhost{other, "fewer", 0});
+  EXPECT_TRUE(s.wait_for([](const SessionView& view) {
+    return view.playing && view.debug.ghosts.size() == 1 && view.debug.ghosts[0].current != nullptr &&
+           view.debug.ghosts[0].run->records.size() > kDebugFrames / 2;
+  }));
+  EXPECT_TRUE(s->view()->playing);
+}
+
 TEST_F(SessionDebug, AWindowReadsASecondFrameOnceSomebodyLooksAtTwo) {
   StartedSession s(session());
   s->request(request::GoTo{5});

@@ -284,6 +284,35 @@ TEST(Session, RunsABaselineBesideOtherMethodsAlone) {
   EXPECT_EQ(none.view()->baseline, nullptr);
 }
 
+TEST(Session, TheBaselineHasPicturesOnceTheyAreWanted) {
+  const SmallSequence folder(6);
+  const std::shared_ptr<const FrameSource> source = open_sequence(folder.path());
+  Session session(source, config_of("paper"));
+  session.go_to(5);
+  EXPECT_EQ(session.view()->baseline_frame.current, nullptr);
+  EXPECT_EQ(session.view()->baseline_config.run.method, "none");
+  session.request_baseline(true);
+  Session alone(source, config_of("none"));
+  for (const int index : {5, 2, 0, 4}) {
+    session.go_to(index);
+    alone.go_to(index);
+    const BesideFrame shown = session.view()->baseline_frame;
+    ASSERT_NE(shown.current, nullptr) << index;
+    EXPECT_EQ(shown.current->index, index);
+    ASSERT_NE(shown.current->record, nullptr);
+    EXPECT_FALSE(shown.current->record->features.empty());
+    EXPECT_EQ(run_hash({*shown.current->record}), run_hash({*alone.view()->current->record}));
+    expect_same_stages(*shown.current->motion, *alone.view()->current->motion);
+    ASSERT_EQ(shown.other == nullptr, index == 0);
+    if (index > 0) {
+      EXPECT_EQ(run_hash({*shown.other->record}), run_hash({alone.record(index - 1)}));
+    }
+  }
+  session.request_baseline(false);
+  session.go_to(1);
+  EXPECT_EQ(session.view()->baseline_frame.current, nullptr);
+}
+
 TEST(Session, FramesBeyondTheEndsAreTheNearestThereAre) {
   const SmallSequence folder(3);
   Session session(open_sequence(folder.path()), config_of("none"));
