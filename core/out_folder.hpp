@@ -16,6 +16,12 @@ namespace stillpoint {
 void prepare_out_folder(const std::filesystem::path& folder, std::initializer_list<std::string_view> signs,
                         bool force);
 
+/// Asks, before any work, what would keep a file from being written in the end.
+/// @param force replace a file of that name
+/// @throws InputError when it is a folder, is there already and `force` is not set, or when its folder is
+/// missing or cannot be written to
+void check_out_file(const std::filesystem::path& file, bool force);
+
 /// A file that takes its name once it is whole: until keep() it is written beside, as PATH.part, and what was
 /// there before stays, whatever ends the program. Links are followed; what is no regular file (a device, a
 /// pipe) is written to as it is.

@@ -60,6 +60,37 @@ TEST(Check, FindsTheShiftOfATruthsClock) {
   }
 }
 
+TEST(Check, AnOdometryThatSlipsOverAShortStretchIsNoShiftOfAClock) {
+  const auto truth_at = [](int poses) {
+    Trajectory truth;
+    for (const StampedPose& pose : path(0.9, 100, poses))
+      truth.push_back({pose.timestamp, pose.world_from_camera});
+    return truth;
+  };
+  // For the first half second the odometry holds to somebody who walks along: it sees half of the motion.
+  Trajectory estimate = path(1.0, 30, 30);
+  const Trajectory sound = estimate;
+  for (std::size_t i = 1; i < estimate.size(); ++i) {
+    Pose step = sound[i - 1].world_from_camera.inverse() * sound[i].world_from_camera;
+    if (i < 15) step.translation() *= 0.4;
+    estimate[i].world_from_camera = estimate[i - 1].world_from_camera * step;
+  }
+  EXPECT_FALSE(find_time_shift(truth_at(120), estimate));
+  // A clock that is off is found over as short a stretch.
+  Trajectory late = truth_at(120);
+  for (StampedPose& pose : late) pose.timestamp += 0.1;
+  const auto shift = find_time_shift(late, sound);
+  ASSERT_TRUE(shift);
+  EXPECT_NEAR(shift->seconds, -0.1, 0.006);
+}
+
+TEST(Check, PeopleInAShortSequenceAreNoShiftOfAClock) {
+  OpenOptions options;
+  options.frames = 30;
+  const auto source = open_sequence("generated:walking_xyz", options);
+  EXPECT_THAT(check_odometry(*source, 30), testing::Not(Contains(Field(&Finding::about, "truth"))));
+}
+
 TEST(Check, NamesConventionsAndScales) {
   Trajectory truth = path(1.0);
   const Trajectory estimate = path(1.0);
