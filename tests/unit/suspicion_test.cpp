@@ -120,18 +120,6 @@ TEST(Suspicion, ABodyThatCarriesTheCameraIsFoundWithItsTurn) {
   EXPECT_THAT(suspicion->sentence(), HasSubstr("173.0 deg"));
 }
 
-TEST(Suspicion, NoBodyIsFittedToAShortStretchOfPoorPoses) {
-  // Two thirds of a second in which the estimate slides along while it turns: a body five metres off fits
-  // that.
-  auto matched = sound(20);
-  for (MatchedPose& pose : matched) {
-    const double t = pose.timestamp;
-    pose.estimate.translation() += Eigen::Vector3d(1.2 * std::sin(1.1 * t), -0.9 * std::sin(0.9 * t), 0.0);
-  }
-  EXPECT_GT(motion_fit(matched).combined_m(), 0.1);
-  EXPECT_FALSE(suspect_convention(matched, false));
-}
-
 TEST(Scale, IsToldWhereItExplainsTheError) {
   Trajectory truth, estimate;
   for (const MatchedPose& pose : sound()) {
