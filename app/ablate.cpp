@@ -16,6 +16,7 @@
 #include "app/commands.hpp"
 #include "app/jobs.hpp"
 #include "app/progress.hpp"
+#include "app/slurm.hpp"
 #include "app/version.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
@@ -190,6 +191,40 @@ CellPlan ablation_plan(const AblateArguments& arguments, const Config& config,
   return plan;
 }
 
+/// Runs a plan's cells here, one after another, with the sequences that are open: each result is kept as
+/// those of processes are, so that --resume goes on where this was stopped, and earlier tables stay until
+/// these are whole.
+void ablate_into(const fs::path& folder, const CellPlan& plan, const Config& config,
+                 const std::vector<std::optional<Ingredient>>& variants,
+                 const std::vector<AblatedSequence>& sequences) {
+  throw_if_queued(folder);
+  remove_plan(folder);  // what --force replaces is not gone on with
+  write_plan(folder, plan);
+  CellRecord record{0, plan.fingerprint(), made_here().commit, made_here().machine};
+  const auto tables = [&] {
+    return ablation_cell_tables(plan, merge_cells(plan, read_records(folder, plan)), folder);
+  };
+  for (const AblatedSequence& sequence : sequences) {
+    for (const auto& variant : variants) {
+      const auto reached =
+          run_variant(*sequence.source, sequence.name, ablated(config, variant ? &*variant : nullptr),
+                      sequence.reading.frames, variant ? variant->name : "");
+      if (!reached) break;
+      record.json = to_json(*reached).dump();
+      write_record(folder, record);
+      ++record.cell;
+    }
+    if (stop_requested()) break;
+    (void)tables();
+  }
+  fmt::print("{}", tables());
+  throw_if_interrupted(plan.replaces
+                           ? "stopped early; the earlier tables stay until --resume has made these whole"
+                           : "stopped early; the tables hold the sequences that were finished, and --resume "
+                             "goes on");
+  remove_plan(folder);
+}
+
 void ablate(const AblateArguments& arguments) {
   const Config config = arguments.config.config();
   const std::string& method = config.run.method;
@@ -198,8 +233,11 @@ void ablate(const AblateArguments& arguments) {
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"ablation.csv", kPlanName}, arguments.force || arguments.resume);
   if (arguments.work.given() || arguments.resume)
-    return run_by_cells(arguments.work, ablation_plan(arguments, config, variants, sequences), arguments.out);
-  if (!arguments.out.empty()) remove_plan(arguments.out);
+    return run_by_cells(arguments.work, ablation_plan(arguments, config, variants, sequences), arguments.out,
+                        arguments.force);
+  if (!arguments.out.empty())
+    return ablate_into(fs::absolute(arguments.out).lexically_normal(),
+                       ablation_plan(arguments, config, variants, sequences), config, variants, sequences);
   std::vector<AblationRow> rows = rows_of(variants);
   std::vector<std::string> names;
   for (const AblatedSequence& sequence : sequences) {
@@ -215,11 +253,9 @@ void ablate(const AblateArguments& arguments) {
     if (cells.size() < variants.size()) break;
     names.push_back(sequence.name);
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].cells.push_back(cells[i]);
-    if (!arguments.out.empty()) write_results(arguments.out, method, rows, names, made_here());
   }
   fmt::print("{}", ablation_text(method, rows, names));
-  if (stop_requested()) fmt::print("\nstopped early; the tables hold the sequences that were finished\n");
-  throw_if_interrupted();
+  throw_if_interrupted("stopped early; the tables are of the sequences that were finished");
 }
 
 }  // namespace
@@ -247,7 +283,7 @@ void add_ablate_command(CLI::App& app) {
   command->add_flag("--force", arguments->force, "Overwrite earlier tables in that folder");
   command
       ->add_flag("--resume", arguments->resume,
-                 "Go on with the ablation in the folder of --out, of which --jobs or --slurm left a part")
+                 "Go on with the ablation in the folder of --out: runs that it has are not made again")
       ->needs("--out")
       ->excludes("--force");
   arguments->config.add_to(*command, true);

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "core/check/time_calibration.hpp"
 #include "core/error.hpp"
@@ -17,7 +18,9 @@
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/run/method_needs.hpp"
+#include "core/run/records_file.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 
@@ -71,6 +74,17 @@ void throw_if_no_pair(const Config& config) {
   if (const std::string why = why_no_outside_masks(config); !why.empty()) throw InputError(why);
 }
 
+CLI::Validator number_between(double least, double most) {
+  const std::string range = fmt::format("FLOAT in [{:g} - {:g}]", least, most);
+  return {[least, most](std::string& text) {
+            const auto value = parse_number(text);
+            return value && *value >= least && *value <= most
+                       ? std::string()
+                       : fmt::format("Value {} not in range {:g} to {:g}", text, least, most);
+          },
+          range};
+}
+
 void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
   command.add_option(
       "--camera", camera,
@@ -80,13 +94,13 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
   command.add_option("--seed", seed, "Seed of a generated sequence")->check(CLI::Range(0, 1'000'000'000));
   command
       .add_option("--frame-rate", frame_rate, "Of a folder whose stamps are frame numbers [Hz]; otherwise 30")
-      ->check(CLI::Range(0.01, 1000.0));
+      ->check(number_between(0.01, 1000.0));
   command
       .add_option("--depth-scale", depth_scale,
                   "Depth image units a metre, whatever the camera says: 1000 = millimetres")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(number_between(1.0, 1e6));
   command.add_option("--depth-offset", depth_offset_s, "Added to the stamps of depth images [s]")
-      ->check(CLI::Range(-1e10, 1e10));
+      ->check(number_between(-1e10, 1e10));
   command.add_option(
       "--truth", truth,
       "What a folder's ground truth means by a pose: as-written, inverse, w-first, mirrored-x, "
@@ -194,19 +208,41 @@ OpenOptions SequenceArguments::options(const Config& config) const {
 }
 
 SequenceArguments SequenceArguments::fixed(const std::string& where, const Config& config) const {
+  std::error_code none;
+  if (is_run_folder(where) && std::filesystem::exists(std::filesystem::path(where) / kRecordsName, none))
+    throw InputError(
+        fmt::format("{}: is a finished run, and a sequence is wanted here; `stillpoint view`, "
+                    "`snapshot`, `report`, `figures` and `export --to` take runs",
+                    where));
   SequenceArguments reading = *this;
   if (!std::exchange(reading.fix, false)) return reading;
   std::vector<std::string> given;  // switches, which stand
   for (const std::string& word : reading.words())
     given.push_back(switch_named(word.substr(0, word.find('='))));
+  const StopBySignal stop;
   for (;;) {
     const auto source = open_sequence(where, reading.options(config));
-    const auto remedy = first_remedy(check_sequence(*source).findings, given);
+    const auto remedy = first_remedy(check_sequence(*source, stop.token()).findings, given);
+    throw_if_interrupted();
     if (!remedy) return reading;
     std::fprintf(stderr, "stillpoint: fixed by %s: %s\n", remedy->first.text().c_str(),
                  remedy->second.sentence.c_str());
     reading.set(remedy->first);
     given.push_back(remedy->first.name);
+  }
+}
+
+void SequenceArguments::tell_what_is_of_no_use(const std::string& where, const FrameSource& source) const {
+  const auto tell = [&where](const std::string& option, const char* what) {
+    warn_once(fmt::format("{}: {} is of no use here: it goes with {}", where, option, what));
+  };
+  if (!stereo.empty() && !source.camera().is_stereo()) tell("--stereo", "stereo pairs");
+  if (!where.starts_with("generated:")) return;
+  for (const std::string& word : words()) {
+    const std::string option = switch_named(word.substr(0, word.find('=')));
+    for (const char* recorded :
+         {"frame-rate", "depth-scale", "depth-offset", "truth", "invert-masks", "topics"})
+      if (option == recorded) tell("--" + option, "recorded sequences");
   }
 }
 
@@ -218,7 +254,8 @@ void SequenceArguments::set(const Remedy& remedy) {
 
 std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, const Config& config,
                                                      SequenceNeeds needs) const {
-  if (fix) return fixed(where, config).open(where, config, needs);
+  const SequenceArguments reading = fixed(where, config);
+  if (fix) return reading.open(where, config, needs);
   auto source = open_sequence(where, options(config));
   if (needs.depth && !source->has_depth()) {
     const std::string why = source->why_not(FramePart::depth);
@@ -230,13 +267,15 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   }
   if (needs.oracle)
     if (const std::string why = why_no_true_masks(*source, where); !why.empty()) throw InputError(why);
+  tell_what_is_of_no_use(where, *source);
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   if (needs.questioned)
     for (const Finding& finding : look_over(*source))
       std::fprintf(stderr, "stillpoint: warning: %s: %s\n", where.c_str(), finding.sentence.c_str());
   if (!calibrate_time) return source;
-  const TimeCalibration times = stillpoint::calibrate_time(*source, config);
+  const TimeCalibration times = stillpoint::calibrate_time(*source, config, {.stop = &stop_requested()});
+  throw_if_interrupted();
   for (const std::string& line : to_lines(times, source->camera()))
     std::fprintf(stderr, "stillpoint: time: %s\n", line.c_str());
   if (!times.told()) return source;

@@ -11,6 +11,9 @@
 
 namespace stillpoint {
 
+/// What an option with a number takes: from `least` to `most`, and no "nan", which CLI::Range lets pass.
+[[nodiscard]] CLI::Validator number_between(double least, double most);
+
 /// The options that every command which runs a method shares: where its constants come from.
 struct ConfigArguments {
   std::string preset;                    ///< a preset's name or a TOML file; empty = defaults
@@ -84,11 +87,16 @@ struct SequenceArguments {
   void set(const Remedy& remedy);
   /// With `fix`: the sequence is questioned (check_sequence), and these are the arguments under which no
   /// certain remedy is left, each told on standard error; what was given stands. Without: these.
+  /// @throws InputError for a finished run's folder
   [[nodiscard]] SequenceArguments fixed(const std::string& where, const Config& config) const;
   /// Opens a folder or `generated:KIND`, and tells its warnings on standard error.
   /// @throws InputError also where it lacks what is needed, with the reason
   [[nodiscard]] std::unique_ptr<FrameSource> open(const std::string& where, const Config& config,
                                                   SequenceNeeds needs = {}) const;
+
+ private:
+  /// Options that this kind of sequence would pass over in silence.
+  void tell_what_is_of_no_use(const std::string& where, const FrameSource& source) const;
 };
 
 /// A convention by its name; empty = as written.

@@ -273,7 +273,7 @@ void benchmark(BenchmarkArguments arguments) {
   if (arguments.work.given()) {
     CellPlan plan = benchmark_plan(arguments, results, columns, places, sequences);
     plan.replaces = replaces;
-    return run_by_cells(arguments.work, plan, out);
+    return run_by_cells(arguments.work, plan, out, arguments.force);
   }
   // After each run, so that an interrupted benchmark keeps what it has; earlier results stay until all is
   // there.
@@ -303,11 +303,8 @@ void benchmark(BenchmarkArguments arguments) {
         }
   keep(!stop_requested());
   fmt::print("{}", tables_text(results, columns));
-  if (stop_requested())
-    fmt::print("\nstopped early; {}\n", replaces
-                                            ? "the earlier tables stay until --resume has made these whole"
-                                            : "the tables hold what was finished");
-  throw_if_interrupted();
+  throw_if_interrupted(replaces ? "stopped early; the earlier tables stay until --resume has made these whole"
+                                : "stopped early; the tables hold what was finished");
 }
 
 }  // namespace

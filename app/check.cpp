@@ -7,6 +7,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
@@ -70,8 +71,10 @@ void check_estimate(const CheckArguments& arguments, const FrameSource& source,
 void check(const CheckArguments& arguments) {
   const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, Config());
   const auto source = open_sequence(arguments.sequence, reading.options(Config()));
-  auto [findings, times] =
-      arguments.estimate.empty() ? check_sequence(*source) : SequenceCheck{check_frames(*source), {}};
+  const StopBySignal stop;
+  auto [findings, times] = arguments.estimate.empty() ? check_sequence(*source, stop.token())
+                                                      : SequenceCheck{check_frames(*source), {}};
+  throw_if_interrupted("stopped before all was asked");
   if (!arguments.estimate.empty()) check_estimate(arguments, *source, findings);
   const Camera& camera = source->camera();
   if (arguments.json) {

@@ -136,6 +136,11 @@ void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& a
   if (evaluation.expected_frames > 0 && evaluation.estimated_poses > evaluation.expected_frames)
     warnings.push_back(fmt::format("{}: holds {} poses, more than the {} frames", arguments.estimate,
                                    evaluation.estimated_poses, evaluation.expected_frames));
+  const bool by_positions = arguments.options.align == AlignBy::rigid ||
+                            arguments.options.align == AlignBy::similarity ||
+                            arguments.options.align == AlignBy::first;
+  if (const std::string open = open_rotation_sentence(evaluation); by_positions && !open.empty())
+    warnings.push_back(fmt::format("{}: {}", arguments.estimate, open));
   if (const auto suspicion = suspect_convention(evaluation.matched, true))
     warnings.push_back(suspicion->sentence());
   else if (const std::string scale = scale_sentence(evaluation);
@@ -278,7 +283,7 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--time-offset", arguments->time_offset,
                       "Added to the estimate's stamps [s]; `auto` finds it from the two paths, and tells it");
   command->add_option("--frame-rate", arguments->frame_rate, "Of stamps that are frame numbers [Hz]")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(number_between(0.01, 1000.0))
       ->capture_default_str();
   auto* frames = command
                      ->add_option("--frames", arguments->options.expected_frames,

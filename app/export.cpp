@@ -28,19 +28,44 @@ struct ExportArguments {
 
 void export_sequence(const ExportArguments& arguments) {
   const auto source = arguments.source.open(arguments.sequence, Config());
+  std::error_code none;
+  if (std::filesystem::equivalent(arguments.sequence, arguments.out, none))
+    throw InputError(fmt::format(
+        "--out {}: is the sequence itself, of which only the frames chosen would be left", arguments.out));
   const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
   ExportedFrames exported;
   {
     Progress progress(source->name(), static_cast<int>(frames.size()));
     exported = export_frames(*source, frames, arguments.out, arguments.force, [&](int, int) {
       progress.advance("");
-      throw_if_interrupted();
+      throw_if_interrupted("stopped before it was done; nothing was written");
     });
   }
   fmt::print("{} frames written to {}\n", exported.written, arguments.out);
   if (!exported.unreadable.empty())
     fmt::print("cannot be read, and have places without images: {}\n", frames_text(exported.unreadable));
   if (exported.too_far > 0) fmt::print("{}\n", too_far_told(exported.too_far, exported.depth_units));
+}
+
+/// An option that the chosen export would pass over in silence is refused.
+void throw_if_of_no_use(const CLI::App& command, const ExportArguments& arguments) {
+  const bool to = !arguments.to.empty(), map = !arguments.dense.map.empty(),
+             images = !arguments.dense.images.empty(), of_run = to || map || images;
+  const auto refuse = [&command](const char* option, bool useful, const char* goes_with) {
+    if (command.count(option) > 0 && !useful)
+      throw InputError(fmt::format("{}: goes with {}, and is of no use here", option, goes_with));
+  };
+  refuse("--out", !of_run, "a sequence, whose frames it takes");
+  refuse("--frames", !of_run, "--out");
+  refuse("--layers", to, "--to");
+  refuse("--voxel", map || images, "--dense and --without-movers");
+  refuse("--every", of_run, "--to, --dense and --without-movers");
+  refuse("--sequence", of_run, "--to, --dense and --without-movers");
+  if (of_run && arguments.source.given())
+    throw InputError(
+        fmt::format("{}: a finished run has its own frames; options that change them go with its "
+                    "sequence",
+                    arguments.sequence));
 }
 
 }  // namespace
@@ -75,7 +100,7 @@ void add_export_command(CLI::App& app) {
       "Its frames with the background filled in where somebody was, as other frames saw it, go to "
       "this folder");
   command->add_option("--voxel", arguments->dense.options.voxel_m, "Of the dense map [m]")
-      ->check(CLI::Range(0.001, 1.0))
+      ->check(number_between(0.001, 1.0))
       ->capture_default_str();
   command
       ->add_option("--every", arguments->dense.every,
@@ -85,7 +110,8 @@ void add_export_command(CLI::App& app) {
   command->add_option("--sequence", arguments->sequence_now, "Where the run's sequence lies now");
   command->add_flag("--force", arguments->force, "Replace a sequence in that folder, or the file");
   arguments->source.add_to(*command, "--length");
-  command->callback([arguments] {
+  command->callback([arguments, command] {
+    throw_if_of_no_use(*command, *arguments);
     const std::string ending = std::filesystem::path(arguments->to).extension().string();
     const bool map = ending == ".ply";
     if (!arguments->to.empty() && !map && ending != ".mcap")

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/export/map_export.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/map_ply.hpp"
-#include "core/run/open_run.hpp"
 #include "core/sequence/association.hpp"
 
 namespace stillpoint {
@@ -25,7 +25,7 @@ std::vector<Eigen::Vector3f> normals_of_map(const OpenedRun& opened, int every) 
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     const FrameRecord& record = run.records[i];
     progress.advance("");
-    throw_if_interrupted();
+    throw_if_interrupted("stopped before it was done; nothing was written");
     const auto pose = nearest_pose(run.trajectory, record.timestamp, kAssociationTolerance);
     if (!record.estimated || !pose || (!record.keyframe && record.index % every != 0)) continue;
     normals.add(opened.source->read(record.index), opened.recorded->record(i),
@@ -39,16 +39,10 @@ std::vector<Eigen::Vector3f> normals_of_map(const OpenedRun& opened, int every) 
 void export_map(const MapExport& wanted) {
   const std::filesystem::path map = wanted.to, keyframes = std::filesystem::path(map).replace_filename(
                                                    map.stem().string() + "_keyframes.ply");
-  const OpenedRun opened = open_run(wanted.run, wanted.sequence);
+  const OpenedRun opened = open_run_and_tell(wanted.run, wanted.sequence);
   const RunResult& run = opened.recorded->run;
   if (run.points.empty()) throw InputError(fmt::format("{}: the run left no map", wanted.run));
-  std::error_code none;
-  const std::filesystem::path folder = map.has_parent_path() ? map.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, none))
-    throw InputError(fmt::format("{}: there is no folder {}", map.string(), folder.string()));
-  for (const auto& file : {map, keyframes})
-    if (!wanted.force && std::filesystem::exists(file, none))
-      throw InputError(fmt::format("{}: is there already; --force replaces it", file.string()));
+  for (const auto& file : {map, keyframes}) check_out_file(file, wanted.force);
   const std::vector<Eigen::Vector3f> normals = normals_of_map(opened, wanted.every);
   WholeFiles files;
   files.add(map, map_ply(run.points, normals, {}));

@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "app/layered_frames.hpp"
+#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/export/mcap_export.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
-#include "core/run/open_run.hpp"
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
@@ -21,11 +21,9 @@ namespace fs = std::filesystem;
 }  // namespace
 
 McapFileName::McapFileName(std::string path, bool force) : path_(std::move(path)), file_(path_) {
-  std::error_code none;
   if (fs::path(path_).extension() != ".mcap")
     throw InputError(fmt::format("{}: expected a name that ends in .mcap", path_));
-  if (!force && fs::exists(path_, none))
-    throw InputError(fmt::format("{}: is there already; --force replaces it", path_));
+  check_out_file(path_, force);
 }
 
 void McapFileName::finish() {
@@ -35,7 +33,7 @@ void McapFileName::finish() {
 
 void export_mcap(const std::string& run_folder, const std::string& sequence, const std::string& to,
                  bool force, const std::vector<std::string>& layers) {
-  const OpenedRun run = open_run(run_folder, sequence);
+  const OpenedRun run = open_run_and_tell(run_folder, sequence);
   if (!layers.empty() && !run.no_images.empty()) throw InputError(run.no_images);
   McapFileName name(to, force);
   const std::vector<FrameRecord>& records = run.recorded->run.records;
@@ -53,7 +51,7 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
         file.add(frames.next(), run.recorded->record(i), run.recorded->mask(i));
       }
       progress.advance("");
-      throw_if_interrupted();
+      throw_if_interrupted("stopped before it was done; nothing was written");
     }
     if (layered) check_layers(layers, layered->found());
   }

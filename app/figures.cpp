@@ -121,9 +121,10 @@ void figures(const FiguresArguments& arguments) {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), last + 1);
     session.go_to(last, [&](const FrameRecord& record) {
       progress.advance(std::string(to_string(record.status)));
-      throw_if_interrupted();
+      throw_if_interrupted("stopped before it was done; no figure was drawn");
     });
     session.go_to(frame);
+    throw_if_interrupted("stopped before it was done; no figure was drawn");
   }
   const auto view = session.view();
   output.write_figure_1(*view);
@@ -161,7 +162,7 @@ void add_figures_command(CLI::App& app) {
   command->add_option("--out", arguments->out, "Folder for the figures; made if missing")->required();
   command->add_option("--theme", arguments->theme, "light or dark")->capture_default_str();
   command->add_option("--scale", arguments->scale, "Of the pictures in figure 1; 1 keeps their pixels")
-      ->check(CLI::Range(0.1, 4.0))
+      ->check(number_between(0.1, 4.0))
       ->capture_default_str();
   command->add_flag("--force", arguments->force, "Overwrite earlier figures");
   arguments->place.source.add_to(*command);

@@ -76,10 +76,8 @@ void generate(const GenerateOptions& options) {
   write.stop = &stop_requested();
   const int written = write_sequence(*sequence, options.out, write).frames;
   fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
-  if (written < sequence->size())
-    fmt::print("stopped early; {}\n",
-               written > 0 ? "what was rendered is a sequence" : "nothing was rendered");
-  throw_if_interrupted();
+  throw_if_interrupted(written > 0 ? "stopped early; what was rendered is a sequence"
+                                   : "stopped early; nothing was rendered");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "core/run/outside_run.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
@@ -34,6 +35,7 @@ void import(const ImportArguments& arguments) {
   const RecordedRun run = read_outside_run(*source, origin, files, warnings);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
+  throw_if_interrupted("stopped before it was done; nothing was written");
   prepare_run_folder(arguments.out, arguments.force);
   write_outside_run(arguments.out, run, *source);
   RunReport report = report_on(run.run, *source);
@@ -61,7 +63,7 @@ void add_import_command(CLI::App& app) {
       "What its poses mean: as-written, inverse, w-first, mirrored-x, mirrored-y, mirrored-z, "
       "bonn");
   command->add_option("--time-offset", arguments->time_offset_s, "Added to its stamps [s]")
-      ->check(CLI::Range(-1e10, 1e10));
+      ->check(number_between(-1e10, 1e10));
   arguments->frames.add_to(*command);
   command->callback([arguments] { import(*arguments); });
 }

@@ -131,9 +131,10 @@ void throw_if_read_otherwise(const CellPlan& plan, const fs::path& folder) {
 
 }  // namespace
 
-void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const fs::path& where) {
+void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const fs::path& where, bool anew) {
   const fs::path folder = fs::absolute(where).lexically_normal();
   throw_if_queued(folder);
+  if (anew) remove_plan(folder);
   throw_if_read_otherwise(plan, folder);
   write_plan(folder, plan);
   const std::vector<int> missing = missing_cells(plan, read_records(folder, plan));
@@ -144,14 +145,13 @@ void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const fs:
     merge_and_tell(folder);
   } catch (const ExitStatus&) {  // told; that it was stopped says more
   }
-  throw_if_interrupted();
+  throw_if_interrupted("stopped early; --resume goes on");
 }
 
 void merge_and_tell(const fs::path& folder) {
   const CellPlan plan = plan_to_go_by(folder);
   const MergedCells merged = merge_cells(plan, read_records(folder, plan));
   fmt::print("{}", cell_kind(plan.kind).tables(plan, merged, folder));
-  if (stop_requested()) fmt::print("\nstopped early; --resume goes on\n");
   if (!merged.whole && plan.replaces) fmt::print("\nthe earlier tables stay until all runs have ended\n");
   if (!merged.missing.empty()) throw ExitStatus{1};
 }

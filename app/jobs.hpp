@@ -48,8 +48,10 @@ const PlannedSequence& add_sequence(CellPlan& plan, const std::string& name, con
                                     std::vector<std::string> reading, const std::string& runs = {});
 
 /// Writes the plan and has its missing cells run, by processes here or by Slurm; then, or by a job, merges.
+/// @param anew what an earlier run of the same plan reached is run again, as --force says
 /// @throws InputError, Interrupted, ExitStatus
-void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const std::filesystem::path& folder);
+void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const std::filesystem::path& folder,
+                  bool anew);
 
 /// Merges a plan's cells, prints and writes the tables. Where earlier results are to be replaced, they stay
 /// as long as not every cell has ended.

@@ -45,6 +45,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? (output_arrived() ? 0 : 1) : 2;
   } catch (const stillpoint::Interrupted& interrupted) {
     (void)output_arrived();
+    std::fprintf(stderr, "stillpoint: %s\n", interrupted.told.c_str());
     return 128 + interrupted.signal;
   } catch (const stillpoint::ExitStatus& exit) {
     return output_arrived() ? exit.status : 1;

@@ -284,7 +284,7 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
   output.finish(config);
   std::printf("%d frames, %d of them without a mask; figures in %s\n", output.frames(), output.without_mask(),
               (fs::path(options.out) / "motion.csv").c_str());
-  throw_if_interrupted();
+  throw_if_interrupted(fmt::format("stopped after {} frames; what was done is kept", output.frames()));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -18,11 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A run's records, with what they lack told.
+RecordedRun read_run_records(const fs::path& folder) {
+  RecordedRun run = read_records(folder);
+  warn_once(run.cut_short);
+  return run;
+}
+
 /// A run of the same sequence to stand beside `run`.
 /// @throws InputError for one that was named and is of another sequence
 std::shared_ptr<const RecordedRun> baseline_beside(const SourceArguments& arguments, const RecordedRun& run) {
   if (!arguments.baseline.empty()) {
-    auto named = std::make_shared<const RecordedRun>(read_records(arguments.baseline));
+    auto named = std::make_shared<const RecordedRun>(read_run_records(arguments.baseline));
     if (named->origin.fingerprint != run.origin.fingerprint)
       throw InputError(fmt::format("--baseline {}: is a run of {}, and {} is one of {}, not the same frames",
                                    arguments.baseline, named->origin.name, arguments.place, run.origin.name));
@@ -34,8 +43,10 @@ std::shared_ptr<const RecordedRun> baseline_beside(const SourceArguments& argume
   try {
     if (!is_run_folder(beside)) return nullptr;
     auto found = std::make_shared<const RecordedRun>(read_records(beside));
-    if (found->origin.fingerprint == run.origin.fingerprint && method_of(found->run.config).baseline)
+    if (found->origin.fingerprint == run.origin.fingerprint && method_of(found->run.config).baseline) {
+      warn_once(found->cut_short);
       return found;
+    }
   } catch (const InputError&) {  // nobody asked for it
   }
   return nullptr;
@@ -47,7 +58,7 @@ OpenedSource open_finished_run(const SourceArguments& arguments) {
         fmt::format("{}: is a finished run, which has its own configuration and frames; options that "
                     "change them go with its sequence",
                     arguments.place));
-  const OpenedRun run = open_run(arguments.place, arguments.sequence);
+  const OpenedRun run = open_run_and_tell(arguments.place, arguments.sequence);
   if (run.recorded->run.records.empty())
     throw InputError(fmt::format("{}: is a run without frames", arguments.place));
   OpenedSource opened;
@@ -59,8 +70,6 @@ OpenedSource open_finished_run(const SourceArguments& arguments) {
   opened.options.recorded_baseline = baseline_beside(arguments, *run.recorded);
   opened.options.no_images = run.no_images;
   opened.problem = run.no_images.empty() ? run.recorded->cut_short : run.no_images;
-  if (!run.recorded->cut_short.empty())
-    std::fprintf(stderr, "stillpoint: warning: %s\n", run.recorded->cut_short.c_str());
   return opened;
 }
 
@@ -74,6 +83,20 @@ OpenedSource open_sequence_at(const std::string& where, const SequenceArguments&
 }
 
 }  // namespace
+
+void warn_once(const std::string& sentence) {
+  static std::set<std::string> told;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  if (!sentence.empty() && told.insert(sentence).second)
+    std::fprintf(stderr, "stillpoint: warning: %s\n", sentence.c_str());
+}
+
+OpenedRun open_run_and_tell(const fs::path& folder, const std::string& sequence) {
+  OpenedRun opened = open_run(folder, sequence);
+  warn_once(opened.recorded->cut_short);
+  return opened;
+}
 
 void SourceArguments::add_to(CLI::App& command) {
   command.add_option("--baseline", baseline,
@@ -93,7 +116,7 @@ void stand_beside(const SourceArguments& arguments, OpenedSource& opened) {
     const OutsideRunFiles files = outside_run_argument(text);
     std::vector<std::string> warnings;
     auto run = std::make_shared<RecordedRun>(is_run_folder(files.where)
-                                                 ? read_records(files.where)
+                                                 ? read_run_records(files.where)
                                                  : read_outside_run(*opened.source, {}, files, warnings));
     if (is_run_folder(files.where) && run->origin.fingerprint != sequence_fingerprint(*opened.source))
       throw InputError(

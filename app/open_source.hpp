@@ -1,10 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "app/arguments.hpp"
+#include "core/run/open_run.hpp"
 #include "ui/session/opened_source.hpp"
 
 namespace stillpoint {
@@ -24,6 +26,13 @@ struct SourceArguments {
   /// Adds --baseline, --sequence and --run; the rest is the command's.
   void add_to(CLI::App& command);
 };
+
+/// Warns of it on standard error, where nobody has in this process; empty sentences are none.
+void warn_once(const std::string& sentence);
+
+/// open_run, and a warning where its records were cut short: for every command, so that none is silent.
+[[nodiscard]] OpenedRun open_run_and_tell(const std::filesystem::path& folder,
+                                          const std::string& sequence = "");
 
 /// @throws InputError in one sentence for what cannot be opened, and for options that a finished run, which
 /// has its own, does not take

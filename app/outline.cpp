@@ -46,7 +46,7 @@ void outline(const OutlineArguments& arguments) {
     Progress progress(source->name(), source->size());
     control.progress = [&](const char*, int, int) {
       progress.advance("");
-      throw_if_interrupted();
+      throw_if_interrupted("stopped; the masks are as they were");
     };
     carried = write_drawn_truth(*source, marks.drawn, out, control);
   }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -44,9 +45,16 @@ const std::atomic<bool>& stop_requested() {
 
 int stop_signal_given() { return stop_signal; }
 
-void throw_if_interrupted() {
-  if (stop_requested()) throw Interrupted{stop_signal};
+void throw_if_interrupted(const std::string& told) {
+  if (stop_requested()) throw Interrupted{stop_signal, told};
 }
+
+StopBySignal::StopBySignal()
+    : watcher_([source = source_](const std::stop_token& done) mutable {
+        constexpr auto kInterval = std::chrono::milliseconds(20);
+        while (!done.stop_requested() && !stop_requested()) std::this_thread::sleep_for(kInterval);
+        if (stop_requested()) source.request_stop();
+      }) {}
 
 std::function<void(const std::string&, double)> opening_progress() {
   struct Line {
@@ -70,7 +78,9 @@ std::function<void(const std::string&, double)> opening_progress() {
 }
 
 Progress::Progress(std::string title, int total)
-    : title_(std::move(title)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) != 0) {}
+    : title_(std::move(title)), total_(std::max(1, total)), terminal_(isatty(STDERR_FILENO) != 0) {
+  (void)stop_requested();  // what shows how far it is can be stopped
+}
 
 Progress::~Progress() {
   if (terminal_) std::fputs("\r\033[K", stderr);

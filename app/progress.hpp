@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <functional>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include "core/stopwatch.hpp"
 
@@ -19,15 +21,28 @@ struct RunResult;
 /// The signal that asked for it; 0 before.
 [[nodiscard]] int stop_signal_given();
 
-/// Thrown by a command that ended early because it was asked to, once what was done is written and told: the
-/// program then ends with status 128 + signal, as shells expect, so that no script takes a part for the
+/// Thrown by a command that ended early because it was asked to, once what was done is written: the program
+/// then says so, and ends with status 128 + signal, as shells expect, so that no script takes a part for the
 /// whole.
 struct Interrupted {
   int signal = 0;
+  std::string told;  ///< how far it came, and what is left of it
 };
 
 /// Throws Interrupted when a stop was requested.
-void throw_if_interrupted();
+/// @param told how far the command came, and what is left of it
+void throw_if_interrupted(const std::string& told = "stopped before it was done");
+
+/// The same for what is stopped by a token: the token's stop is requested soon after the signal.
+class StopBySignal {
+ public:
+  StopBySignal();
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  std::jthread watcher_;
+};
 
 /// How far a long job is, on standard error: a bar with rate and remaining time on a terminal, a plain line
 /// now and then otherwise.

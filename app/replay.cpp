@@ -68,7 +68,7 @@ void ReplayPlan::prepare_out(const std::string& folder, bool force) {
     std::error_code ignored;
     if (screenshot != nullptr && !force && std::filesystem::exists(out_ / screenshot->file, ignored))
       throw InputError(
-          fmt::format("{}: is there already; --force overwrites it", (out_ / screenshot->file).string()));
+          fmt::format("{}: is there already; --force replaces it", (out_ / screenshot->file).string()));
   }
 }
 

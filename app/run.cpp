@@ -102,11 +102,10 @@ void run(const RunArguments& arguments) {
     mcap_name->finish();
     fmt::print("  written to    {}\n", arguments.mcap);
   }
-  if (result.interrupted) {
-    fmt::print("stopped after {} of {} frames{}\n", report.frames, frames_of(*source, options.count),
-               arguments.out.empty() ? "" : "; what was done is kept");
-    throw_if_interrupted();
-  }
+  if (result.interrupted)
+    throw_if_interrupted(fmt::format("stopped after {} of {} frames{}", report.frames,
+                                     frames_of(*source, options.count),
+                                     arguments.out.empty() ? "" : "; what was done is kept"));
   if (const std::string gone = why_gone(arguments.sequence, result); !gone.empty()) throw InputError(gone);
   const bool held = condition && tell_frames(*condition, result, report);
   if (report.tracked == 0)

@@ -165,6 +165,8 @@ class Pictures {
     ++frames_;
   }
 
+  [[nodiscard]] int frames() const { return frames_; }
+
   /// Ends what was begun. @returns what was written, in a sentence
   [[nodiscard]] std::string finish(const std::string& video_name) {
     std::string told;
@@ -264,7 +266,7 @@ void snapshot(const SnapshotArguments& arguments) {
   const PictureChoice chosen = asked_for(arguments, options);
   OpenedSource place = open_source(arguments.place);
   const bool finished_run = place.options.recorded != nullptr;
-  if (!place.problem.empty() && finished_run) fmt::print(stderr, "stillpoint: warning: {}\n", place.problem);
+  warn_once(place.options.no_images);
   if (!finished_run)
     if (const std::string why = why_no_masks(place.config, *place.source); !why.empty())
       throw InputError(why);
@@ -289,6 +291,7 @@ void snapshot(const SnapshotArguments& arguments) {
   EarlySession early(place, prepare, condition ? std::nullopt : std::optional(frames.front()));
   Painter painter(options, chosen);
   FramesWithout without;
+  bool chosen_all = !condition;  // which frames are drawn is known
   {
     Progress progress(fmt::format("{} ({})", place.source->name(), method), frames.back() + 1);
     const auto on_status = [&](FrameStatus status) {
@@ -301,6 +304,7 @@ void snapshot(const SnapshotArguments& arguments) {
       if (condition) {
         session->go_to(frames.back(), on_frame);
         frames = frames_where(*condition, *session->view()->run, frames);
+        chosen_all = true;
       }
       for (const int frame : frames) {
         session->go_to(frame, on_frame);
@@ -317,7 +321,8 @@ void snapshot(const SnapshotArguments& arguments) {
                fmt::join(left, ", "));
   without.tell(frames.size());
   fmt::print("{}", pictures.finish(arguments.video));
-  throw_if_interrupted();
+  throw_if_interrupted(fmt::format("stopped after {}{} frames; what was drawn is kept", pictures.frames(),
+                                   chosen_all ? fmt::format(" of {}", frames.size()) : std::string()));
 }
 
 }  // namespace
@@ -344,13 +349,13 @@ void add_snapshot_command(CLI::App& app) {
   command
       ->add_option("--fps", arguments->fps,
                    "Frames a second of the video; otherwise each is shown at its own time (.mp4, .mkv)")
-      ->check(CLI::Range(0.1, 240.0));
+      ->check(number_between(0.1, 240.0));
   const PainterOptions sizes;
   command->add_option("--size", arguments->size,
                       fmt::format("Of an image, px; otherwise {}x{} for the workbench and {}x{} for a panel",
                                   sizes.workbench_size.first, sizes.workbench_size.second,
                                   sizes.panel_size.first, sizes.panel_size.second));
-  command->add_option("--scale", arguments->scale, "Of text and spacing")->check(CLI::Range(0.5, 4.0));
+  command->add_option("--scale", arguments->scale, "Of text and spacing")->check(number_between(0.5, 4.0));
   command->add_option("--theme", arguments->theme, "dark or light")->capture_default_str();
   command->add_option(
       "--layout", arguments->layout,

@@ -85,8 +85,7 @@ void sweep(const SweepArguments& arguments) {
   fmt::print(
       "Method {}, one run a value; `benchmark --repeat` tells how far runs scatter by themselves.\n\n{}",
       config.run.method, results.markdown);
-  if (stop_requested()) fmt::print("\nstopped early; the tables hold the values that were finished\n");
-  throw_if_interrupted();
+  throw_if_interrupted("stopped early; the tables hold the values that were finished");
 }
 
 }  // namespace

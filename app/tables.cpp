@@ -32,7 +32,9 @@ void make_tables(const TablesArguments& arguments) {
           return provenance_from_json(read_text(results), results);
         }};
     const std::string made = with_tables(page, path, baseline_method().name, sources);
-    if (made == page) {
+    if (page.find("<!-- table:") == std::string::npos) {
+      fmt::print("{}: has no marked table\n", path);
+    } else if (made == page) {
       fmt::print("{}: its tables are those of its results\n", path);
     } else if (arguments.check) {
       differs = true;

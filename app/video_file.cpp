@@ -24,19 +24,14 @@ VideoFile::VideoFile(std::filesystem::path path, const cv::Size& size, double fr
         "--video {}: H.264 takes even sides alone, and the pictures are {}x{}; --size {}x{} makes them "
         "even, and an .avi file takes any",
         path_.string(), size.width, size.height, size.width + size.width % 2, size.height + size.height % 2));
-  std::error_code failed;
-  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, failed))
-    throw InputError(fmt::format("--video {}: there is no folder {}", path_.string(), folder.string()));
-  if (std::filesystem::exists(path_, failed) && !force)
-    throw InputError(fmt::format("--video {}: is there already; --force overwrites it", path_.string()));
+  check_out_file(path_, force);
 }
 
 void VideoFile::add(const cv::Mat& image, double timestamp) {
   if (images_ == 0) {
     if (!video_->open(file_.while_written().string(), size_, step_s_))
       throw InputError(fmt::format(
-          "--video {}: cannot be written (no permission, or there is no encoder for it)", path_.string()));
+          "--video {}: cannot be written (there is no encoder for it)", path_.string()));
   } else {
     const double gap = timestamp - timestamp_;
     shown_at_ += own_times_ && gap > 0.0 ? gap : step_s_;

@@ -43,6 +43,24 @@ NewFolders::~NewFolders() {
     if (!std::filesystem::remove(folder, not_empty)) return;
 }
 
+void check_out_file(const std::filesystem::path& file, bool force) {
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(file, none);
+  if (std::filesystem::is_directory(status))
+    throw InputError(fmt::format("{}: is a folder, where a file is wanted", file.string()));
+  if (std::filesystem::exists(status) && !force)
+    throw InputError(fmt::format("{}: is there already; --force replaces it", file.string()));
+  // A device or a pipe is written to as it is, whatever its folder.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return;
+  const std::filesystem::path whole =
+      std::filesystem::is_symlink(file, none) ? std::filesystem::weakly_canonical(file, none) : file;
+  const std::filesystem::path folder = whole.has_parent_path() ? whole.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, none))
+    throw InputError(fmt::format("{}: there is no folder {}", file.string(), folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError(fmt::format("{}: cannot be written ({})", file.string(), std::strerror(errno)));
+}
+
 WholeFile::WholeFile(std::filesystem::path path, std::string_view ending) : path_(std::move(path)) {
   std::error_code none;
   if (std::filesystem::is_symlink(path_, none)) path_ = std::filesystem::weakly_canonical(path_, none);

@@ -30,6 +30,12 @@ class NewFolders {
   std::vector<std::filesystem::path> missing_;  // when it began; the innermost first
 };
 
+/// Asks, before any work, what would keep a file from being written in the end.
+/// @param force replace a file of that name
+/// @throws InputError when it is a folder, is there already and `force` is not set, or when its folder is
+/// missing or cannot be written to
+void check_out_file(const std::filesystem::path& file, bool force);
+
 /// A file that takes its name once it is whole: until keep() it is written beside, as PATH.part, and what was
 /// there before stays, whatever ends the program. Links are followed; what is no regular file (a device, a
 /// pipe) is written to as it is.

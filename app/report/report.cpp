@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/layered_frames.hpp"
 #include "app/progress.hpp"
@@ -39,20 +40,6 @@ std::string title_of(const std::vector<ReportGroup>& groups) {
                             : fmt::format("Odometry runs of {} sequences", groups.size());
 }
 
-/// Everything that can be known to be wrong is told before work begins.
-void check_out(const ReportArguments& arguments) {
-  const fs::path out = arguments.out;
-  std::error_code failed;
-  if (fs::is_directory(out, failed))
-    throw InputError(
-        fmt::format("--out {}: is a folder, where a file such as report.html is wanted", arguments.out));
-  if (fs::exists(out, failed) && !arguments.force)
-    throw InputError(fmt::format("--out {}: is there already; --force overwrites it", arguments.out));
-  const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
-  if (!fs::is_directory(folder, failed))
-    throw InputError(fmt::format("--out {}: there is no folder {}", arguments.out, folder.string()));
-}
-
 /// The room for pictures is shared by the sequences.
 std::vector<LivePictures> pictures_of(const std::vector<ReportGroup>& groups,
                                       const ReportArguments& arguments, const ReportProgress& progress) {
@@ -67,7 +54,7 @@ std::vector<LivePictures> pictures_of(const std::vector<ReportGroup>& groups,
 }
 
 void report(const ReportArguments& arguments) {
-  check_out(arguments);
+  check_out_file(arguments.out, arguments.force);
   const std::vector<ReportGroup> groups = open_report_runs(arguments.runs);
   Painter painter({.look = {ThemeName::kLight}});
   const bool terminal = isatty(STDERR_FILENO) != 0;
@@ -76,7 +63,8 @@ void report(const ReportArguments& arguments) {
       fmt::print(stderr, "\r\033[K{}", what);
       std::fflush(stderr);
     }
-    throw_if_interrupted();
+    if (terminal && stop_requested()) std::fputs("\r\033[K", stderr);
+    throw_if_interrupted("stopped before it was done; no report was written");
   };
   std::string body = introduction(groups), scripts, told;
   if (arguments.interactive) {
@@ -137,7 +125,7 @@ void add_report_command(CLI::App& app) {
   command
       ->add_option("--picture-mb", arguments->pictures.most_mb,
                    "Room for its pictures [MB]; where all frames need more, some are left out")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_between(0.0, 1000.0))
       ->capture_default_str()
       ->needs(interactive);
   command

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "app/open_source.hpp"
+#include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
@@ -51,7 +53,9 @@ std::vector<ReportGroup> open_report_runs(const std::vector<std::string>& folder
     std::error_code ignored;
     if (!taken.insert(fs::weakly_canonical(folder, ignored)).second)
       throw InputError(fmt::format("{}: is named twice", folder));
-    ReportRun run{folder, "", open_run(folder), {}};
+    throw_if_interrupted("stopped before it was done; no report was written");
+    ReportRun run{folder, "", open_run_and_tell(folder), {}};
+    warn_once(run.opened.no_images);
     if (run.result().records.empty()) throw InputError(fmt::format("{}: is a run without frames", folder));
     run.report = report_on(run.result(), *run.opened.source);
     const std::string& print = run.recorded().origin.fingerprint;

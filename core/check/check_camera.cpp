@@ -36,11 +36,14 @@ class UnderCamera final : public WithCamera {
 /// The RMS of the reprojection error of each frame, px; 0 where it could not be tracked.
 using Residuals = std::vector<double>;
 
-Residuals residuals_under(const FrameSource& source, const std::vector<Frame>& frames, const Camera& camera) {
+Residuals residuals_under(const FrameSource& source, const std::vector<Frame>& frames, const Camera& camera,
+                          const std::atomic<bool>* stop) {
   Config config;
   set_parameter(config, "run.method=none");
   config.run.threads = 1;
-  const RunResult run = run_sequence(UnderCamera(source, frames, camera), config, {});
+  RunOptions options;
+  options.stop = stop;
+  const RunResult run = run_sequence(UnderCamera(source, frames, camera), config, options);
   Residuals residuals;
   for (const FrameRecord& record : run.records) residuals.push_back(record.estimated ? record.rms_px : 0.0);
   return residuals;
@@ -86,7 +89,7 @@ std::vector<Camera> others_than(const Camera& used) {
 
 }  // namespace
 
-std::vector<Finding> check_camera(const FrameSource& source, int frames) {
+std::vector<Finding> check_camera(const FrameSource& source, int frames, const std::atomic<bool>* stop) {
   // A stereo pair is matched under its own calibration, and under another it has other depth.
   if (!source.has_depth() || source.camera().is_stereo()) return {};
   std::vector<Frame> at_hand;
@@ -96,11 +99,12 @@ std::vector<Finding> check_camera(const FrameSource& source, int frames) {
   std::vector<Residuals> residuals(cameras.size());
   const auto every_second = [&](std::size_t first) {
     for (std::size_t i = first; i < cameras.size(); i += 2)
-      residuals[i] = residuals_under(source, at_hand, cameras[i]);
+      residuals[i] = residuals_under(source, at_hand, cameras[i], stop);
   };
   auto beside = std::async(std::launch::async, every_second, std::size_t{1});
   every_second(0);
   beside.get();
+  if (stop != nullptr && *stop) return {};
   std::size_t best = 0;
   Excess most;
   for (std::size_t i = 1; i < cameras.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
 
 #include "core/config.hpp"
@@ -20,20 +21,24 @@ constexpr std::array<const char*, 4> kMendsForCertain = {"depth-scale", "camera"
 
 SequenceCheck check_sequence(const FrameSource& source, const std::stop_token& stop) {
   SequenceCheck check;
+  std::atomic<bool> stopped = false;
+  const std::stop_callback on_stop(stop, [&stopped] { stopped = true; });
   const auto add = [&check](std::vector<Finding> found) {
     for (Finding& finding : found) check.findings.push_back(std::move(finding));
   };
   add(check_frames(source));
   add(check_registration(source));
   const std::size_t before = check.findings.size();
-  if (!stop.stop_requested()) add(check_parallax(source));
+  if (!stopped) add(check_parallax(source));
   // Poses that rest on what is no depth would be blamed on scale, camera or truth.
   if (check.findings.size() > before) return check;
-  if (!stop.stop_requested()) add(check_odometry(source, kFramesTracked));
-  if (!stop.stop_requested()) add(check_camera(source, kFramesByCamera));
-  if (stop.stop_requested()) return check;
-  check.times = calibrate_time(source, Config(), kShortStretch);
-  add(check_times(check.times, source.camera()));
+  if (!stopped) add(check_odometry(source, kFramesTracked, &stopped));
+  if (!stopped) add(check_camera(source, kFramesByCamera, &stopped));
+  if (stopped) return check;
+  TimeStretch stretch = kShortStretch;
+  stretch.stop = &stopped;
+  check.times = calibrate_time(source, Config(), stretch);
+  if (!stopped) add(check_times(check.times, source.camera()));
   return check;
 }
 

@@ -20,7 +20,7 @@ struct SequenceCheck {
 
 /// All that a sequence can be questioned by, in some seconds: its lists and images, the odometry over its
 /// first frames beside its ground truth, other cameras, and when its rows were measured.
-/// @param stop asked for between these: what was found by then is returned
+/// @param stop what was found by then is returned
 [[nodiscard]] SequenceCheck check_sequence(const FrameSource& source, const std::stop_token& stop = {});
 
 /// A switch that mends a finding.

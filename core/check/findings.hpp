@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -36,7 +37,9 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// The odometry's (method `none`) poses of the sequence's first frames, and what they say: few frames that
 /// can be tracked, and, where there is ground truth, check_truth.
 /// @param frames at most
-[[nodiscard]] std::vector<Finding> check_odometry(const FrameSource& source, int frames);
+/// @param stop when it turns true, nothing is found
+[[nodiscard]] std::vector<Finding> check_odometry(const FrameSource& source, int frames,
+                                                  const std::atomic<bool>* stop = nullptr);
 
 /// Whether depth lies on colour: by the shift under which outlines in depth (its near sides) lie nearest to
 /// edges in brightness, over frames spread over the sequence. Told from 6 px on, where that takes a tenth off
@@ -53,7 +56,9 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// the one that is used, and surely so (4 standard errors over the frames). Cameras that are alike
 /// (freiburg1's and freiburg2's) cannot be told apart in so few frames, nor any where people walk about.
 /// @param frames at most; they are read once and tracked under each camera, two cameras side by side
-[[nodiscard]] std::vector<Finding> check_camera(const FrameSource& source, int frames);
+/// @param stop when it turns true, nothing is found
+[[nodiscard]] std::vector<Finding> check_camera(const FrameSource& source, int frames,
+                                                const std::atomic<bool>* stop = nullptr);
 
 /// A shift of the truth's clock under which motions fit better: seconds to add to the truth's stamps, and
 /// both fits.
@@ -62,8 +67,9 @@ struct TimeShift {
   double as_is_m = 0.0, mended_m = 0.0;  ///< RMSE of motions over a few frames, a degree counting 1.7 cm
 };
 
-/// The best shift within half a second either way, when it leaves less than 70 % of the error and is 15 ms or
-/// more.
+/// The best shift as far as offset_search lets, half a second at most, when it leaves less than 70 % of the
+/// error over the same motions, is 15 ms or more, is not at the end of the search, and holds without any
+/// fifth of the stretch: over a short one, where odometry slips once, some shift always fits better.
 [[nodiscard]] std::optional<TimeShift> find_time_shift(const Trajectory& truth, const Trajectory& estimate);
 
 }  // namespace stillpoint

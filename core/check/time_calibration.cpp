@@ -54,13 +54,16 @@ class KeepingDepth final : public WithCamera {
   mutable std::map<int, Kept> kept_;
 };
 
+/// Nothing where it was stopped.
 TrackedStretch track(const FrameSource& source, const Camera& camera, const Config& config, int first,
-                     int count) {
+                     int count, const std::atomic<bool>* stop) {
   const KeepingDepth seen_by(source, camera);
   RunOptions options;
   options.first = first, options.count = count;
   options.keep_features = true;
+  options.stop = stop;
   const RunResult run = run_sequence(seen_by, config, options);
+  if (run.interrupted) return {};
   std::unordered_map<int, int> seen_in;  // frames, by point
   for (const FrameRecord& record : run.records)
     for (const FeatureRecord& feature : record.features)
@@ -124,8 +127,12 @@ TimeCalibration calibrate_stretch(const FrameSource& source, const Config& confi
   Times sigma = Times::Constant(1.0);
   Trajectory poses;
   while (result.runs < stretch.runs) {
-    TrackedStretch tracked = track(source, camera, config, first, count);
+    TrackedStretch tracked = track(source, camera, config, first, count, stretch.stop);
     ++result.runs;
+    if (stretch.stop != nullptr && *stretch.stop) {
+      result.why_not = "the calibration was stopped";
+      return result;
+    }
     result.observations = tracked.observations;
     poses = tracked.poses;
     if (static_cast<int>(tracked.frames.size()) < kFewestFrames) {
@@ -278,7 +285,7 @@ TimeCalibration calibrate_time(const FrameSource& source, const Config& config, 
   }
   for (int i = 0; i < stretch.tries; ++i) {
     const int first = i * stretch.frames, count = std::min(stretch.frames, source.size() - first);
-    if (count < kFewestFrames) break;
+    if (count < kFewestFrames || (stretch.stop != nullptr && *stretch.stop)) break;
     result = calibrate_stretch(source, config, first, count, stretch);
     if (result.readout.told) return result;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct TimeStretch {
   int frames = 150;  ///< at most, in one stretch
   int tries = 3;     ///< stretches, one after the other, until one has motion enough for the readout
   int runs = 4;      ///< of the odometry over a stretch, at most
+  const std::atomic<bool>* stop = nullptr;  ///< when it turns true, nothing is told
 };
 
 /// How long (s) after their stamps poses fit the ground truth best: the time under which motions over half a

@@ -67,18 +67,6 @@ std::string figure(const std::optional<double>& value, int digits) {
 
 std::string whole(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "-"; }
 
-Provenance provenance_from(const nlohmann::json& json) {
-  Provenance made;
-  constexpr std::string_view kProgram = "stillpoint ";
-  const auto program = json.at("program").get<std::string>();
-  made.version = program.starts_with(kProgram) ? program.substr(kProgram.size()) : program;
-  json.at("commit").get_to(made.commit);
-  json.at("machine").get_to(made.machine);
-  json.at("date").get_to(made.date);
-  json.at("command").get_to(made.command);
-  return made;
-}
-
 }  // namespace
 
 const BenchmarkResult* BenchmarkResults::find(const std::string& sequence, const std::string& odometry,
@@ -138,7 +126,7 @@ nlohmann::ordered_json to_json(const MissingRun& run) {
 
 nlohmann::ordered_json to_json(const Provenance& made) {
   nlohmann::ordered_json json;
-  json["program"] = "stillpoint " + made.version;
+  json["program"] = program_text(made.version);
   json["commit"] = made.commit;
   json["machine"] = made.machine;
   json["date"] = made.date;
@@ -148,7 +136,7 @@ nlohmann::ordered_json to_json(const Provenance& made) {
 
 Provenance provenance_from_json(const std::string& text, const std::string& where) {
   try {
-    return provenance_from(parse_json(text));
+    return read_provenance(parse_json(text));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(
         fmt::format("{}: does not say what it was made by ({})", where, printable(error.what())));
@@ -168,7 +156,7 @@ BenchmarkResults results_from_json(const std::string& text, const std::string& w
   try {
     const nlohmann::json json = parse_json(text);
     BenchmarkResults results;
-    static_cast<Provenance&>(results) = provenance_from(json);
+    static_cast<Provenance&>(results) = read_provenance(json);
     json.at("config").get_to(results.config);
     for (const nlohmann::json& run : json.at("runs")) results.runs.push_back(run_from(run));
     if (const auto missing = json.find("missing"); missing != json.end())

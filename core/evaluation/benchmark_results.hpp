@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/provenance.hpp"
 #include "core/evaluation/tables.hpp"
 
 namespace stillpoint {
@@ -47,14 +48,6 @@ struct MissingRun {
 
 /// In place of an engine's name, for another program's run: it stands beside the runs behind any engine.
 inline constexpr const char* kItsOwnOdometry = "its own";
-
-/// What results were made by.
-struct Provenance {
-  std::string version{}, commit{};  ///< of the program
-  std::string machine{};            ///< processor and number of cores
-  std::string date{};               ///< of its end, YYYY-MM-DD
-  std::string command{};            ///< what was typed
-};
 
 /// A benchmark's results.
 struct BenchmarkResults : Provenance {

@@ -35,13 +35,21 @@ Pairs pairs_of(const std::vector<MatchedPose>& matched) {
 
 Pose relative(const Pose& a, const Pose& b) { return a.inverse() * b; }
 
+/// Pairs that are left out: `begin` to `end`, the latter not among them.
+struct LeftOut {
+  std::size_t begin = 0, end = 0;
+  [[nodiscard]] bool has(std::size_t pair) const { return pair >= begin && pair < end; }
+};
+
 /// The rotation X that carries the estimate's turns into the truth's, log(A) = X log(B); then the lever arm.
-std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched) {
+std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched, const LeftOut& left_out = {}) {
   const Pairs pairs = pairs_of(matched);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < pairs.count; ++i)
+  for (std::size_t i = 0; i < pairs.count; ++i) {
+    if (left_out.has(i)) continue;
     sum += so3_log(relative(matched[i].truth, matched[i + pairs.step].truth).linear()) *
            so3_log(relative(matched[i].estimate, matched[i + pairs.step].estimate).linear()).transpose();
+  }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   // Turns about one axis leave the rotation about it open.
   if (svd.singularValues()[1] < 1e-3 * svd.singularValues()[0] || svd.singularValues()[0] <= 0)
@@ -52,6 +60,7 @@ std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched) {
   Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < pairs.count; ++i) {
+    if (left_out.has(i)) continue;
     const Pose a = relative(matched[i].truth, matched[i + pairs.step].truth);
     const Pose b = relative(matched[i].estimate, matched[i + pairs.step].estimate);
     const Eigen::Matrix3d lever = a.linear() - Eigen::Matrix3d::Identity();
@@ -62,8 +71,33 @@ std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched) {
   return body_from_camera;
 }
 
-/// The truth's body by hand_eye, and how well it fits then.
+/// Whether the body tells motions that it was not fitted to: six free numbers fit whatever a short stretch of
+/// poor odometry has. Each fifth of the pairs is told by the others.
+bool tells_what_was_left_out(const std::vector<MatchedPose>& matched, const MotionFit& as_is) {
+  constexpr std::size_t kParts = 5;
+  const Pairs pairs = pairs_of(matched);
+  double translation = 0.0, rotation = 0.0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const LeftOut left_out{part * pairs.count / kParts, (part + 1) * pairs.count / kParts};
+    const auto body = hand_eye(matched, left_out);
+    if (!body) return false;
+    for (std::size_t i = left_out.begin; i < left_out.end; ++i) {
+      const MatchedPose &a = matched[i], &b = matched[i + pairs.step];
+      const Pose error =
+          relative(a.truth * *body, b.truth * *body).inverse() * relative(a.estimate, b.estimate);
+      translation += error.translation().squaredNorm();
+      rotation += std::pow(rotation_angle(error.linear()), 2);
+    }
+  }
+  const auto count = static_cast<double>(pairs.count);
+  return std::sqrt(translation / count) + std::sqrt(rotation / count) < kShareLeft * as_is.combined_m();
+}
+
+/// The truth's body by hand_eye, and how well it fits then. Nothing of a stretch that is too short for it.
 std::optional<Suspicion> suspect_body(const std::vector<MatchedPose>& matched, const MotionFit& as_is) {
+  constexpr double kShortest =
+      0.8;  // s, of a motion; half of the poses where they last less than two seconds
+  if (as_is.delta_s < kShortest || !tells_what_was_left_out(matched, as_is)) return std::nullopt;
   Suspicion suspicion;
   suspicion.as_is = as_is;
   suspicion.body_from_camera = hand_eye(matched);
@@ -82,6 +116,17 @@ double truth_spread_m(const std::vector<MatchedPose>& matched) {
   double squares = 0;
   for (const MatchedPose& pose : matched) squares += (pose.truth.translation() - mean).squaredNorm();
   return matched.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(matched.size()));
+}
+
+/// RMS distance of the true positions from the line that fits them best, along their second axis, m.
+double second_spread_m(const std::vector<MatchedPose>& matched) {
+  if (matched.size() < 2) return 0.0;
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(matched.size()));
+  for (Eigen::Index i = 0; i < positions.cols(); ++i)
+    positions.col(i) = matched[static_cast<std::size_t>(i)].truth.translation();
+  positions.colwise() -= Eigen::Vector3d(positions.rowwise().mean());
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(positions * positions.transpose());
+  return std::sqrt(std::max(0.0, svd.singularValues()[1]) / static_cast<double>(matched.size()));
 }
 
 }  // namespace
@@ -163,14 +208,35 @@ std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
   // Poses that have nothing to do with the truth also fit better when they are shrunk to a point.
   constexpr double kMostOfSpread = 0.2;
   constexpr double kRemarkable = 0.03;
+  constexpr double kCertain = 4.0;  // standard errors
   const auto& similarity = evaluation.ate.similarity;
-  if (!similarity || std::abs(std::log(similarity->scale)) < kRemarkable ||
+  const std::size_t poses = evaluation.matched.size();
+  if (!similarity || poses < kFewestPoses) return "";
+  // Of a scale that is fitted to residuals of this size over a path of that spread.
+  const double spread = truth_spread_m(evaluation.matched),
+               standard_error = similarity->rmse_m / (spread * std::sqrt(static_cast<double>(poses)));
+  if (!(std::abs(std::log(similarity->scale)) > kCertain * standard_error) ||
+      std::abs(std::log(similarity->scale)) < kRemarkable ||
       similarity->rmse_m > 0.5 * evaluation.ate.translation_m.rmse ||
-      similarity->rmse_m > kMostOfSpread * truth_spread_m(evaluation.matched))
+      similarity->rmse_m > kMostOfSpread * spread)
     return "";
   return fmt::format(
       "the estimate fits {:.4f} m instead of {:.4f} m when its lengths are multiplied by {:.3f}",
       similarity->rmse_m, evaluation.ate.translation_m.rmse, similarity->scale);
+}
+
+std::string open_rotation_sentence(const TrajectoryEvaluation& evaluation) {
+  constexpr double kFarDeg = 20.0, kSteady = 0.2;  // deg; of the mean, how far a constant angle scatters
+  constexpr double kTellsRotation = 3.0;           // times the error that positions lie beside a line
+  const ErrorStatistics& rotation = evaluation.ate.rotation_deg;
+  if (rotation.count == 0 || rotation.mean < kFarDeg || rotation.stddev > kSteady * rotation.mean) return "";
+  const double beside = second_spread_m(evaluation.matched);
+  if (beside > kTellsRotation * evaluation.ate.translation_m.rmse) return "";
+  return fmt::format(
+      "the positions lie within {:.3f} m of a line and miss by {:.3f} m: they do not tell the rotation about "
+      "it, and an "
+      "ATE rotation of {:.1f} deg means nothing (`--align origin` goes by the first pose)",
+      beside, evaluation.ate.translation_m.rmse, rotation.mean);
 }
 
 }  // namespace stillpoint

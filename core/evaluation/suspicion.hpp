@@ -37,13 +37,18 @@ struct Suspicion {
 
 /// The reading of truth or estimate that lets both fit best, when it leaves less than 40 % of an error that
 /// is worth a word (2 cm and more, a degree counting 1.7 cm). Conventions are tried one by one; if none does,
-/// the constant rotation and lever arm between two bodies that move as one (hand-eye calibration).
+/// the constant rotation and lever arm between two bodies that move as one (hand-eye calibration), where
+/// poses last long enough (motions of 0.8 s) and each fifth of the motions is told by the others as well.
 /// @param estimate_may_err false where the estimate is our own, whose convention is known
 [[nodiscard]] std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matched,
                                                           bool estimate_may_err);
 
-/// The scale, when it explains more than half of the absolute error and is off one by more than 3 %: one
-/// sentence.
+/// The scale, when it explains more than half of the absolute error, is off one by more than 3 % and surely
+/// so (8 poses, 4 standard errors): one sentence.
 [[nodiscard]] std::string scale_sentence(const TrajectoryEvaluation& evaluation);
+
+/// That the alignment's rotation is not told by the positions, which lie too near a line for how much they
+/// miss, where all orientations are off by the same large angle: one sentence.
+[[nodiscard]] std::string open_rotation_sentence(const TrajectoryEvaluation& evaluation);
 
 }  // namespace stillpoint

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/evaluation/provenance.hpp"
 #include "core/hash.hpp"
 #include "core/json_text.hpp"
 #include "core/out_folder.hpp"
@@ -22,7 +23,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kCellsFolder = "cells";
-constexpr std::string_view kProgramName = "stillpoint ";
 
 /// JSON of whatever bytes there are: those that are no UTF-8 are replaced, for paths and logs may hold any.
 std::string text_of(const Json& json, int indent = -1) {
@@ -74,7 +74,7 @@ std::string rows_text(const char* name, const Values& values, Write write) {
 Json settings_json(const CellPlan& plan) {
   Json json;
   json["kind"] = plan.kind;
-  json["program"] = std::string(kProgramName) + plan.version;
+  json["program"] = program_text(plan.version);
   json["commit"] = plan.commit;
   json["config"] = plan.config;
   json["engines"] = plan.engines;
@@ -164,14 +164,12 @@ CellPlan plan_from_json(const std::string& text, const std::string& where) {
     const Json json = parse_json<Json>(text);
     CellPlan plan;
     json.at("kind").get_to(plan.kind);
-    const auto program = json.at("program").get<std::string>();
-    plan.version = program.starts_with(kProgramName) ? program.substr(kProgramName.size()) : program;
-    json.at("commit").get_to(plan.commit);
+    const Provenance made = read_provenance(json, {"program", "commit", "command"});
+    plan.version = made.version, plan.commit = made.commit, plan.command = made.command;
     json.at("config").get_to(plan.config);
     json.at("engines").get_to(plan.engines);
     json.at("methods").get_to(plan.methods);
     json.at("repeated").get_to(plan.repeated);
-    json.at("command").get_to(plan.command);
     json.at("replaces").get_to(plan.replaces);
     for (const Json& sequence : json.at("sequences"))
       plan.sequences.push_back({sequence.at("name"), sequence.at("where"), sequence.at("runs"),
@@ -222,6 +220,7 @@ void remove_plan(const fs::path& folder) {
   std::error_code none;
   fs::remove(folder / kPlanName, none);
   remove_records(folder, false);
+  fs::remove(folder / kCellsFolder, none);  // where it is empty
 }
 
 std::string to_json_text(const CellRecord& record) {
@@ -242,8 +241,8 @@ CellRecord record_from_json(const std::string& text, const std::string& where) {
     CellRecord record;
     json.at("cell").get_to(record.cell);
     json.at("plan").get_to(record.plan);
-    json.at("commit").get_to(record.commit);
-    json.at("machine").get_to(record.machine);
+    const Provenance made = read_provenance(json, {"commit", "machine"});
+    record.commit = made.commit, record.machine = made.machine;
     json.at("status").get_to(record.status);
     record.said = json.value("said", std::string());
     if (record.status == 0) record.json = json.at("result").dump();

@@ -56,6 +56,13 @@ class Folder final : public FileStore {
     std::sort(names.begin(), names.end());
     return names;
   }
+  [[nodiscard]] std::string why_no_bytes(const std::string& name) const override {
+    std::error_code none;
+    const std::string path = path_of(name);
+    const fs::file_status status = fs::status(path, none);
+    if (!fs::exists(status)) return none && status.type() != fs::file_type::not_found ? "" : "is missing";
+    return fs::is_regular_file(status) && fs::file_size(path, none) == 0 ? "is empty (0 bytes)" : "";
+  }
   [[nodiscard]] std::string read(const std::string& name, Bytes& bytes) const override {
     return read_bytes(path_of(name), bytes);
   }

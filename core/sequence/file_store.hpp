@@ -24,6 +24,8 @@ class FileStore {
   [[nodiscard]] virtual bool is_folder(const std::string& name) const = 0;
   /// The names of what lies directly in a folder ("" = the store itself), without the folder, in order.
   [[nodiscard]] virtual std::vector<std::string> entries(const std::string& folder) const = 0;
+  /// What read() would say of a file that is missing or empty, by a look at its entry alone; empty otherwise.
+  [[nodiscard]] virtual std::string why_no_bytes(const std::string& name) const = 0;
   /// @return why there are no bytes, as the end of a sentence that begins with path_of(name); empty when all
   /// is well
   [[nodiscard]] virtual std::string read(const std::string& name, Bytes& bytes) const = 0;

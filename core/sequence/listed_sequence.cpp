@@ -73,6 +73,7 @@ void ListedSequence::read_lists() {
   else if (lists.depths)
     join_depth(lists);
   if (lists.masks) join_masks(*lists.masks);
+  tell_files_without_bytes();
 }
 
 void ListedSequence::join_depth(FolderLists& lists) {
@@ -120,11 +121,34 @@ void ListedSequence::join_masks(const ImageList& masks) {
                                              mask_list_, kAssociationTolerance);
     return;
   }
-  const auto gone = [this](const Entry& e) { return e.mask && !input_->is_there(e.mask->file); };
-  if (const auto first = std::find_if(frames_.begin(), frames_.end(), gone); first != frames_.end())
-    warnings_.push_back(fmt::format(
-        "{}:{}: {} is missing; {} mask(s) are, and their frames have no true mask", mask_list_,
-        first->mask->line, first->mask->file, std::count_if(frames_.begin(), frames_.end(), gone)));
+}
+
+void ListedSequence::tell_files_without_bytes() {
+  constexpr std::size_t kMostNamed = 6;
+  const auto tell = [this](const std::string& list, const char* images, const char* so, const auto& file_of) {
+    std::vector<std::string> told;
+    std::size_t listed = 0, without = 0;
+    for (const Entry& frame : frames_) {
+      const ListEntry* file = file_of(frame);
+      if (file == nullptr) continue;
+      ++listed;
+      const std::string why = input_->why_no_bytes(file->file);
+      if (why.empty()) continue;
+      if (++without <= kMostNamed) told.push_back(fmt::format("{} {}", file->file, why));
+    }
+    if (without == 0) return;
+    if (without > kMostNamed) told.push_back(fmt::format("and {} more", without - kMostNamed));
+    warnings_.push_back(fmt::format("{}: {} of {} {} have no bytes, and {}: {}", list, without, listed,
+                                    images, so, fmt::join(told, ", ")));
+  };
+  tell(colour_list_, "colour images", "their frames cannot be read",
+       [](const Entry& e) { return &e.colour; });
+  if (has_depth_ || is_stereo_)
+    tell(depth_list_, is_stereo_ ? "right images" : "depth images", "their frames have no depth",
+         [](const Entry& e) { return e.depth ? &*e.depth : nullptr; });
+  if (has_masks_)
+    tell(mask_list_, "masks", "their frames have no true mask",
+         [](const Entry& e) { return e.mask ? &*e.mask : nullptr; });
 }
 
 int ListedSequence::join(const ImageList& list, Part part) {

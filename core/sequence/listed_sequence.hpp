@@ -59,6 +59,8 @@ class ListedSequence final : public FrameSource {
   void join_depth(FolderLists& lists);
   void join_right(const FolderLists& lists);
   void join_masks(const ImageList& masks);
+  /// Files that are missing or empty, by their names: what reading them would tell frame by frame.
+  void tell_files_without_bytes();
   int join(const ImageList& list, Part part);
   [[nodiscard]] cv::Size choose_camera();
   void begin_registration();

@@ -31,7 +31,9 @@ class SequenceInput {
   [[nodiscard]] virtual Camera camera(std::vector<std::string>& warnings) = 0;
   /// An image by its ListEntry::file. Never throws.
   [[nodiscard]] virtual ImageRead image(const std::string& file) const = 0;
-  [[nodiscard]] virtual bool is_there(const std::string& file) const = 0;
+  /// Why an image's file has no bytes, as the end of a sentence that begins with its name, by a look at its
+  /// entry alone: it is missing or empty. Empty where it has some, or where only reading tells.
+  [[nodiscard]] virtual std::string why_no_bytes(const std::string&) const { return {}; }
   /// An image's name as messages have it.
   [[nodiscard]] virtual std::string path_of(const std::string& file) const = 0;
   /// What the input holds, a line each, for the user to choose from; empty where there is nothing to choose.

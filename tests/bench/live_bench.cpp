@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "core/allocator.hpp"
 #include "core/sequence/source.hpp"
+#include "tests/bench/bench_main.hpp"
 #include "tests/support/resident_memory.hpp"
 #include "ui/session/session.hpp"
 
@@ -46,17 +46,4 @@ void measure(const std::string& where, const std::string& method, int frames) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: live_bench SEQUENCE [METHOD [FRAMES]]\n");
-    return 2;
-  }
-  cv::setNumThreads(1);
-  tune_allocator();  // as the program does
-  try {
-    measure(argv[1], argc > 2 ? argv[2] : "stillpoint", argc > 3 ? std::stoi(argv[3]) : 0);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "live_bench: {}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return stillpoint::method_bench_main(argc, argv, "live_bench", measure); }

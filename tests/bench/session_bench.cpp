@@ -13,11 +13,11 @@
 #include <thread>
 #include <vector>
 
-#include "core/allocator.hpp"
 #include "core/motion/paper/paper_config.hpp"
 #include "core/motion/stillpoint/stillpoint_config.hpp"
 #include "core/run/run_report.hpp"
 #include "core/stopwatch.hpp"
+#include "tests/bench/bench_main.hpp"
 #include "tests/support/resident_memory.hpp"
 #include "ui/session/session.hpp"
 
@@ -109,16 +109,5 @@ void measure(const std::string& where, const std::string& method, int frames) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: session_bench SEQUENCE [METHOD [FRAMES]]\n");
-    return 2;
-  }
-  cv::setNumThreads(1);
-  tune_allocator();  // as the program does
-  try {
-    measure(argv[1], argc > 2 ? argv[2] : "stillpoint", argc > 3 ? std::stoi(argv[3]) : 0);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "session_bench: {}\n", error.what());
-    return 1;
-  }
+  return stillpoint::method_bench_main(argc, argv, "session_bench", measure);
 }

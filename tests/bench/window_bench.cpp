@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/allocator.hpp"
 #include "core/stopwatch.hpp"
+#include "tests/bench/bench_main.hpp"
 #include "ui/shell/window.hpp"
 #include "ui/workbench/app_controller.hpp"
 
@@ -129,18 +129,10 @@ class Bench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: window_bench SEQUENCE [FRAMES]\n");
-    return 2;
-  }
-  cv::setNumThreads(1);
-  tune_allocator();  // as the program does
-  try {
-    Bench bench(argv[1], argc > 2 ? std::stoi(argv[2]) : 0);
-    bench.step();
-    bench.play();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "window_bench: {}\n", error.what());
-    return 1;
-  }
+  return stillpoint::bench_main(argc, argv, "window_bench SEQUENCE [FRAMES]",
+                                [](const std::vector<std::string>& words) {
+                                  Bench bench(words[0], words.size() > 1 ? std::stoi(words[1]) : 0);
+                                  bench.step();
+                                  bench.play();
+                                });
 }

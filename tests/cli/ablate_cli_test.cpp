@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -37,6 +40,36 @@ TEST(SweepCommand, RunsEachValueAndWritesWhatItReached) {
   expect_one_sentence(run_cli({"sweep", sequence.path(), "--parameter", "run.method=1:2"}), "is no number");
   expect_one_sentence(run_cli({"sweep", sequence.path(), "--parameter", "nothing.at_all"}),
                       "there is no parameter nothing.at_all");
+}
+
+TEST(AblateCommand, StoppedInOneProcessGoesOnAndForceKeepsEarlierTables) {
+  const SmallSequence sequence(34);
+  const std::string out = sequence.path("out");
+  const std::vector<std::string> words = {"ablate",         sequence.path(), "--without",
+                                          "prior,smoother", "--out",         out};
+  const auto with = [&words](const char* word) {
+    std::vector<std::string> all = words;
+    all.emplace_back(word);
+    return all;
+  };
+  ASSERT_EQ(run_cli(words).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(out + "/plan.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/cells"));
+  const std::string before = sequence.folder.read("out/ablation.csv");
+  sequence.write_lists(300);
+  CliProcess process(with("--force"));
+  constexpr int kPolls = 6000;
+  for (int i = 0; i < kPolls && !std::filesystem::exists(out + "/cells/000000.json"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  process.send(SIGINT);
+  const CliResult stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 128 + SIGINT) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("the earlier tables stay until --resume has made these whole"));
+  EXPECT_EQ(sequence.folder.read("out/ablation.csv"), before);
+  const CliResult resumed = run_cli(with("--resume"));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("2 of the plan's 3 runs are to be made"));
+  EXPECT_NE(sequence.folder.read("out/ablation.csv"), before);
 }
 
 TEST(AblateCommand, RunsTheWholeMethodAndEachWithoutOne) {

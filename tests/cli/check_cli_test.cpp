@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -72,6 +74,33 @@ TEST(CheckCommand, ARunIsToldWhatAQuickLookFinds) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("warning: " + sequence.path() +
                                  ": 1 of 7 sampled colour images are the same, pixel for pixel"));
+}
+
+TEST(CheckCommand, NamesFilesWithoutBytes) {
+  const SmallSequence sequence(8);
+  std::ofstream(sequence.path(sequence.colour(2))).close();
+  std::ofstream(sequence.path(sequence.colour(5))).close();
+  std::filesystem::remove(sequence.path(sequence.depth(3)));
+  const std::string colours = "2 of 8 colour images have no bytes, and their frames cannot be read: " +
+                              sequence.colour(2) + " is empty (0 bytes), " + sequence.colour(5) +
+                              " is empty (0 bytes)",
+                    depths = "1 of 8 depth images have no bytes, and their frames have no depth: " +
+                             sequence.depth(3) + " is missing";
+  const CliResult check = run_cli({"check", sequence.path()});
+  EXPECT_EQ(check.exit_code, 3);
+  EXPECT_THAT(check.out, HasSubstr("  images    " + sequence.path("rgb.txt") + ": " + colours));
+  EXPECT_THAT(check.out, HasSubstr("  depth     " + sequence.path("depth.txt") + ": " + depths));
+  // Whatever opens a sequence says so, and an archive is no other than its folder.
+  const std::string archive = sequence.path("all.tar");
+  ASSERT_EQ(CliProcess({"-c", "cd " + sequence.path() + " && tar -cf all.tar *.txt rgb depth"}, "/bin/bash")
+                .wait()
+                .exit_code,
+            0);
+  for (const std::string& place : {sequence.path(), archive}) {
+    const CliResult run = run_cli({"run", place, "--method", "none"});
+    EXPECT_THAT(run.err, HasSubstr(colours));
+    EXPECT_THAT(run.err, HasSubstr(depths));
+  }
 }
 
 TEST(CheckCommand, SaysWhetherFramesTellTimes) {

@@ -195,6 +195,18 @@ TEST(Jobs, KilledLeavesNoCellRunningAndGoesOn) {
   EXPECT_EQ(nlohmann::json::parse(sequence.folder.read("out/results.json")).at("runs").size(), 2U);
 }
 
+TEST(Jobs, ForceRunsAnewWhatTheSamePlanHas) {
+  const SmallSequence sequence(4);
+  for (const Words& words : {Words{"benchmark", sequence.path(), "--methods", "none"},
+                             Words{"ablate", sequence.path(), "--without", "prior"}}) {
+    const std::string out = sequence.path(words[0]);
+    ASSERT_EQ(run_cli(with_words(words, {"--out", out, "--jobs", "1"})).exit_code, 0);
+    const CliResult forced = run_cli(with_words(words, {"--out", out, "--jobs", "1", "--force"}));
+    ASSERT_EQ(forced.exit_code, 0) << forced.err;
+    EXPECT_THAT(forced.err, HasSubstr("runs are to be made, 1 at a time"));
+  }
+}
+
 TEST(Jobs, StoppedKeepsWhatWasFinishedAndGoesOn) {
   const SmallSequence sequence(40), longer(6);
   longer.write_lists(2000);
@@ -207,7 +219,7 @@ TEST(Jobs, StoppedKeepsWhatWasFinishedAndGoesOn) {
   process.send(SIGTERM);
   const CliResult stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 128 + SIGTERM) << stopped.err;
-  EXPECT_THAT(stopped.out, HasSubstr("stopped early; --resume goes on"));
+  EXPECT_THAT(stopped.err, HasSubstr("stillpoint: stopped early; --resume goes on"));
   EXPECT_EQ(process_of_cell(out, 1), 0);
   const auto kept = nlohmann::json::parse(sequence.folder.read("out/results.json"));
   ASSERT_EQ(kept.at("runs").size(), 1U);

@@ -72,6 +72,33 @@ TEST_F(ExportedMap, IsRefusedInOneSentence) {
   EXPECT_EQ(exported("map.ply", {"--force"}).exit_code, 0);
   expect_one_sentence(exported("other.ply", {"--layers", "difference"}), "--layers: go into an .mcap file");
   expect_one_sentence(exported("no/map.ply"), "no/map.ply: there is no folder ");
+  const auto dense = [this](std::vector<std::string> more) {
+    more.insert(more.begin(), {"export", sequence_.path("run"), "--dense"});
+    return run_cli(more);
+  };
+  expect_one_sentence(dense({sequence_.path("no/room.ply")}), "no/room.ply: there is no folder ");
+  expect_one_sentence(dense({sequence_.path("room.txt")}), "room.txt: expected a name that ends in .ply");
+  std::filesystem::create_directory(sequence_.path("folder.ply"));
+  expect_one_sentence(dense({sequence_.path("folder.ply"), "--force"}), "folder.ply: is a folder");
+  // What would be passed over in silence.
+  const std::string room = sequence_.path("room.ply");
+  expect_one_sentence(dense({room, "--out", sequence_.path("x")}), "--out: goes with a sequence");
+  expect_one_sentence(dense({room, "--frames", "1:3"}), "--frames: goes with --out");
+  expect_one_sentence(dense({room, "--layers", "difference"}), "--layers: goes with --to");
+  expect_one_sentence(dense({room, "--length", "3"}), "a finished run has its own frames");
+  expect_one_sentence(run_cli({"export", sequence_.path(), "--out", sequence_.path("x"), "--voxel", "0.1"}),
+                      "--voxel: goes with --dense");
+  EXPECT_FALSE(std::filesystem::exists(sequence_.path("x")) || std::filesystem::exists(room));
+  // What would take a recording away.
+  expect_one_sentence(
+      run_cli({"export", sequence_.path(), "--frames", "1:3", "--out", sequence_.path("rgb/.."), "--force"}),
+      "is the sequence itself");
+  EXPECT_TRUE(std::filesystem::exists(sequence_.path(SmallSequence::colour(0))));
+  sequence_.folder.write("images/000000.png", std::string("mine"));
+  expect_one_sentence(
+      run_cli({"export", sequence_.path("run"), "--without-movers", sequence_.path("images")}),
+      "holds earlier results (000000.png); --force overwrites them");
+  EXPECT_EQ(sequence_.folder.read("images/000000.png"), "mine");
   expect_one_sentence(run_cli({"export", sequence_.path(), "--to", sequence_.path("other.ply")}),
                       "records.bin");
 }

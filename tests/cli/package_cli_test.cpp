@@ -1,4 +1,5 @@
 // What comes with the program where it is installed: man pages, completions, desktop files, and the package.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

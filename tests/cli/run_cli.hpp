@@ -45,6 +45,7 @@ class CliProcess {
     ::_exit(127);
   }
 
+  [[nodiscard]] pid_t id() const { return child_; }
   void send(int signal) const { ::kill(child_, signal); }
 
   /// Waits for its end.

@@ -97,6 +97,32 @@ TEST_F(RunFolder, OfTheFirstFramesFindsThemAgain) {
   EXPECT_FALSE(cv::imread(out_.path("images/000004_input.png")).empty());
 }
 
+TEST_F(RunFolder, CutShortIsToldOnceByEveryCommand) {
+  for (const char* name : {"none", "stillpoint"})
+    out_.truncate(std::string("runs/") + name + "/records.bin", 0.6);
+  const std::string one = run("stillpoint"), none = run("none");
+  const auto times_told = [](const std::string& text, const std::string& folder) {
+    int times = 0;
+    const std::string part = folder + "/records.bin: is cut short";
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++times;
+    return times;
+  };
+  // The baseline beside it is another run that is cut short.
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"snapshot", one, "--panels", "mask", "--out", out_.path("pictures")},
+        {"snapshot", one, "--run", one, "--panels", "mask", "--out", out_.path("twice")},
+        {"figures", one, "--frame", "1", "--out", out_.path("figures")},
+        {"report", one, none, "--out", out_.path("r.html")},
+        {"report", one, none, "--interactive", "--out", out_.path("live.html")},
+        {"export", one, "--to", out_.path("run.mcap")},
+        {"export", one, "--dense", out_.path("room.ply")}}) {
+    const CliResult result = run_cli(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(times_told(result.err, one), 1) << words[0] << ": " << result.err;
+    EXPECT_EQ(times_told(result.err, none), words[0] == "export" ? 0 : 1) << words[0] << ": " << result.err;
+  }
+}
+
 TEST_F(RunFolder, WhatIsWrongIsToldInOneSentence) {
   expect_one_sentence(snapshot({"--method", "paper"}), "is a finished run, which has its own configuration");
   expect_one_sentence(snapshot({"--baseline", out_.path("nothing")}), "records.bin: cannot be read");

@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <array>
+#include <chrono>
 #include <cstdlib>
 #include <random>
+#include <regex>
 
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
@@ -165,13 +169,23 @@ TEST_F(Archives, WhatEndsUnpackingLeavesNothingHalf) {
   EXPECT_THROW((void)open_sequence(packed("tgz"), options), Stopped);
   EXPECT_EQ(told, 1);
   EXPECT_THAT(kept(), IsEmpty());
-  // What a killed program left goes away; process 1 is another's and runs.
+  // What a killed program left goes away; process 1 is another's and runs. A home folder may be another
+  // machine's as well, whose processes nobody here knows.
+  std::array<char, 256> host{};
+  ASSERT_EQ(::gethostname(host.data(), host.size() - 1), 0);
+  const std::string here = std::regex_replace(std::string(host.data()), std::regex("[^A-Za-z0-9]"), "_");
+  const auto part = [](const std::string& writer) { return "stillpoint/a.unpacked.part-" + writer + "-0"; };
+  const std::string killed = part(here + "-999999999"), running = part(here + "-1"),
+                    elsewhere = part("node7-999999999"), forsaken = part("node8-999999999");
   fs::create_directories(cache_.path("stillpoint"));
-  cache_.write("stillpoint/old.unpacked.part-999999999-0", std::string("half"));
-  cache_.write("stillpoint/others.unpacked.part-1-0", std::string("half"));
+  for (const std::string& name : {killed, running, elsewhere, forsaken})
+    cache_.write(name, std::string("half"));
+  fs::last_write_time(cache_.path(forsaken), fs::file_time_type::clock::now() - std::chrono::hours(25));
   expect_whole(*open_sequence(packed("tgz")));
-  EXPECT_FALSE(fs::exists(cache_.path("stillpoint/old.unpacked.part-999999999-0")));
-  EXPECT_TRUE(fs::exists(cache_.path("stillpoint/others.unpacked.part-1-0")));
+  EXPECT_FALSE(fs::exists(cache_.path(killed)));
+  EXPECT_TRUE(fs::exists(cache_.path(running)));
+  EXPECT_TRUE(fs::exists(cache_.path(elsewhere)));
+  EXPECT_FALSE(fs::exists(cache_.path(forsaken)));
 }
 
 TEST_F(Archives, WithoutAPlaceToUnpackItIsSaid) {

@@ -149,6 +149,19 @@ TEST(TimeOffsets, OfTheTruthsOwnPosesToAMicrosecond) {
   EXPECT_NEAR(found->offset_s, -0.0437, 1e-6);
 }
 
+TEST(TimeOffsets, OfAShortPathWithErrorsAreNotGuessed) {
+  // A second of it, of which the estimate misses the first half by centimetres: laid half a second away it
+  // would be measured by its good half alone.
+  Trajectory truth, estimate;
+  for (const StampedPose& pose : hand(100.0))
+    if (pose.timestamp <= 1.0) truth.push_back(pose);
+  for (const StampedPose& pose : hand(30.0))
+    if (pose.timestamp <= 1.0) estimate.push_back(pose);
+  for (std::size_t i = 0; i < estimate.size() / 2; ++i)
+    estimate[i].world_from_camera.translation().x() += i % 2 == 0 ? 0.05 : -0.05;
+  EXPECT_FALSE(estimate_time_offset(truth, estimate));
+}
+
 TEST(TimeOffsets, OfAStillCameraAreNotGuessed) {
   Trajectory still = hand();
   for (StampedPose& pose : still) pose.world_from_camera = Pose::Identity();

@@ -86,6 +86,11 @@ class Archive final : public FileStore {
     return found == folders_.end() ? std::vector<std::string>()
                                    : std::vector<std::string>(found->second.begin(), found->second.end());
   }
+  [[nodiscard]] std::string why_no_bytes(const std::string& name) const override {
+    const auto found = files_.find(inside(name));
+    if (found == files_.end()) return is_folder(name) ? "is no file" : "is missing";
+    return found->second.size == 0 ? "is empty (0 bytes)" : "";
+  }
   [[nodiscard]] std::string read(const std::string& name, Bytes& bytes) const override {
     const auto found = files_.find(inside(name));
     if (found == files_.end()) return is_folder(name) ? "is no file" : "is missing";

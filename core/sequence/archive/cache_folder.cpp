@@ -7,9 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
@@ -37,17 +40,40 @@ std::uint64_t limit() {
   return static_cast<std::uint64_t>(std::clamp(gigabytes, 0.0, 1e6) * static_cast<double>(kGigabyte));
 }
 
+/// This machine, as names of parts have it: letters, digits and underscores.
+std::string this_host() {
+  std::array<char, 256> name{};
+  (void)::gethostname(name.data(), name.size() - 1);
+  std::string host = name.data();
+  for (char& letter : host)
+    if (std::isalnum(static_cast<unsigned char>(letter)) == 0) letter = '_';
+  return host;
+}
+
+/// Whether whoever began a part (`HOST-PROCESS-NUMBER`) goes on with it no more. A home folder may be shared
+/// by machines, and of another one's processes only the part's age tells: it grows while it is unpacked.
+bool is_left_over(const fs::path& part, const std::string& writer) {
+  constexpr auto kForsaken = std::chrono::hours(24);
+  const auto dash = writer.find('-');
+  if (dash == std::string::npos) return false;
+  if (writer.substr(0, dash) != this_host()) {
+    std::error_code failed;
+    const auto touched = fs::last_write_time(part, failed);
+    return !failed && fs::file_time_type::clock::now() - touched > kForsaken;
+  }
+  int process = 0;
+  std::from_chars(writer.data() + dash + 1, writer.data() + writer.size(), process);
+  return process > 0 && ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
 /// Takes away what programs that no longer run left half written.
 void take_away_parts(const fs::path& folder) {
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const std::string name = entry.path().filename().string();
     const auto at = name.rfind(kPart);
-    if (at == std::string::npos) continue;
-    int writer = 0;
-    const char* number = name.data() + at + std::strlen(kPart);
-    std::from_chars(number, name.data() + name.size(), writer);
-    if (writer > 0 && ::kill(writer, 0) != 0 && errno == ESRCH) fs::remove(entry.path(), failed);
+    if (at != std::string::npos && is_left_over(entry.path(), name.substr(at + std::strlen(kPart))))
+      fs::remove(entry.path(), failed);
   }
 }
 
@@ -97,7 +123,7 @@ void UnpackedFile::begin() {
   std::error_code failed;
   fs::create_directories(folder_, failed);
   take_away_parts(folder_);
-  part_ = path_.string() + fmt::format("{}{}-{}", kPart, ::getpid(), count++);
+  part_ = path_.string() + fmt::format("{}{}-{}-{}", kPart, this_host(), ::getpid(), count++);
   file_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file_ < 0) fail(errno);
 }

@@ -90,7 +90,6 @@ class BagInput final : public SequenceInput {
     }
   }
 
-  [[nodiscard]] bool is_there(const std::string&) const override { return true; }
   [[nodiscard]] std::string path_of(const std::string& file) const override {
     return log_->path() + ":" + file;
   }

@@ -46,7 +46,9 @@ class RgbdInput final : public SequenceInput {
     const std::string path = path_of(file), fault = files_->read(file, bytes);
     return fault.empty() ? decode_image(path, std::move(bytes)) : ImageRead{{}, path + " " + fault};
   }
-  [[nodiscard]] bool is_there(const std::string& file) const override { return files_->is_there(file); }
+  [[nodiscard]] std::string why_no_bytes(const std::string& file) const override {
+    return files_->why_no_bytes(file);
+  }
   [[nodiscard]] std::string path_of(const std::string& file) const override { return files_->path_of(file); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return files_->warnings(); }
 

@@ -51,16 +51,17 @@ class VideoInput final : public SequenceInput {
       return {{}, fmt::format("{} cannot be decoded: {}", path_of(file), error.what())};
     }
   }
-  [[nodiscard]] bool is_there(const std::string& file) const override {
-    const auto index = parse_number(file);
-    return index && *index >= 0 && *index < static_cast<double>(frames_.stamps().size());
-  }
   [[nodiscard]] std::string path_of(const std::string& file) const override {
     return fmt::format("{}: frame {}", path_, file);
   }
   [[nodiscard]] std::vector<std::string> warnings() const override { return frames_.warnings(); }
 
  private:
+  [[nodiscard]] bool is_there(const std::string& file) const {
+    const auto index = parse_number(file);
+    return index && *index >= 0 && *index < static_cast<double>(frames_.stamps().size());
+  }
+
   std::string path_;
   std::optional<Camera> camera_;
   VideoFrames frames_;
