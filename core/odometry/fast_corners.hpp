@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/odometry/wide_lanes.hpp"
+#include "core/wide_lanes.hpp"
 
 namespace stillpoint {
 

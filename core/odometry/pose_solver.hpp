@@ -7,7 +7,7 @@
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/odometry/wide_lanes.hpp"
+#include "core/wide_lanes.hpp"
 
 namespace stillpoint {
 
