@@ -10,10 +10,13 @@
 
 namespace stillpoint {
 
+/// What a method commonly compares a frame with lies no farther back; each takes 2.5 MB.
+inline constexpr std::size_t kFramesKept = 12;
+
 /// The frames read last: going a step back, or looking at a pair again, need not read anew.
 class FrameCache {
  public:
-  explicit FrameCache(const FrameSource& source, std::size_t capacity = 16)
+  explicit FrameCache(const FrameSource& source, std::size_t capacity = kFramesKept)
       : source_(&source), capacity_(capacity) {}
 
   /// A frame. Its images are shared with the cache: they are to be read only.

@@ -49,14 +49,22 @@ std::optional<Header> read_header(const unsigned char* bytes) {
 
 struct Chunks {
   Header header;
-  std::vector<unsigned char> packed;  // all IDAT chunks, one behind the other
+  std::span<const unsigned char> packed;  // all IDAT chunks, one behind the other
+  std::vector<unsigned char> joined;      // … here where there are several
 };
 
 std::optional<Chunks> read_chunks(const std::vector<unsigned char>& bytes) {
   constexpr std::size_t kSignature = 8, kFrame = 12, kHeader = 13;  // bytes; a frame: length, name, checksum
   std::optional<Header> header;
-  std::vector<unsigned char> packed;
-  packed.reserve(bytes.size());
+  std::span<const unsigned char> packed;
+  std::vector<unsigned char> joined;
+  const auto join = [&](std::span<const unsigned char> more) {
+    if (joined.empty()) {
+      joined.reserve(bytes.size());
+      joined.assign(packed.begin(), packed.end());
+    }
+    joined.insert(joined.end(), more.begin(), more.end());
+  };
   for (std::size_t at = kSignature; at + kFrame <= bytes.size();) {
     const std::size_t length = big_endian(&bytes[at]);
     if (length > bytes.size() - at - kFrame) return std::nullopt;
@@ -64,8 +72,10 @@ std::optional<Chunks> read_chunks(const std::vector<unsigned char>& bytes) {
     const unsigned char* data = &bytes[at] + 8;
     if (name == "IHDR" && length == kHeader && !header)
       header = read_header(data);
+    else if (name == "IDAT" && packed.empty() && joined.empty())
+      packed = {data, length};
     else if (name == "IDAT")
-      packed.insert(packed.end(), data, data + length);
+      join({data, length});
     else if (name == "tRNS" || name == "IHDR")
       return std::nullopt;
     else if (name == "IEND")
@@ -73,8 +83,9 @@ std::optional<Chunks> read_chunks(const std::vector<unsigned char>& bytes) {
     if (!header) return std::nullopt;
     at += length + kFrame;
   }
+  if (!joined.empty()) packed = joined;
   if (!header || packed.empty()) return std::nullopt;
-  return Chunks{*header, std::move(packed)};
+  return Chunks{*header, packed, std::move(joined)};
 }
 
 /// All rows of packed pixels, each behind the byte that names its filter, and kPngRowSlack bytes of room.
@@ -99,8 +110,10 @@ void reorder(cv::Mat& image) {
                             image.total() * static_cast<std::size_t>(image.channels()));
     for (std::uint16_t& sample : samples) sample = static_cast<std::uint16_t>(sample >> 8 | sample << 8);
   }
-  if (image.channels() == 3) cv::cvtColor(image, image, cv::COLOR_RGB2BGR);
-  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_RGBA2BGRA);
+  if (image.channels() < 3) return;
+  cv::Mat turned;  // in its own place it would be copied first
+  cv::cvtColor(image, turned, image.channels() == 3 ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
+  image = std::move(turned);
 }
 
 }  // namespace

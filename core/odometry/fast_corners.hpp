@@ -3,10 +3,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace stillpoint {
+#include "core/wide_lanes.hpp"
 
-/// Whether the processor works on 32 bytes at a time (AVX2).
-[[nodiscard]] bool has_wide_lanes();
+namespace stillpoint {
 
 /// Appends FAST corners (Rosten & Drummond 2006; nine in a row of sixteen) to `corners`, row by row: what
 /// cv::FAST finds, and with the same response, but sixteen or 32 pixels at a time also where corners are

@@ -17,10 +17,11 @@ void FeatureSet::build_index(int width, int height) {
   cell_start_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
   for (const auto& p : undistorted) ++cell_start_[cell_of(p) + 1];
   for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
-  cell_features_.resize(undistorted.size());
+  placed_.resize(undistorted.size());
   std::vector<int> next(cell_start_.begin(), cell_start_.end() - 1);
   for (std::size_t i = 0; i < undistorted.size(); ++i)
-    cell_features_[static_cast<std::size_t>(next[cell_of(undistorted[i])]++)] = static_cast<int>(i);
+    placed_[static_cast<std::size_t>(next[cell_of(undistorted[i])]++)] = {undistorted[i], keypoints[i].octave,
+                                                                          static_cast<int>(i)};
 }
 
 void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave,
@@ -35,12 +36,10 @@ void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, in
     const auto first_cell = static_cast<std::size_t>(r * columns_ + first_column);
     const auto last_cell = static_cast<std::size_t>(r * columns_ + last_column);
     for (int k = cell_start_[first_cell]; k < cell_start_[last_cell + 1]; ++k) {
-      const int i = cell_features_[static_cast<std::size_t>(k)];
-      const auto feature = static_cast<std::size_t>(i);
-      const int octave = keypoints[feature].octave;
-      if (octave < min_octave || octave > max_octave) continue;
-      const cv::Point2f d = undistorted[feature] - pixel;
-      if (std::abs(d.x) <= radius && std::abs(d.y) <= radius) found.push_back(i);
+      const Placed& placed = placed_[static_cast<std::size_t>(k)];
+      if (placed.octave < min_octave || placed.octave > max_octave) continue;
+      const cv::Point2f d = placed.pixel - pixel;
+      if (std::abs(d.x) <= radius && std::abs(d.y) <= radius) found.push_back(placed.feature);
     }
   }
 }

@@ -42,8 +42,13 @@ struct FeatureSet {
  private:
   static constexpr int kCell = 16;  // px; a few features a cell
   int columns_ = 0, rows_ = 0;
-  std::vector<int> cell_start_;  // CSR: first entry of each cell in cell_features_
-  std::vector<int> cell_features_;
+  /// What finding asks of a feature, side by side.
+  struct Placed {
+    cv::Point2f pixel;  // undistorted, px
+    int octave = 0, feature = 0;
+  };
+  std::vector<int> cell_start_;  // CSR: first entry of each cell in placed_
+  std::vector<Placed> placed_;
 };
 
 /// The features of `all` for which keep[i] is non-zero, undistorted and indexed anew.

@@ -146,12 +146,18 @@ void LocalMap::update_point(int id, double scale_factor, int levels) {
   // The descriptor with the least median distance to the others speaks for the point.
   int best_median = std::numeric_limits<int>::max();
   cv::AutoBuffer<int, 64> distances(count);
+  const std::size_t middle = (count - 1) / 2;
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j)
-      distances[j] = descriptor_distance(*descriptors[i], *descriptors[j]);
-    int* const middle = distances.data() + (count - 1) / 2;
-    std::nth_element(distances.data(), middle, distances.data() + count);
-    if (*middle < best_median) best_median = *middle, point.descriptor = *descriptors[i];
+    // Its median is less than the best if more than half of the distances are: mostly it is soon seen that
+    // they are not.
+    std::size_t less = 0, tried = 0;
+    for (; tried < count && less + (count - tried) > middle; ++tried) {
+      distances[tried] = descriptor_distance(*descriptors[i], *descriptors[tried]);
+      less += distances[tried] < best_median;
+    }
+    if (less <= middle) continue;
+    std::nth_element(distances.data(), distances.data() + middle, distances.data() + count);
+    best_median = distances[middle], point.descriptor = *descriptors[i];
   }
 
   const Observation& latest = point.observations.back();
@@ -212,10 +218,11 @@ std::vector<int> local_points(const LocalMap& map, const std::vector<int>& match
   if (seeds.size() > wanted) seeds.resize(wanted);
   std::vector<int> keyframes;
   for (const auto& seed : seeds) keyframes.push_back(seed.first);
-  // Room left goes to the neighbours of what the frame sees most of.
-  for (std::size_t i = 0; i < seeds.size() && keyframes.size() < wanted; ++i)
+  // Room left goes to the neighbours of what the frame sees most of, as long as there are others.
+  const std::size_t most = std::min(wanted, map.keyframes().size());
+  for (std::size_t i = 0; i < seeds.size() && keyframes.size() < most; ++i)
     for (const auto& [neighbour, shared] : map.covisible(seeds[i].first))
-      if (keyframes.size() < wanted &&
+      if (keyframes.size() < most &&
           std::find(keyframes.begin(), keyframes.end(), neighbour) == keyframes.end())
         keyframes.push_back(neighbour);
 

@@ -174,11 +174,13 @@ int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, con
       ++points;
       const int octave = keyframe.features->keypoints[f].octave;
       int others = 0;
-      for (const Observation& o : map.point(keyframe.points[f]).observations)
+      for (const Observation& o : map.point(keyframe.points[f]).observations) {
         if (o.keyframe != id &&
             map.keyframe(o.keyframe).features->keypoints[static_cast<std::size_t>(o.feature)].octave <=
                 octave + 1)
           ++others;
+        if (others >= kSeenByOthers) break;  // in a full map dozens see it
+      }
       if (others >= kSeenByOthers) ++redundant;
     }
     if (points > 0 && redundant > config.map.cull_redundancy * points) {

@@ -13,9 +13,18 @@
 namespace stillpoint {
 namespace {
 
+#if defined(__x86_64__)
+// Without fused multiplication, which rounds otherwise; all that is called in it is compiled the same way.
+#define STILLPOINT_FOUR_AT_ONCE [[gnu::target("avx2"), gnu::flatten]]
+#else
+#define STILLPOINT_FOUR_AT_ONCE
+#endif
+
 /// Four observations side by side: the same arithmetic on each, in one order on every processor.
 constexpr std::size_t kLanes = 4;
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+/// Code for wide lanes counts on their alignment, which other code does not give by itself; std::array would
+/// forget it.
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(kLanes * sizeof(double))));
 
 constexpr int kFewestInliers = 6;  // that a pose is sought from
 
@@ -29,14 +38,14 @@ struct NormalEquations {
 /// nothing.
 class PoseProblem {
  public:
-  PoseProblem(const Camera& camera, const std::vector<PoseObservation>& observations, double depth_weight)
-      : camera_(camera), count_(observations.size()), blocks_((count_ + kLanes - 1) / kLanes) {
+  PoseProblem(const Camera& camera, const std::vector<PoseObservation>& observations, double depth_weight,
+              bool wide)
+      : camera_(camera), wide_(wide), count_(observations.size()), blocks_((count_ + kLanes - 1) / kLanes) {
     for (std::size_t i = 0; i < count_; ++i) {
       const PoseObservation& o = observations[i];
       Block& block = blocks_[i / kLanes];
       const std::size_t k = i % kLanes;
-      for (int axis = 0; axis < 3; ++axis)
-        block.point[static_cast<std::size_t>(axis)][k] = o.point_in_world[axis];
+      for (int axis = 0; axis < 3; ++axis) block.point[axis][k] = o.point_in_world[axis];
       block.u[k] = o.pixel.x(), block.v[k] = o.pixel.y();
       block.weight[k] = 1.0 / o.sigma_px;
       const bool depth = depth_weight > 0 && o.depth > 0;
@@ -82,7 +91,43 @@ class PoseProblem {
   /// Gauss-Newton's equations by a left perturbation, translation first. With `robust`, Huber's weights.
   /// … or, with an adaptive kernel, that one's.
   [[nodiscard]] NormalEquations normal_equations(const Pose& camera_from_world, bool robust) const {
-    std::array<Lanes, 27> sums{};  // upper triangle of h row by row, then g
+    return wide_ ? summed_wide(camera_from_world, robust) : summed(camera_from_world, robust);
+  }
+
+  /// Takes the shape of loss under which the residuals are likeliest, for the sums that are robust.
+  void adapt_kernel(const Pose& camera_from_world) {
+    std::vector<double> squares;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Residual r = residual(blocks_[b], camera_from_world);
+      for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k)
+        if (r.in_front[k] > 0 && blocks_[b].used[k] > 0) squares.push_back(r.chi2[k]);
+    }
+    kernel_ = AdaptiveKernel::likeliest(squares);
+  }
+
+ private:
+  struct Block {
+    Lanes point[3] = {};  // m, world
+    Lanes u{}, v{}, inverse_depth{};
+    Lanes weight{};        // 1/σ, so that squared norms are χ²
+    Lanes depth_weight{};  // of the third residual, depth as disparity; 0 without depth
+    Lanes bound{}, static_weight{}, used{};
+  };
+  static_assert(alignof(Block) == sizeof(Lanes));
+  /// Residuals by weight, and where the points lie in the camera.
+  struct Residual {
+    Lanes x, y, z, inverse_z;
+    Lanes by_u, by_v, by_depth, chi2;
+    Lanes in_front;  // 1 or 0
+  };
+
+  STILLPOINT_FOUR_AT_ONCE [[nodiscard]] NormalEquations summed_wide(const Pose& camera_from_world,
+                                                                    bool robust) const {
+    return summed(camera_from_world, robust);
+  }
+
+  [[nodiscard]] NormalEquations summed(const Pose& camera_from_world, bool robust) const {
+    Lanes sums[27] = {};  // upper triangle of h row by row, then g
     Lanes costs{};
     for (const Block& block : blocks_) {
       const Residual r = residual(block, camera_from_world);
@@ -112,32 +157,6 @@ class PoseProblem {
     return n;
   }
 
-  /// Takes the shape of loss under which the residuals are likeliest, for the sums that are robust.
-  void adapt_kernel(const Pose& camera_from_world) {
-    std::vector<double> squares;
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Residual r = residual(blocks_[b], camera_from_world);
-      for (std::size_t k = 0; k < kLanes && b * kLanes + k < count_; ++k)
-        if (r.in_front[k] > 0 && blocks_[b].used[k] > 0) squares.push_back(r.chi2[k]);
-    }
-    kernel_ = AdaptiveKernel::likeliest(squares);
-  }
-
- private:
-  struct Block {
-    std::array<Lanes, 3> point{};  // m, world
-    Lanes u{}, v{}, inverse_depth{};
-    Lanes weight{};        // 1/σ, so that squared norms are χ²
-    Lanes depth_weight{};  // of the third residual, depth as disparity; 0 without depth
-    Lanes bound{}, static_weight{}, used{};
-  };
-  /// Residuals by weight, and where the points lie in the camera.
-  struct Residual {
-    Lanes x, y, z, inverse_z;
-    Lanes by_u, by_v, by_depth, chi2;
-    Lanes in_front;  // 1 or 0
-  };
-
   [[nodiscard]] Residual residual(const Block& block, const Pose& pose) const {
     const auto& m = pose.matrix();
     const auto& p = block.point;
@@ -156,7 +175,7 @@ class PoseProblem {
 
   /// Adds J^T w J and J^T w r. The rows of J are (a 0 c | cy az-cx -ay), (0 b d | dy-bz -dx bx) and
   /// (0 0 e | ey -ex 0).
-  void add(const Block& block, const Residual& r, const Lanes& weight, std::array<Lanes, 27>& sums) const {
+  void add(const Block& block, const Residual& r, const Lanes& weight, Lanes (&sums)[27]) const {
     const Lanes a = block.weight * camera_.fx * r.inverse_z, b = block.weight * camera_.fy * r.inverse_z;
     const Lanes c = -a * r.x * r.inverse_z, d = -b * r.y * r.inverse_z;
     const Lanes e = block.depth_weight * r.inverse_z * r.inverse_z;
@@ -182,6 +201,7 @@ class PoseProblem {
   }
 
   const Camera& camera_;
+  bool wide_;
   std::size_t count_;
   std::vector<Block> blocks_;
   std::optional<AdaptiveKernel> kernel_;  // none: Huber's
@@ -234,7 +254,7 @@ Matrix6d PoseRefinement::covariance() const {
 
 PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservation>& observations,
                            const Pose& initial_camera_from_world, const TrackingConfig& config,
-                           double start_gate) {
+                           double start_gate, bool wide) {
   PoseRefinement result;
   result.camera_from_world = initial_camera_from_world;
   result.inlier.assign(observations.size(), 1);
@@ -243,7 +263,7 @@ PoseRefinement refine_pose(const Camera& camera, const std::vector<PoseObservati
     result.inlier.assign(observations.size(), 0);
     return result;
   }
-  PoseProblem problem(camera, observations, config.depth_weight);
+  PoseProblem problem(camera, observations, config.depth_weight, wide);
   if (start_gate > 0 &&
       problem.mark_inliers(initial_camera_from_world, start_gate, result.inlier) >= config.min_inliers)
     problem.use(result.inlier);

@@ -7,6 +7,7 @@
 #include "core/config.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/se3.hpp"
+#include "core/wide_lanes.hpp"
 
 namespace stillpoint {
 
@@ -50,10 +51,11 @@ struct PoseRefinement {
 /// @param start_gate where what is dynamic may have a large part in the observations, and the initial pose is
 /// known not to follow it: those beyond this many times their χ² bound at the start take no part in the first
 /// round, unless fewer than tracking.min_inliers are left; 0 = all do
+/// @param wide for processors that have such lanes; the same to the last bit
 [[nodiscard]] PoseRefinement refine_pose(const Camera& camera,
                                          const std::vector<PoseObservation>& observations,
                                          const Pose& initial_camera_from_world, const TrackingConfig& config,
-                                         double start_gate = 0.0);
+                                         double start_gate = 0.0, bool wide = has_wide_lanes());
 
 /// EPnP (Lepetit et al. 2009) inside RANSAC.
 struct InitialPose {

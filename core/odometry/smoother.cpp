@@ -35,6 +35,8 @@ std::vector<FixedLagSmoother::InlierMatch> inlier_matches_of(const TrackedFrame&
                                                              const std::vector<double>& scales) {
   std::vector<FixedLagSmoother::InlierMatch> matches;
   const FeatureSet& features = *frame.features;
+  const auto none = std::count(frame.points.begin(), frame.points.end(), kNone);
+  matches.reserve(frame.points.size() - static_cast<std::size_t>(none));
   for (std::size_t f = 0; f < frame.points.size(); ++f) {
     if (frame.points[f] == kNone) continue;
     const cv::Point2f pixel = features.undistorted[f];

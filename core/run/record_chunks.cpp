@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 #include <libdeflate.h>
-#include <zlib.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <string_view>
 
 namespace stillpoint {
@@ -50,10 +50,14 @@ std::vector<std::uint8_t> records_foot(std::uint64_t tables) {
 }
 
 std::vector<std::uint8_t> packed_chunk(ChunkKind kind, const std::vector<std::uint8_t>& content) {
-  uLongf length = ::compressBound(static_cast<uLong>(content.size()));
-  std::vector<std::uint8_t> bytes(kChunkHead + length);
-  std::uint8_t* packed = bytes.data() + kChunkHead;
-  ::compress2(packed, &length, content.data(), static_cast<uLong>(content.size()), kPackingLevel);
+  // Made once a thread: a run packs a chunk a frame.
+  thread_local const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> packer(
+      libdeflate_alloc_compressor(kPackingLevel), libdeflate_free_compressor);
+  if (!packer) throw std::bad_alloc();
+  const std::size_t most = libdeflate_zlib_compress_bound(packer.get(), content.size());
+  std::vector<std::uint8_t> bytes(kChunkHead + most);
+  const std::size_t length =
+      libdeflate_zlib_compress(packer.get(), content.data(), content.size(), bytes.data() + kChunkHead, most);
   bytes.resize(kChunkHead + length);
   const std::array<std::uint32_t, 3> numbers = {static_cast<std::uint32_t>(length),
                                                 static_cast<std::uint32_t>(content.size()),

@@ -1,6 +1,8 @@
 #include "core/run/record_codec.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <span>
 
 namespace stillpoint {
 namespace {
@@ -189,6 +191,23 @@ void put_run(PackedMask& pack, std::size_t length) {
   pack.push_back(static_cast<std::uint8_t>(length >> 8U));
 }
 
+/// How many pixels of a row are alike, from its first on: set, or not. Most runs are long.
+std::size_t begins_with_run(std::span<const std::uint8_t> row, bool set) {
+  if (row.empty()) return 0;
+  if (set) {
+    const void* end = std::memchr(row.data(), 0, row.size());
+    return end == nullptr ? row.size()
+                          : static_cast<std::size_t>(static_cast<const std::uint8_t*>(end) - row.data());
+  }
+  std::size_t length = 0;
+  for (std::uint64_t eight = 0; length + sizeof(eight) <= row.size(); length += sizeof(eight)) {
+    std::memcpy(&eight, row.data() + length, sizeof(eight));
+    if (eight != 0) break;
+  }
+  while (length < row.size() && row[length] == 0) ++length;
+  return length;
+}
+
 }  // namespace
 
 PackedMask pack_mask(const cv::Mat& mask) {
@@ -198,14 +217,15 @@ PackedMask pack_mask(const cv::Mat& mask) {
   bool set = false;
   std::size_t length = 0;
   for (int y = 0; y < mask.rows; ++y) {
-    const auto* row = mask.ptr<std::uint8_t>(y);
-    for (int x = 0; x < mask.cols; ++x) {
-      if ((row[x] != 0) != set) {
-        put_run(pack, length);
-        length = 0;
-        set = !set;
-      }
-      ++length;
+    std::span<const std::uint8_t> row(mask.ptr<std::uint8_t>(y), static_cast<std::size_t>(mask.cols));
+    while (true) {
+      const std::size_t more = begins_with_run(row, set);
+      length += more;
+      row = row.subspan(more);
+      if (row.empty()) break;
+      put_run(pack, length);
+      length = 0;
+      set = !set;
     }
   }
   put_run(pack, length);

@@ -1,7 +1,7 @@
 #include "core/sequence/image_file.hpp"
 
 #include <fmt/format.h>
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
@@ -37,23 +37,22 @@ std::uint64_t bits_a_pixel(const unsigned char* header) {
   return static_cast<std::uint64_t>(channels) * header[8];
 }
 
-/// Why a PNG is not whole, or nothing; `kept` receives it without the chunks that say nothing about pixels,
-/// which are what libpng prints warnings about.
-std::string check_png(const Bytes& bytes, Bytes& kept) {
-  kept.reserve(bytes.size());
-  kept.assign(bytes.begin(), bytes.begin() + kPngSignature.size());
+/// Why a PNG is not whole, or nothing; it is left without the chunks that say nothing about pixels, which are
+/// what libpng prints warnings about.
+std::string check_png(Bytes& bytes) {
+  std::size_t kept = kPngSignature.size();
   // Deflate packs 1032 bytes into one at most (zlib's technical details), so that what is decoded is bounded
   // by the file.
   constexpr std::uint64_t kBitsAByte = 8 * 1032;
   std::uint64_t width = 0, height = 0, bits = 0, packed = 0;
   for (std::size_t at = kPngSignature.size();;) {
     if (bytes.size() - at < 12) return "is truncated";
-    const unsigned char* chunk = bytes.data() + at;
+    unsigned char* const chunk = bytes.data() + at;
     const std::size_t length = big_endian(chunk);
     if (length > bytes.size() - at - 12) return "is truncated";
     const std::string_view type(reinterpret_cast<const char*>(chunk + 4), 4);
     // CRC-32 as PNG's specification (ISO 15948, annex D) defines it.
-    if (crc32_z(0, chunk + 4, length + 4) != big_endian(chunk + 8 + length))
+    if (libdeflate_crc32(0, chunk + 4, length + 4) != big_endian(chunk + 8 + length))
       return "is damaged (a checksum is wrong)";
     if (at == kPngSignature.size()) {
       if (type != "IHDR" || length != 13) return "is damaged (it has no PNG header)";
@@ -63,14 +62,20 @@ std::string check_png(const Bytes& bytes, Bytes& kept) {
                            kLargestSide);
     }
     if (type == "IDAT") packed += length;
-    const bool critical = (chunk[4] & 0x20U) == 0;
-    if (critical || type == "tRNS") kept.insert(kept.end(), chunk, chunk + length + 12);
-    if (type == "IEND") {
-      if (width * height * bits <= kBitsAByte * packed) return {};
-      return fmt::format("is damaged (it claims {}x{} px, more than its {} bytes can hold)", width, height,
-                         bytes.size());
+    const bool ends = type == "IEND", critical = (chunk[4] & 0x20U) == 0;
+    if (critical || type == "tRNS") {
+      // Most have no others: nothing is moved then.
+      if (kept != at) std::memmove(bytes.data() + kept, chunk, length + 12);
+      kept += length + 12;
     }
     at += length + 12;
+    if (ends) {
+      const std::size_t size = bytes.size();
+      bytes.resize(kept);
+      if (width * height * bits <= kBitsAByte * packed) return {};
+      return fmt::format("is damaged (it claims {}x{} px, more than its {} bytes can hold)", width, height,
+                         size);
+    }
   }
 }
 
@@ -120,12 +125,14 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
-  // Bytes of the first read; each further one is of as many as are there.
-  constexpr std::size_t kAtOnce = 64 << 10;
+  // Bytes of the first read, whatever size is told; each further one is of as many as are there.
+  constexpr std::size_t kLeast = 64 << 10, kMost = 64 << 20;
   bytes.clear();
+  const auto said = std::filesystem::file_size(path, error);
+  std::size_t more = std::clamp<std::size_t>(error ? 0 : said + 1, kLeast, kMost);
   // Whatever its size was said to be: it may still be growing.
-  for (std::size_t had = 0; file; had = bytes.size()) {
-    bytes.resize(had + std::max(kAtOnce, had));
+  for (std::size_t had = 0; file; had = bytes.size(), more = std::max(kLeast, had)) {
+    bytes.resize(had + more);
     file.read(reinterpret_cast<char*>(bytes.data() + had), static_cast<std::streamsize>(bytes.size() - had));
     bytes.resize(had + static_cast<std::size_t>(file.gcount()));
   }
@@ -156,12 +163,10 @@ ImageRead read_image(const std::string& path) {
 ImageRead decode_image(const std::string& path, Bytes bytes) {
   ImageRead result;
   try {
-    Bytes kept;
     std::string fault = bytes.empty() ? "is empty (0 bytes)" : "";
     if (fault.empty() && bytes.size() >= kPngSignature.size() &&
         std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
-      fault = check_png(bytes, kept);
-      bytes.swap(kept);
+      fault = check_png(bytes);
     } else if (fault.empty() && bytes.size() > 3 && bytes[0] == 0xFF && bytes[1] == 0xD8) {
       fault = jpeg_has_its_end(bytes) ? "" : "is truncated";
     }

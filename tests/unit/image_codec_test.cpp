@@ -80,7 +80,10 @@ INSTANTIATE_TEST_SUITE_P(Types, ImageCodec,
                          testing::Values(CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4));
 
 /// A PNG whose rows are filtered as `filters` says, in turn, by the standard's own words.
-std::vector<unsigned char> filtered_png(const cv::Mat& image, const std::vector<unsigned char>& filters) {
+/// @param parts how many chunks the packed pixels lie in
+/// @param words chunks that say nothing about pixels stand among them
+std::vector<unsigned char> filtered_png(const cv::Mat& image, const std::vector<unsigned char>& filters,
+                                        std::size_t parts = 1, bool words = false) {
   cv::Mat stored = image.clone();
   if (image.channels() == 3) cv::cvtColor(image, stored, cv::COLOR_BGR2RGB);
   if (image.channels() == 4) cv::cvtColor(image, stored, cv::COLOR_BGRA2RGBA);
@@ -126,7 +129,11 @@ std::vector<unsigned char> filtered_png(const cv::Mat& image, const std::vector<
   header.insert(header.end(), {static_cast<unsigned char>(image.depth() == CV_16U ? 16 : 8),
                                static_cast<unsigned char>(colour), 0, 0, 0});
   append("IHDR", header);
-  append("IDAT", packed);
+  if (words) append("tEXt", {'b', 'y', 0, 'u', 's'});
+  for (std::size_t part = 0; part < parts; ++part)
+    append("IDAT", {packed.begin() + static_cast<std::ptrdiff_t>(part * packed.size() / parts),
+                    packed.begin() + static_cast<std::ptrdiff_t>((part + 1) * packed.size() / parts)});
+  if (words) append("tIME", {7, 234, 11, 30, 12, 0, 0});
   append("IEND", {});
   return png;
 }
@@ -149,6 +156,21 @@ TEST_P(ImageCodec, UndoesEveryFilterAndAnyOrderOfThem) {
       EXPECT_TRUE(same_pixels(decode_plain_png(bytes), image))
           << width << "x" << height << " filter " << int{order.front()} << " of " << order.size();
       EXPECT_TRUE(same_pixels(cv::imdecode(bytes, cv::IMREAD_UNCHANGED), image));
+    }
+}
+
+TEST_P(ImageCodec, ReadsPixelsThatLieInSeveralChunksWithOthersAmongThem) {
+  const cv::Mat image = noise(GetParam());
+  for (const std::size_t parts : {1, 2, 3, 50})
+    for (const bool words : {false, true}) {
+      const auto bytes = filtered_png(image, {4, 1, 2, 0}, parts, words);
+      EXPECT_TRUE(same_pixels(decode_plain_png(bytes), image)) << parts;
+      const ImageRead read = decode_image("a.png", bytes);
+      EXPECT_EQ(read.problem, "");
+      EXPECT_TRUE(same_pixels(read.image, image)) << parts;
+      auto damaged = bytes;
+      damaged[words ? 8 + 25 + 9 : damaged.size() - 12 - 5] ^= 1U;  // of the text; of the pixels' checksum
+      EXPECT_THAT(decode_image("a.png", damaged).problem, testing::HasSubstr("a checksum is wrong")) << parts;
     }
 }
 

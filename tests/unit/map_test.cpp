@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <random>
+#include <set>
 
 #include "core/odometry/bundle_adjustment.hpp"
 #include "core/odometry/local_map.hpp"
@@ -108,6 +110,64 @@ TEST_F(Wall, CovisibilityCountsSharedPoints) {
   add(0.1, ids);
   EXPECT_EQ(map_.covisible(0), (std::vector<std::pair<int, int>>{{1, 20}}));
   EXPECT_TRUE(map_.covisible(0, 21).empty());
+}
+
+TEST_F(Wall, TheLocalMapIsWhatKeyframesAboutTheMatchesSee) {
+  // A chain: each keyframe shares points with the one before alone; the last too few to be its neighbour.
+  std::vector<int> before = begin();
+  const int only_in_first = before.back();
+  for (const auto& [first, shared] : {std::pair{30, 20}, {0, 20}, {30, 10}}) {
+    std::vector<int> ids(kPoints, kNone);
+    std::copy_n(before.begin() + first, shared, ids.begin() + first);
+    const int id = add(0.0, ids);
+    create_points(map_, id, kCamera, config_);
+    before = map_.keyframe(id).points;
+  }
+  const auto seen_by = [this](const std::vector<int>& keyframes) {
+    std::set<int> ids;
+    for (const int keyframe : keyframes)
+      for (const int point : map_.keyframe(keyframe).points) ids.insert(point);
+    return std::vector<int>(ids.begin(), ids.end());
+  };
+  EXPECT_EQ(local_points(map_, {kNone, only_in_first}, 0, 20), seen_by({0, 1}));
+  EXPECT_EQ(local_points(map_, {kNone, only_in_first}, 0, 1), seen_by({0}));
+  EXPECT_EQ(local_points(map_, {}, 2, 20), seen_by({0, 1, 2}));
+  EXPECT_EQ(local_points(map_, {}, 2, 2), seen_by({1, 2}));
+  EXPECT_EQ(local_points(map_, {before.back()}, 0, 20), seen_by({3}));
+  // Where all are among them, looking on is of no use.
+  EXPECT_EQ(local_points(map_, {only_in_first, before[before.size() - 25]}, 0, 20), seen_by({0, 1, 2, 3}));
+}
+
+TEST_F(Wall, TheDescriptorNearestToAllOthersSpeaksForAPoint) {
+  std::mt19937_64 random(5);
+  const int point = begin().front();
+  for (int keyframes = 2; keyframes < 40; ++keyframes) {
+    std::vector<int> ids(kPoints, kNone);
+    ids.front() = point;
+    const int added = add(0.0, ids);
+    // Bits that are set in few, so that distances differ, and some are equal.
+    auto features = std::make_shared<FeatureSet>(*map_.keyframe(added).features);
+    for (std::uint64_t& word : features->descriptors.front()) word = random() & random() & random();
+    map_.keyframe(added).features = features;
+    map_.update_point(point, 1.2, 8);
+
+    const std::vector<Observation>& seen = map_.point(point).observations;
+    const auto descriptor = [&](const Observation& o) {
+      return map_.keyframe(o.keyframe).features->descriptors[static_cast<std::size_t>(o.feature)];
+    };
+    int least = 257;
+    Descriptor nearest{};
+    for (const Observation& one : seen) {
+      std::vector<int> distances;
+      for (const Observation& other : seen)
+        distances.push_back(descriptor_distance(descriptor(one), descriptor(other)));
+      std::sort(distances.begin(), distances.end());
+      const int median = distances[(distances.size() - 1) / 2];
+      if (median < least) least = median, nearest = descriptor(one);
+    }
+    ASSERT_EQ(seen.size(), static_cast<std::size_t>(keyframes));
+    EXPECT_EQ(map_.point(point).descriptor, nearest) << keyframes;
+  }
 }
 
 TEST_F(Wall, ObservationsComeAndGoOnBothSides) {

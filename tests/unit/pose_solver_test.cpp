@@ -61,6 +61,31 @@ TEST(RefinePose, TellsOutliersApart) {
   EXPECT_GE(refined.inliers, 65);
 }
 
+TEST(RefinePose, IsTheSameToTheLastBitWhateverTheLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  for (const bool adaptive : {false, true})
+    for (const int count : {3, 4, 61, 64, 203}) {
+      auto observations = observe(some_pose(), count, 0.7, true, static_cast<unsigned>(count));
+      for (std::size_t i = 0; i < observations.size(); i += 5) {
+        observations[i].pixel.y() += 9.0;
+        observations[i].depth = 0.0;
+        observations[i].static_weight = 0.3;
+        observations[i].sigma_px = 1.44;
+      }
+      TrackingConfig config;
+      config.adaptive_kernel = adaptive;
+      const auto by = [&](bool wide) {
+        return refine_pose(kSolverCamera, observations, Pose::Identity(), config, 0.0, wide);
+      };
+      const PoseRefinement plain = by(false), wide = by(true);
+      EXPECT_EQ(plain.camera_from_world.matrix(), wide.camera_from_world.matrix()) << count;
+      EXPECT_EQ(plain.information, wide.information) << count;
+      EXPECT_EQ(plain.noise, wide.noise) << count;
+      EXPECT_EQ(plain.inlier, wide.inlier) << count;
+      EXPECT_EQ(plain.iterations, wide.iterations) << count;
+    }
+}
+
 TEST(RefinePose, ItsCovarianceIsHowItsPosesScatter) {
   Eigen::Matrix3d positions = Eigen::Matrix3d::Zero(), rotations = Eigen::Matrix3d::Zero(), said = positions;
   constexpr int kTrials = 300;

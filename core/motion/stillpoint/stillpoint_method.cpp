@@ -1,8 +1,8 @@
 // Method `stillpoint`: every frame against two earlier ones, in depth and brightness, under a first pose;
 // evidence is kept as log-odds, the next frame's prior.
 #include <algorithm>
-#include <deque>
 #include <mutex>
+#include <vector>
 
 #include "core/byte_store.hpp"
 #include "core/motion/methods.hpp"
@@ -19,11 +19,12 @@ struct Preparation final : MotionPreparation {
   Superpixels superpixels;
 };
 
-/// A downsampled frame that was tracked, and from where.
+/// A downsampled frame that was tracked, and from where. A session keeps a copy of them all after each frame:
+/// what two have alike they share.
 struct PastView {
   int frame_index = 0;
-  std::shared_ptr<const RgbdView> view;  // null while its images are dropped
-  Pose camera_from_world = Pose::Identity();
+  std::shared_ptr<const RgbdView> view;           // null while its images are dropped
+  std::shared_ptr<const Pose> camera_from_world;  // never null
 };
 
 const Preparation& prepared(const MotionInput& input) {
@@ -88,9 +89,9 @@ class StillpointMethod final : public MotionMethod {
     if (!outcome.estimated) return;
     const std::shared_ptr<const RgbdView>& view = prepared(input).view;
     log_odds_ = result.log_odds.empty() ? cv::Mat::zeros(view->depth.size(), CV_32FC1) : result.log_odds;
-    past_.push_back({input.frame.index, view, outcome.camera_from_world});
+    past_.push_back({input.frame.index, view, std::make_shared<const Pose>(outcome.camera_from_world)});
     while (past_.size() > 1 && past_[1].frame_index <= input.frame.index - farthest_reference(config_))
-      past_.pop_front();
+      past_.erase(past_.begin());
   }
 
   [[nodiscard]] bool settled() const override {
@@ -162,7 +163,7 @@ class StillpointMethod final : public MotionMethod {
   }
 
   [[nodiscard]] Pose last_from(const Pose& camera_from_world) const {
-    return past_.back().camera_from_world * camera_from_world.inverse();
+    return *past_.back().camera_from_world * camera_from_world.inverse();
   }
 
   /// The youngest past view that lies `gap` frames back or more, else the oldest there is.
@@ -182,16 +183,16 @@ class StillpointMethod final : public MotionMethod {
       if (&past == taken) continue;
       taken = &past;
       const int back = frame_index - past.frame_index;
-      views.push_back({past.view, past.camera_from_world * camera_from_world.inverse(), back >= kOld, back});
+      views.push_back({past.view, *past.camera_from_world * camera_from_world.inverse(), back >= kOld, back});
     }
     return views;
   }
 
   Camera camera_;
   StillpointConfig config_;
-  std::deque<PastView> past_;  // newest last
-  cv::Mat log_odds_;           // CV_32FC1, in the newest past view's pixels
-  StoredBytes dropped_;        // … while they are dropped with the images
+  std::vector<PastView> past_;  // newest last
+  cv::Mat log_odds_;            // CV_32FC1, in the newest past view's pixels
+  StoredBytes dropped_;         // … while they are dropped with the images
   cv::Size dropped_size_;
 };
 
