@@ -16,7 +16,7 @@ using TimesInformation = Eigen::Matrix<double, kTimes, kTimes>;
 
 constexpr double kLongestStep = 0.1;    // s between neighbours that tell how the camera moves
 constexpr std::size_t kBlock = 10;      // frames whose errors may hang together
-constexpr int kIterations = 15;         // at most: steps are below kSmallestStep before
+constexpr int kIterations = 15;         // at most: a step below kSmallestStep ends it
 constexpr double kSmallestStep = 3e-5;  // s: a thousandth of a frame
 // Standard deviations: 95 % as efficient as least squares where noise is normal.
 constexpr double kHuber = 1.345;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kGridLinesEachSide = 20;  // lines: beyond, they have faded
 constexpr int kGridPieces = 16;         // of a line, so that it can fade along its length
-constexpr int kStrongEvery = 5;         // lines: half of what ten of a spacing make
+constexpr int kStrongEvery = 5;         // lines: the strong ones are counted by
 
 /// One piece of a broken line. @param phase m along the pattern, carried from piece to piece
 void append_dashes(Segments& segments, const Eigen::Vector3f& from, const Eigen::Vector3f& to, double dash_m,

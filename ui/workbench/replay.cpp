@@ -14,7 +14,7 @@
 namespace stillpoint {
 namespace {
 
-constexpr int kSettlingFrames = 4;  // frames: a click, what it opens, its size, and that drawn
+constexpr int kSettlingFrames = 4;  // frames, until what an input sets off is laid out and drawn
 // So short that waiting is not seen, and work has the processor.
 constexpr auto kNap = std::chrono::milliseconds(4);
 

@@ -41,7 +41,7 @@ struct Settings {
       window_size{};  ///< screen coordinates; nothing before the first window closed
 };
 
-inline constexpr std::size_t kRecentKept = 8;  // sequences: as many as the start page lists
+inline constexpr std::size_t kRecentKept = 8;  // sequences, which the start page lists
 
 /// `settings.json` in $XDG_CONFIG_HOME/stillpoint, or in ~/.config/stillpoint; empty where neither is known.
 [[nodiscard]] std::filesystem::path settings_path();

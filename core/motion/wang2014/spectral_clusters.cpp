@@ -136,7 +136,7 @@ int clusters_by_eigengap(const Eigen::VectorXd& values, int least, int most) {
 }
 
 std::vector<int> cluster_rows(const Eigen::MatrixXd& vectors, int k) {
-  constexpr int kRounds = 50;  // of k-means at most: it mostly settles before
+  constexpr int kRounds = 50;  // of k-means at most: it ends where no row changes its cluster
   const Eigen::Index n = vectors.rows();
   std::vector<int> cluster(static_cast<std::size_t>(n), 0);
   if (n == 0 || k <= 1) return cluster;

@@ -114,7 +114,7 @@ double shi_tomasi(const cv::Mat& level, const cv::Point& at) {
 }
 
 SmallTurn turn_between(const cv::Mat& then, const cv::Mat& now, const Camera& full) {
-  constexpr int kSteps = 10;       // at most, as PTAM has it: from the last frame's turn a few do
+  constexpr int kSteps = 10;       // at most, as PTAM has it
   constexpr double kStill = 1e-5;  // rad: less than a thousandth of a small pixel
   SmallTurn turn;
   const Camera camera = full.scaled_to(now.cols, now.rows);
