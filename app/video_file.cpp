@@ -30,8 +30,8 @@ VideoFile::VideoFile(std::filesystem::path path, const cv::Size& size, double fr
 void VideoFile::add(const cv::Mat& image, double timestamp) {
   if (images_ == 0) {
     if (!video_->open(file_.while_written().string(), size_, step_s_))
-      throw InputError(fmt::format(
-          "--video {}: cannot be written (there is no encoder for it)", path_.string()));
+      throw InputError(
+          fmt::format("--video {}: cannot be written (there is no encoder for it)", path_.string()));
   } else {
     const double gap = timestamp - timestamp_;
     shown_at_ += own_times_ && gap > 0.0 ? gap : step_s_;

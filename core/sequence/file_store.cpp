@@ -1,8 +1,10 @@
 #include "core/sequence/file_store.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
 
@@ -57,11 +59,10 @@ class Folder final : public FileStore {
     return names;
   }
   [[nodiscard]] std::string why_no_bytes(const std::string& name) const override {
-    std::error_code none;
-    const std::string path = path_of(name);
-    const fs::file_status status = fs::status(path, none);
-    if (!fs::exists(status)) return none && status.type() != fs::file_type::not_found ? "" : "is missing";
-    return fs::is_regular_file(status) && fs::file_size(path, none) == 0 ? "is empty (0 bytes)" : "";
+    struct stat status {};
+    if (::stat(path_of(name).c_str(), &status) != 0)
+      return errno == ENOENT || errno == ENOTDIR ? "is missing" : "";
+    return S_ISREG(status.st_mode) && status.st_size == 0 ? "is empty (0 bytes)" : "";
   }
   [[nodiscard]] std::string read(const std::string& name, Bytes& bytes) const override {
     return read_bytes(path_of(name), bytes);

@@ -143,7 +143,7 @@ TEST_P(Interrupt, KeepsWhatWasDone) {
   const CliResult result = process.wait();
   EXPECT_FALSE(result.by_signal) << "it should end by itself";
   EXPECT_EQ(result.exit_code, 128 + GetParam());
-  EXPECT_THAT(result.out, HasSubstr("what was done is kept"));
+  EXPECT_THAT(result.err, HasSubstr("what was done is kept"));
 
   const auto summary = summary_of(sequence.folder, "out");
   EXPECT_EQ(summary["interrupted"], true);
