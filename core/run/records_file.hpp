@@ -25,7 +25,7 @@ namespace stillpoint {
 //     u32    bytes of the content as it lies here
 //     u32    bytes of the content once unpacked
 //     u32    CRC-32 of the content as it lies here
-//     …      the content, packed by zlib
+//     …      the content, packed as zlib packs
 //   u64      where the first table lies, bytes from the start
 //   8 bytes  "STILLEND"
 //
