@@ -74,7 +74,7 @@ std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched, const Left
 /// Whether the body tells motions that it was not fitted to: six free numbers fit whatever a short stretch of
 /// poor odometry has. Each fifth of the pairs is told by the others.
 bool tells_what_was_left_out(const std::vector<MatchedPose>& matched, const MotionFit& as_is) {
-  constexpr std::size_t kParts = 5;
+  constexpr std::size_t kParts = 5;  // of the pairs: four fifths still tell a body
   const Pairs pairs = pairs_of(matched);
   double translation = 0.0, rotation = 0.0;
   for (std::size_t part = 0; part < kParts; ++part) {

@@ -59,7 +59,7 @@ OffsetSearch offset_search(const Trajectory& truth, const Trajectory& estimate, 
 bool holds_without_any_part(
     double offset_s, double apart_s, const std::vector<std::size_t>& samples,
     const std::function<std::optional<double>(const std::vector<std::size_t>&)>& find) {
-  constexpr std::size_t kParts = 5;
+  constexpr std::size_t kParts = 5;     // of the samples: four fifths still tell an offset
   constexpr double kApartShare = 0.25;  // of the offset
   for (std::size_t part = 0; part < kParts; ++part) {
     std::vector<std::size_t> kept;

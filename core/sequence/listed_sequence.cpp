@@ -124,7 +124,7 @@ void ListedSequence::join_masks(const ImageList& masks) {
 }
 
 void ListedSequence::tell_files_without_bytes() {
-  constexpr std::size_t kMostNamed = 6;
+  constexpr std::size_t kMostNamed = 6;  // files: a hint, and no listing
   const auto tell = [this](const std::string& list, const char* images, const char* so, const auto& file_of) {
     std::vector<std::string> told;
     std::size_t listed = 0, without = 0;

@@ -53,7 +53,7 @@ std::string this_host() {
 /// Whether whoever began a part (`HOST-PROCESS-NUMBER`) goes on with it no more. A home folder may be shared
 /// by machines, and of another one's processes only the part's age tells: it grows while it is unpacked.
 bool is_left_over(const fs::path& part, const std::string& writer) {
-  constexpr auto kForsaken = std::chrono::hours(24);
+  constexpr auto kForsaken = std::chrono::hours(24);  // far longer than a disk takes for one file of a part
   const auto dash = writer.find('-');
   if (dash == std::string::npos) return false;
   if (writer.substr(0, dash) != this_host()) {
