@@ -138,7 +138,7 @@ void ListedSequence::tell_files_without_bytes() {
     }
     if (without == 0) return;
     if (without > kMostNamed) told.push_back(fmt::format("and {} more", without - kMostNamed));
-    warnings_.push_back(fmt::format("{}: {} of {} {} have no bytes, and {}: {}", list, without, listed,
+    warnings_.push_back(fmt::format("{}: {} of {} {} are missing or empty, and {}: {}", list, without, listed,
                                     images, so, fmt::join(told, ", ")));
   };
   tell(colour_list_, "colour images", "their frames cannot be read",

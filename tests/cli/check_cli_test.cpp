@@ -81,10 +81,10 @@ TEST(CheckCommand, NamesFilesWithoutBytes) {
   std::ofstream(sequence.path(sequence.colour(2))).close();
   std::ofstream(sequence.path(sequence.colour(5))).close();
   std::filesystem::remove(sequence.path(sequence.depth(3)));
-  const std::string colours = "2 of 8 colour images have no bytes, and their frames cannot be read: " +
+  const std::string colours = "2 of 8 colour images are missing or empty, and their frames cannot be read: " +
                               sequence.colour(2) + " is empty (0 bytes), " + sequence.colour(5) +
                               " is empty (0 bytes)",
-                    depths = "1 of 8 depth images have no bytes, and their frames have no depth: " +
+                    depths = "1 of 8 depth images are missing or empty, and their frames have no depth: " +
                              sequence.depth(3) + " is missing";
   const CliResult check = run_cli({"check", sequence.path()});
   EXPECT_EQ(check.exit_code, 3);

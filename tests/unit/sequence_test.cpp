@@ -171,8 +171,10 @@ TEST(TumFolder, ReadsMasks) {
   EXPECT_EQ(cv::countNonZero(source->truth(0).moving), 32);
   EXPECT_TRUE(source->truth(1).moving.empty());
   folder.write("mask.txt", "100.000 mask/0.png\n100.100 mask/1.png\n");
-  EXPECT_THAT(open_sequence(folder.path())->warnings(),
-              testing::Contains(HasSubstr("mask.txt:2: mask/1.png is missing; 1 mask(s)")));
+  EXPECT_THAT(
+      open_sequence(folder.path())->warnings(),
+      testing::Contains(HasSubstr("mask.txt: 1 of 2 masks are missing or empty, and their frames have no "
+                                  "true mask: mask/1.png is missing")));
 }
 
 TEST(TumFolder, OpensIclNuimFolders) {
