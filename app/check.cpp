@@ -7,6 +7,7 @@
 
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
+#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
@@ -69,6 +70,8 @@ void check_estimate(const CheckArguments& arguments, const FrameSource& source,
 }
 
 void check(const CheckArguments& arguments) {
+  if (arguments.frames.calibrate_time)
+    warn_once("--calibrate-time is of no use here: `check` tells what it measures, others go by it");
   const SequenceArguments reading = arguments.frames.fixed(arguments.sequence, Config());
   const auto source = open_sequence(arguments.sequence, reading.options(Config()));
   const StopBySignal stop;

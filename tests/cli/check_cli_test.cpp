@@ -114,6 +114,13 @@ TEST(CheckCommand, SaysWhetherFramesTellTimes) {
   EXPECT_EQ(run_cli({"run", few.path(), "--method", "none"}).out.find("time: "), std::string::npos);
 }
 
+TEST(CheckCommand, TellsThatItMeasuresTimesInAnyCase) {
+  const SmallSequence sequence(6);
+  EXPECT_THAT(run_cli({"check", sequence.path(), "--calibrate-time"}).err,
+              HasSubstr("warning: --calibrate-time is of no use here"));
+  EXPECT_EQ(run_cli({"check", sequence.path()}).err, "");
+}
+
 TEST(CheckCommand, QuestionsAnEstimate) {
   const SmallSequence sequence(8);
   sequence.folder.write("estimate.txt", "5.0 0 0 0 0 0 0 1\n5.1 0 0 0 0 0 0 1\n");
