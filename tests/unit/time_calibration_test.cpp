@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/check/check_sequence.hpp"
 #include "core/error.hpp"
 #include "core/sequence/with_camera.hpp"
 #include "tests/support/rendered.hpp"
@@ -15,13 +16,18 @@ namespace {
 
 constexpr int kCalibrated = 75;  // frames
 
-/// What a camera of which no times are known is told by frames that were filmed under `times`.
-TimeCalibration calibrated(const std::string& times) {
-  const auto filmed = rendered("room_shaken:exposure_s=0.004" + times, kCalibrated);
-  Camera unknown = filmed->camera();
+/// Frames that were filmed under `times`, by a camera of which no times are known.
+WithCamera of_unknown_times(const FrameSource& filmed) {
+  Camera unknown = filmed.camera();
   unknown.readout_s = unknown.depth_delay_s = 0.0;
   unknown.depth_readout_s.reset();
-  return calibrate_time(WithCamera(*filmed, unknown), Config(), {.frames = kCalibrated, .tries = 1});
+  return {filmed, unknown};
+}
+
+/// What such frames tell.
+TimeCalibration calibrated(const std::string& times) {
+  const auto filmed = rendered("room_shaken:exposure_s=0.004" + times, kCalibrated);
+  return calibrate_time(of_unknown_times(*filmed), Config(), {.frames = kCalibrated, .tries = 1});
 }
 
 void expect_near(const TimeEstimate& estimate, double seconds, double tolerance = 1e-3) {
@@ -41,6 +47,16 @@ TEST(TimeCalibration, FindsReadoutsAndDelay) {
   EXPECT_THAT(check_times(times, times.applied_to(unknown)), ::testing::IsEmpty());
   ASSERT_TRUE(times.after_truth) << "poses are of the middle row's time, which is the stamp";
   EXPECT_NEAR(times.after_truth->seconds, 0.0, 2e-3);
+}
+
+TEST(TimeCalibration, ACheckOfTheSequenceFindsTheSame) {
+  const auto filmed =
+      rendered("room_shaken:exposure_s=0.004:readout_s=0.02:depth_delay_s=-0.02", kCalibrated);
+  const TimeCalibration times = check_sequence(of_unknown_times(*filmed)).times;
+  expect_near(times.readout, 0.02);
+  expect_near(times.depth_readout, 0.02);
+  expect_near(times.depth_delay, -0.02);
+  EXPECT_EQ(times.runs, 2) << "a single one is dragged towards the times that were known";
 }
 
 TEST(TimeCalibration, FindsDepthsOwnReadoutAndARowOrderUpsideDown) {
