@@ -115,9 +115,9 @@ TEST(PtamSearch, FindsAPatchWhereItHasGoneBetweenPixelsToo) {
   cv::warpAffine(image, shifted, by, image.size(), cv::INTER_CUBIC);
   PtamConfig config;
   config.fast_0 = 5;
-  const auto searched = make_ptam_image(shifted, config);
+  const auto seen = make_ptam_image(image, config), searched = make_ptam_image(shifted, config);
   int all = 0, right = 0;
-  for (const cv::Point& corner : make_ptam_image(image, config)->corners[0]) {
+  for (const cv::Point& corner : seen->corners[0]) {
     if (corner.x < 30 || corner.y < 30 || corner.x > 98 || corner.y > 98) continue;
     const auto patch = warped_patch(image, corner, Eigen::Matrix2d::Identity());
     const auto found = search_patch(*patch, *searched, {corner.x, corner.y}, 10, 500, 8);
