@@ -1,12 +1,13 @@
 // What the sanitizers are told when they are on: both the tests and the program link it then.
 //
-// Graphics drivers keep a little for good, and unload before leaks are looked for; a leak in an unloaded
-// library has no name that could be let pass. So libraries stay loaded, and what theirs is, is passed over in
-// silence: the program's own standard error is part of what tests read.
+// Graphics drivers (and x264, of its parameters) keep a little for good, and unload before leaks are looked
+// for; a leak in an unloaded library has no name that could be let pass. So libraries stay loaded, and what
+// theirs is, is passed over in silence: the program's own standard error is part of what tests read.
 extern "C" {
 const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
-  return "leak:libOSMesa.so\nleak:libGL\nleak:libEGL\nleak:_dri.so\nleak:libX11\nleak:libgallium\n";
+  return "leak:libOSMesa.so\nleak:libGL\nleak:libEGL\nleak:_dri.so\nleak:libX11\nleak:libgallium\n"
+         "leak:libx264\n";
 }
 
 const char* __lsan_default_options();
