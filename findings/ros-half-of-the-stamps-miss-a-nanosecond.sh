@@ -25,6 +25,7 @@ want() { # package, start of its version
   esac
 }
 want python3-genpy 0.6.16
+want python3-numpy 1:1.24
 want libroscpp-core-dev 0.7.2
 want librostime1d 0.7.2
 want libboost-dev 1.74
