@@ -2,13 +2,13 @@
 # One NaN in a depth picture, blurred by cv::blur, is NaN in all rows below
 #
 # One would swear: a box of 5 x 5 sees 25 pixels; a NaN makes 25 pixels of the result NaN, as
-#   it does with GaussianBlur, filter2D and Sobel of the same picture.
+#   it does with GaussianBlur, filter2D and sepFilter2D of the same picture.
 # What happens: blur and boxFilter go down the picture with running sums, adding a row and
 #   taking one off, and NaN less NaN is NaN: the column stays NaN down to the last row. From a
 #   width of 7 on (3 and 5 are summed anew) it is the same along a row: everything below
-#   and to the right is lost. Infinity does the same, and a far value of 1e17 leaves noise of
-#   metres behind; so does SciPy's uniform_filter, at any width to the right and below. Nothing
-#   of this happens in a picture whose missing pixels are 0.
+#   and to the right is lost. Infinity does the same, and below a value of 1e17 two metres come
+#   out as 1.68. SciPy's uniform_filter does it at any width, to the right and below. Nothing of
+#   this happens in a picture whose missing pixels are 0.
 # What follows: depth in which missing is NaN, the ROS and PCL custom, must not go through box
 #   filters, nor through what is built of them (local mean and variance, guided filters, NCC by
 #   boxes) before the NaN are taken out: sum zeros and a mask, and divide. A result that is

@@ -11,8 +11,8 @@
 #   done one by one, and there it is just the other way: in a part of a picture its last columns
 #   differ from the rest. THRESH_TOZERO gives 0 in all columns.
 # What follows: depth in which missing is NaN is to be masked before it is clipped (depth ==
-#   depth is false for NaN), and statistics of a clipped picture are to be checked for a heap at the
-#   limit. A wall at exactly the far limit, and a fringe of holes at the right margin, are this.
+#   depth is false for NaN), and a clipped picture is to be asked for a heap at its limit. A
+#   wall at exactly the far limit, and a fringe of holes at the right margin, are this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -7,9 +7,10 @@
 #   then: of 1e9 for 121 pixels at 3000 a float knows steps of 128, while the relief of a wall
 #   is worth some 1000. Of a wall at 3 m with 3 mm of relief, patches in millimetres score from
 #   0.89 to 1 on themselves, and one in eight is found elsewhere; with 1 mm at 5 m all are, and
-#   thousands of places score exactly 1. In metres there is a second thing: a window whose variance is
-#   less than 1.2e-6 of its mean square counts as flat and scores 0, which 3 mm at 3 m are, and
-#   3000 +- 3 are not. With a constant near the mean taken off both, all patches score 1.
+#   thousands of places score exactly 1. In metres there is a second thing: a window whose
+#   variance is less than 1.2e-6 of its mean square counts as flat and scores 0, as four in five
+#   of that wall's do (numbers as large as millimetres are spared: the limit is at most 0.5 for
+#   the sum). With a constant near the mean taken off both, all patches score 1.
 # What follows: depth, thermal pictures and other float pictures with little contrast on a
 #   large offset must have it taken off before matchTemplate (which has no 16-bit input,
 #   so that they all come as float). Scores of exactly 1 in several places are the sign of it.
@@ -38,7 +39,8 @@ def wall(offset, relief, unit):
     return ((offset + relief * noise / noise.std()).round() * unit).astype(np.float32)
 
 
-def found(picture):  # of 40 patches: how many at their place, the least score there, the most places that score 1; who is flat, who scores 0
+def found(picture):
+    """Of 40 patches: how many at their place, the least score there, the most places that score 1; who is flat, who scores 0."""
     rng, right, scores, ones, flat = np.random.default_rng(2), 0, [], 0, []
     for _ in range(40):
         row, column = rng.integers(0, 240 - 11), rng.integers(0, 320 - 11)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # cv::calibrateHandEye is degrees off on perfect poses as soon as two are far apart
 #
-# One would swear: from perfect poses, twenty of them and turned all ways, each of the five
+# One would swear: from perfect poses, a dozen of them and turned all ways, each of the five
 #   methods finds the transformation between camera and marker body to rounding, and the
 #   more the poses differ the better: that is what one is told to take care of.
 # What happens: poses less than 120 degrees from each other are solved exactly by all five.

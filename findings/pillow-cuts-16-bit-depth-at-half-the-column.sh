@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Pillow cuts a masked object out of 16-bit depth at half of its column
 #
-# One would swear: what Pillow does to a 16-bit picture (mode I;16, as which numpy's uint16, TIFF
-#   and PGM come) it does in 16 bits, or it refuses, as it does for filters, ImageChops and
-#   resize with BILINEAR: "image has wrong mode".
+# One would swear: what Pillow does to a 16-bit picture (mode I;16, as which numpy's uint16 and
+#   TIFF come; PNG and PGM come as I) it does in 16 bits, or it refuses, as it does for filters,
+#   ImageChops and resize with BILINEAR: "image has wrong mode".
 # What happens: some functions take the two bytes of a pixel for two pixels, and say nothing.
 #   paste of a picture with a mask, and composite, change columns 10 to 24 where the mask is
 #   set in columns 20 to 49, and never the right half. paste of the number 5000, whose low byte
