@@ -1,7 +1,5 @@
 #include "core/check/timed_adjustment.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -74,7 +72,7 @@ void measure_motion(std::vector<SeenFrame>& frames) {
     if (!near) continue;
     h = powers * powers.transpose();
     frame.motion.known = true;
-    frame.motion.parts = h.fullPivLu().solve(powers).bottomRows<3>();
+    frame.motion.parts = solve_ldlt(h, powers).bottomRows<3>();
     frame.motion.cubic = motions * frame.motion.parts.transpose();
   }
 }
@@ -287,7 +285,7 @@ void TimedAdjustment::linearise() {
 /// @returns the largest change of a time, s
 double TimedAdjustment::step() {
   linearise();
-  const Eigen::VectorXd x = -h_.selfadjointView<Eigen::Upper>().ldlt().solve(g_);
+  const Eigen::VectorXd x = -solve_ldlt(Eigen::MatrixXd(h_.selfadjointView<Eigen::Upper>()), g_);
   if (!x.allFinite()) return 0.0;
   for (std::size_t f = 0; f < stretch_.frames.size(); ++f) {
     Pose& pose = stretch_.frames[f].camera_from_world;
@@ -310,9 +308,9 @@ double TimedAdjustment::step() {
 void TimedAdjustment::measure_uncertainty() {
   linearise();
   const auto frames = static_cast<Eigen::Index>(stretch_.frames.size());
-  const auto poses = h_.topLeftCorner(6 * frames, 6 * frames).selfadjointView<Eigen::Upper>().ldlt();
+  const Eigen::MatrixXd poses = h_.topLeftCorner(6 * frames, 6 * frames).selfadjointView<Eigen::Upper>();
   const Eigen::MatrixXd cross = h_.topRightCorner(6 * frames, kTimes);
-  const Eigen::MatrixXd by_pose = poses.solve(cross);
+  const Eigen::MatrixXd by_pose = solve_ldlt(poses, cross);
   const TimesInformation information = h_.bottomRightCorner<kTimes, kTimes>() - cross.transpose() * by_pose;
   std::vector<Eigen::Matrix3d> by_point(points_.size(), Eigen::Matrix3d::Zero());
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -1,7 +1,8 @@
 #include "core/evaluation/alignment.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "core/geometry/rotation_fit.hpp"
 
 namespace stillpoint {
 namespace {
@@ -21,10 +22,7 @@ Eigen::Matrix3d mean_rotation(const std::vector<Pose>& estimate, const std::vect
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < estimate.size(); ++i)
     sum += truth[i].linear() * estimate[i].linear().transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs.z() = -1;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return fit_rotation(sum).rotation;
 }
 
 }  // namespace
@@ -38,10 +36,11 @@ Alignment align(const std::vector<Pose>& estimate, const std::vector<Pose>& trut
   const Eigen::Matrix3Xd from = positions(estimate), to = positions(truth);
   const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
   const Eigen::Matrix3d covariance = (to.colwise() - to_mean) * (from.colwise() - from_mean).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d spread = svd.singularValues();
+  const RotationFit fit = fit_rotation(covariance);
+  const Eigen::Vector3d& spread = fit.singular_values;
   if (count >= 3 && spread[1] > kLineRatio * spread[0]) {
-    result.truth_from_estimate.matrix() = Eigen::umeyama(from, to, false);
+    result.truth_from_estimate.linear() = fit.rotation;
+    result.truth_from_estimate.translation() = to_mean - fit.rotation * from_mean;
     return result;
   }
 
@@ -49,7 +48,7 @@ Alignment align(const std::vector<Pose>& estimate, const std::vector<Pose>& trut
   Eigen::Matrix3d rotation = mean_rotation(estimate, truth);
   if (spread[0] > 0) {
     // Positions on a line: the rotation nearest the orientations' that lays line on line.
-    const Eigen::Vector3d line_from = rotation * svd.matrixV().col(0), line_to = svd.matrixU().col(0);
+    const Eigen::Vector3d line_from = rotation * fit.from_axes.col(0), line_to = fit.to_axes.col(0);
     rotation = Eigen::Quaterniond::FromTwoVectors(line_from, line_to).toRotationMatrix() * rotation;
   }
   result.truth_from_estimate.linear() = rotation;

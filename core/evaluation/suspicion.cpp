@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/geometry/normal_equations.hpp"
+#include "core/geometry/rotation_fit.hpp"
 #include "core/median.hpp"
 
 namespace stillpoint {
@@ -50,13 +50,12 @@ std::optional<Pose> hand_eye(const std::vector<MatchedPose>& matched, const Left
     sum += so3_log(relative(matched[i].truth, matched[i + pairs.step].truth).linear()) *
            so3_log(relative(matched[i].estimate, matched[i + pairs.step].estimate).linear()).transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const RotationFit fit = fit_rotation(sum);
   // Turns about one axis leave the rotation about it open.
-  if (svd.singularValues()[1] < 1e-3 * svd.singularValues()[0] || svd.singularValues()[0] <= 0)
+  if (fit.singular_values[1] < 1e-3 * fit.singular_values[0] || fit.singular_values[0] <= 0)
     return std::nullopt;
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
   Pose body_from_camera = Pose::Identity();
-  body_from_camera.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  body_from_camera.linear() = fit.rotation;
   Eigen::Matrix3d normal = 1e-6 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < pairs.count; ++i) {
@@ -125,8 +124,8 @@ double second_spread_m(const std::vector<MatchedPose>& matched) {
   for (Eigen::Index i = 0; i < positions.cols(); ++i)
     positions.col(i) = matched[static_cast<std::size_t>(i)].truth.translation();
   positions.colwise() -= Eigen::Vector3d(positions.rowwise().mean());
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(positions * positions.transpose());
-  return std::sqrt(std::max(0.0, svd.singularValues()[1]) / static_cast<double>(matched.size()));
+  const RotationFit fit = fit_rotation(positions * positions.transpose());
+  return std::sqrt(std::max(0.0, fit.singular_values[1]) / static_cast<double>(matched.size()));
 }
 
 }  // namespace

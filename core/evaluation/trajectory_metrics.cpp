@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/geometry/rotation_fit.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -29,12 +31,14 @@ std::optional<SimilarityFit> similarity_fit(const std::vector<MatchedPose>& matc
     from.col(static_cast<Eigen::Index>(i)) = matched[i].estimate.translation();
     to.col(static_cast<Eigen::Index>(i)) = matched[i].truth.translation();
   }
-  const Eigen::Matrix4d fit = Eigen::umeyama(from, to, true);
+  from.colwise() -= Eigen::Vector3d(from.rowwise().mean());
+  to.colwise() -= Eigen::Vector3d(to.rowwise().mean());
+  const Eigen::Matrix3d sum = to * from.transpose();
+  const Eigen::Matrix3d rotation = fit_rotation(sum).rotation;
   SimilarityFit result;
-  result.scale = std::cbrt(fit.topLeftCorner<3, 3>().determinant());
+  result.scale = rotation.cwiseProduct(sum).sum() / from.squaredNorm();
   if (!std::isfinite(result.scale) || result.scale <= 0) return std::nullopt;
-  const Eigen::Matrix3Xd left =
-      ((fit.topLeftCorner<3, 3>() * from).colwise() + fit.topRightCorner<3, 1>()) - to;
+  const Eigen::Matrix3Xd left = result.scale * (rotation * from) - to;
   result.rmse_m = std::sqrt(left.colwise().squaredNorm().mean());
   return result;
 }

@@ -1,5 +1,7 @@
 #include "core/geometry/pose_convention.hpp"
 
+#include "core/geometry/rotation_fit.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -23,9 +25,8 @@ Pose bonn_ros() {
 Pose bonn_marker() {
   Eigen::Matrix3d published;
   published << 1.0157, 0.1828, -0.2389, 0.0009, -0.8431, -0.6413, -0.3009, 0.6147, -0.8085;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(published, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose pose = Pose::Identity();
-  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
+  pose.linear() = fit_rotation(published).rotation;
   pose.translation() = Eigen::Vector3d(0.0113, -0.0098, 0.0111);
   return pose;
 }

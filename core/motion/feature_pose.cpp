@@ -1,10 +1,11 @@
 #include "core/motion/feature_pose.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/geometry/normal_equations.hpp"
 
 namespace stillpoint {
 namespace {
@@ -88,10 +89,9 @@ FeaturePose pose_of_features(std::span<const MotionFeature> features, std::span<
       hessian += weight * by_pose.transpose() * by_pose;
       gradient += weight * by_pose.transpose() * (seen[i].pixel - camera.project(p));
     }
-    const Eigen::LDLT<Matrix6d> solver(hessian);
-    const Vector6d change = solver.solve(gradient);
-    if (solver.info() != Eigen::Success || !change.allFinite()) return result;
-    result.camera_from_world = normalised(se3_exp(change) * result.camera_from_world);
+    const std::optional<Vector6d> change = try_solve_ldlt<6>(hessian, gradient);
+    if (!change) return result;
+    result.camera_from_world = normalised(se3_exp(*change) * result.camera_from_world);
   }
   const std::vector<double> squared = squared_errors(seen, result.camera_from_world, camera);
   result.sigma_px = sigma_of(squared, least_sigma_px);

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <limits>
 #include <numbers>
 
 #include "core/geometry/camera.hpp"
+#include "core/geometry/normal_equations.hpp"
+#include "core/geometry/rotation_fit.hpp"
 #include "core/geometry/se3.hpp"
 
 namespace stillpoint {
@@ -36,6 +40,38 @@ Camera wide_camera() {
   camera.fx = 458.654, camera.fy = 457.296, camera.cx = 367.215, camera.cy = 248.375;
   camera.k1 = -0.28340811, camera.k2 = 0.07395907, camera.p1 = 0.00019359, camera.p2 = 1.76187114e-05;
   return camera;
+}
+
+TEST(RotationFit, FindsTheTurnOfThreePointsAndStaysARotationWhereTheyAreMirrored) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  Eigen::Matrix3d from;
+  from << 1, 0, -1, 0.2, 1, -1.2, 0.1, -0.4, 0.3;
+  const RotationFit fit = fit_rotation(turn * from * from.transpose());
+  EXPECT_TRUE(fit.rotation.isApprox(turn, 1e-12));
+  EXPECT_GE(fit.singular_values[0], fit.singular_values[1]);
+  EXPECT_TRUE(fit.rotation.isApprox(fit.to_axes * fit.from_axes.transpose(), 1e-12) ||
+              fit.singular_values[2] < 1e-12 * fit.singular_values[0]);
+
+  Eigen::Matrix3d cube = Eigen::Matrix3d::Identity();
+  cube.diagonal() << 3.0, 2.0, 1.0;
+  const Eigen::Matrix3d mirror = Eigen::Vector3d(1, 1, -1).asDiagonal();
+  const RotationFit mirrored = fit_rotation(mirror * cube);
+  EXPECT_TRUE(mirrored.rotation.isIdentity(1e-12));  // the least axis gives way
+}
+
+TEST(NormalEquations, ColumnsAreSolvedAsTheyAreAlone) {
+  Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Identity() * 2.0;
+  h(0, 1) = h(1, 0) = 0.5, h(2, 5) = h(5, 2) = -0.75;
+  Eigen::Matrix<double, 6, 1> g;
+  g << 1, 2, 3, 4, 5, 6;
+  const auto alone = try_solve_ldlt<6>(h, g);
+  ASSERT_TRUE(alone);
+  EXPECT_LT((h * *alone - g).norm(), 1e-12);
+  Eigen::MatrixXd both(6, 2);
+  both << g, -2.0 * g;
+  EXPECT_LT((solve_ldlt(h, both).col(1) + 2.0 * *alone).norm(), 1e-12);
+  EXPECT_FALSE(try_solve_ldlt<6>(h, g * std::numeric_limits<double>::infinity()));
 }
 
 TEST(Camera, UndistortAndDistortAreInverseOverTheWholeImage) {

@@ -1,10 +1,11 @@
 #include "core/motion/wang2014/rigid_clusters.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <opencv2/core.hpp>
+
+#include "core/geometry/rotation_fit.hpp"
 
 namespace stillpoint {
 namespace {
@@ -32,11 +33,8 @@ std::optional<Pose> rigid_motion(std::span<const Eigen::Vector3f> from, std::spa
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < from.size(); ++i)
     spread += (to[i].cast<double>() - middle_to) * (from[i].cast<double>() - middle_from).transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d sign(1.0, 1.0, 1.0);
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign.z() = -1.0;
   Pose motion = Pose::Identity();
-  motion.linear() = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  motion.linear() = fit_rotation(spread).rotation;
   motion.translation() = middle_to - motion.linear() * middle_from;
   if (!motion.matrix().allFinite()) return std::nullopt;
   return motion;

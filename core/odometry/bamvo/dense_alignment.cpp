@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/normal_equations.hpp"
 #include "core/motion/rgbd_view.hpp"
 #include "core/odometry/row_blocks.hpp"
 
@@ -232,16 +232,15 @@ DenseAlignment align_dense(const std::vector<DenseView>& reference, const std::v
       }
       const NormalEquations equations = level.equations(spread);
       spread = level.spread(moments, spread);
-      const Eigen::LDLT<Matrix6d> solver(equations.h);
-      const Vector6d change = -solver.solve(equations.b);
-      if (solver.info() != Eigen::Success || !change.allFinite()) {
+      const std::optional<Vector6d> change = try_solve_ldlt<6>(equations.h, -equations.b);
+      if (!change) {
         result.failure = "the pixels that count leave a motion undecided";
         return result;
       }
       // The reference's gradients: the step is of the reference, and is taken off.
-      result.target_from_reference = normalised(result.target_from_reference * se3_exp(change).inverse());
+      result.target_from_reference = normalised(result.target_from_reference * se3_exp(*change).inverse());
       ++result.iterations;
-      if (change.norm() < kStill) break;
+      if (change->norm() < kStill) break;
     }
     if (i > 0) continue;
     moments = level.compare(result.target_from_reference);
