@@ -52,7 +52,7 @@ class Figures {
   void write_figure_1(const SessionView& view) {
     const std::vector<FigureCell> cells = figure_1_cells(view);
     if (cells.empty()) {
-      leave_out("1", "this frame has no motion mask, for want of an earlier frame or of tracks");
+      leave_out("figure 1 is", "this frame has no motion mask, for want of an earlier frame or of tracks");
       return;
     }
     const std::string where =
@@ -75,8 +75,9 @@ class Figures {
     write(number, painter_.paint_panel(view, panel, kFigureSize), shows);
   }
 
-  void leave_out(const std::string& number, const std::string& why) {
-    list_ += fmt::format("figure {} is left out: {}\n", number, why);
+  /// @param which "figure 1 is", "figures 3 and 4 are"
+  void leave_out(const std::string& which, const std::string& why) {
+    list_ += fmt::format("{} left out: {}\n", which, why);
   }
 
   /// @returns the list
@@ -134,14 +135,16 @@ void figures(const FiguresArguments& arguments) {
   const std::string beside = view->baseline ? " and of method " + view->baseline->name : "";
   const FrameRecord* record = view->current->record;
   if (has_depth && record != nullptr && !record->measured.features) {
-    output.leave_out("3 and 4", fmt::format("{} left no features of frame {}", maker_of(*view), frame));
+    output.leave_out("figures 3 and 4 are",
+                     fmt::format("{} left no features of frame {}", maker_of(*view), frame));
   } else if (has_depth) {
     output.write_panel("3", *view, "features_before",
                        fmt::format("features before removal, those that {} removes told apart", whose));
     output.write_panel("4", *view, "features_after",
                        "features after removal, and what tracking made of them");
   } else {
-    output.leave_out("3 and 4", "the sequence has no depth, and features are those of the odometry");
+    output.leave_out("figures 3 and 4 are",
+                     "the sequence has no depth, and features are those of the odometry");
   }
   if (has_depth && outside.empty() && engine_of(place.config).has_stages)
     output.write_panel("_odometry", *view, "motion",
@@ -151,7 +154,7 @@ void figures(const FiguresArguments& arguments) {
     output.write_panel("6", *view, "errors",
                        fmt::format("relative pose error over time of {}{}", whose, beside));
   else
-    output.leave_out("6", "errors need depth and ground truth, and the sequence lacks one of them");
+    output.leave_out("figure 6 is", "errors need depth and ground truth, and the sequence lacks one of them");
   fmt::print("{}written to {}\n", output.finish(), arguments.out);
 }
 

@@ -173,7 +173,7 @@ TEST(Answers, ADoubtAboutAnotherProgramsRunIsAboutThatRun) {
   const CliResult figures = run_cli({"figures", sequence.path("mono"), "--frame", "20", "--scale", "0.5",
                                      "--out", sequence.path("figures")});
   EXPECT_EQ(figures.exit_code, 0) << figures.err;
-  EXPECT_THAT(figures.out, HasSubstr("figure 3 and 4 is left out: mono left no features of frame 20"));
+  EXPECT_THAT(figures.out, HasSubstr("figures 3 and 4 are left out: mono left no features of frame 20"));
   EXPECT_THAT(figures.out, HasSubstr("error over time of another program's run mono"));
   EXPECT_THAT(figures.out, Not(HasSubstr("method none removes")));
   EXPECT_FALSE(fs::exists(sequence.path("figures/figure3.png")));
