@@ -226,6 +226,7 @@ void ablate_into(const fs::path& folder, const CellPlan& plan, const Config& con
 }
 
 void ablate(const AblateArguments& arguments) {
+  const NewFolders made(arguments.out);
   const Config config = arguments.config.config();
   const std::string& method = config.run.method;
   const std::vector<std::optional<Ingredient>> variants = variants_of(arguments, method_of(config));

@@ -237,7 +237,17 @@ void SequenceArguments::tell_what_is_of_no_use(const std::string& where, const F
     warn_once(fmt::format("{}: {} is of no use here: it goes with {}", where, option, what));
   };
   if (!stereo.empty() && !source.camera().is_stereo()) tell("--stereo", "stereo pairs");
-  if (!where.starts_with("generated:")) return;
+  if (!where.starts_with("generated:")) {
+    const auto lacks = [&source](FramePart part, bool there) {
+      return !there && source.why_not(part).empty();
+    };
+    if (seed >= 0) tell("--seed", "generated sequences");
+    if (inverted_masks && lacks(FramePart::masks, source.has_masks())) tell("--invert-masks", "true masks");
+    if (!truth.empty() && lacks(FramePart::truth, !source.ground_truth().empty()))
+      tell("--truth", "ground truth");
+    if (depth_scale > 0 && source.camera().is_stereo()) tell("--depth-scale", "depth images");
+    return;
+  }
   for (const std::string& word : words()) {
     const std::string option = switch_named(word.substr(0, word.find('=')));
     for (const char* recorded :

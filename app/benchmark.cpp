@@ -156,7 +156,8 @@ BenchmarkResult measure_outside(const Place& place, const SequenceOrigin& origin
                                 const std::string& argument) {
   std::vector<std::string> warnings;
   const RecordedRun recorded =
-      read_outside_run(place.source, origin, outside_files(argument, place.source.name()), warnings);
+      read_outside_run(place.source, origin, outside_files(argument, place.source.name()), warnings,
+                       [](const auto&) { throw_if_interrupted(); });
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   bool judges = false;
@@ -232,6 +233,7 @@ std::string run_benchmark_cell(const CellPlan& plan, const PlanCell& cell,
 }
 
 void benchmark(BenchmarkArguments arguments) {
+  const NewFolders made(arguments.out);
   Config config = arguments.config.config();
   if (arguments.engines.empty()) arguments.engines = {config.run.odometry};
   const auto sequences = open_all(arguments, config);

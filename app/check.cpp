@@ -15,6 +15,7 @@
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory_file.hpp"
 #include "core/inspect/openable.hpp"
+#include "core/run/estimate_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -43,7 +44,7 @@ nlohmann::ordered_json to_json(const TimeCalibration& times) {
 /// An estimate beside the sequence's ground truth.
 void check_estimate(const CheckArguments& arguments, const FrameSource& source,
                     std::vector<Finding>& findings) {
-  TrajectoryFile file = read_trajectory_file(arguments.estimate);
+  TrajectoryFile file = read_estimate_file(arguments.estimate);
   for (const std::string& warning : file.warnings) findings.push_back({"estimate", warning});
   if (source.ground_truth().empty()) {
     findings.push_back({"truth", "there is no ground truth of use to lay the estimate beside"});

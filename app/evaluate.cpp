@@ -249,8 +249,9 @@ void add_evaluate_command(CLI::App& app) {
           "truth")
       ->required();
   command
-      ->add_option("ESTIMATE", arguments->estimate,
-                   "Trajectory: timestamp tx ty tz qx qy qz qw, or another of these formats")
+      ->add_option(
+          "ESTIMATE", arguments->estimate,
+          "Trajectory: timestamp tx ty tz qx qy qz qw, or another of these formats; or the folder of a run")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON");
   command->add_option("--max-difference", arguments->difference,
@@ -259,7 +260,7 @@ void add_evaluate_command(CLI::App& app) {
       "--align", arguments->align,
       "How the estimate's world is laid over the truth's: none, origin (the first pose), first:N "
       "(by the first N), se3 (otherwise), sim3 (with scale, as monocular estimates need)");
-  command->add_flag("--scale", arguments->scale, "The same as --align sim3");
+  command->add_flag("--scale", arguments->scale, "The same as --align sim3")->excludes("--align");
   command->add_option("--delta", arguments->deltas,
                       "More relative errors: over seconds, frames or metres, as 2s,10f,5m");
   command->add_flag("--lengths", arguments->lengths,

@@ -58,6 +58,7 @@ void write_png(const fs::path& path, const cv::Mat& image) {
 }  // namespace
 
 void export_dense(const DenseExport& wanted) {
+  const NewFolders made(wanted.images);
   const OpenedRun run = open_run_and_tell(wanted.run, wanted.sequence);
   if (!run.no_images.empty()) throw InputError(run.no_images);
   if (!run.source->has_depth())

@@ -52,7 +52,7 @@ class Figures {
   void write_figure_1(const SessionView& view) {
     const std::vector<FigureCell> cells = figure_1_cells(view);
     if (cells.empty()) {
-      leave_out("1", "this frame has no motion mask, for want of an earlier frame or of tracks");
+      leave_out("figure 1 is", "this frame has no motion mask, for want of an earlier frame or of tracks");
       return;
     }
     const std::string where =
@@ -75,8 +75,9 @@ class Figures {
     write(number, painter_.paint_panel(view, panel, kFigureSize), shows);
   }
 
-  void leave_out(const std::string& number, const std::string& why) {
-    list_ += fmt::format("figure {} is left out: {}\n", number, why);
+  /// @param which "figure 1 is", "figures 3 and 4 are"
+  void leave_out(const std::string& which, const std::string& why) {
+    list_ += fmt::format("{} left out: {}\n", which, why);
   }
 
   /// @returns the list
@@ -99,6 +100,7 @@ class Figures {
 };
 
 void figures(const FiguresArguments& arguments) {
+  const NewFolders made(arguments.out);
   OpenedSource place = open_source(arguments.place);
   if (!place.options.no_images.empty()) throw InputError(place.options.no_images);
   const std::vector<int> frames = parse_frame_ranges(arguments.frame, place.frames, "--frame");
@@ -107,6 +109,8 @@ void figures(const FiguresArguments& arguments) {
         fmt::format("--frame {}: names {} frames, and figures are of one", arguments.frame, frames.size()));
   const int frame = frames.front();
   const std::string& method = place.config.run.method;
+  const std::string outside = place.options.recorded ? place.options.recorded->outside : std::string();
+  const std::string whose = outside.empty() ? "method " + method : "another program's run " + outside;
   const bool has_depth = place.source->has_depth(), has_truth = !place.source->ground_truth().empty();
   Figures output(arguments, method);
   prepare_out_folder(arguments.out, {kList}, arguments.force);
@@ -129,24 +133,28 @@ void figures(const FiguresArguments& arguments) {
   const auto view = session.view();
   output.write_figure_1(*view);
   const std::string beside = view->baseline ? " and of method " + view->baseline->name : "";
-  if (has_depth) {
-    output.write_panel(
-        "3", *view, "features_before",
-        fmt::format("features before removal, those that method {} removes told apart", method));
+  const FrameRecord* record = view->current->record;
+  if (has_depth && record != nullptr && !record->measured.features) {
+    output.leave_out("figures 3 and 4 are",
+                     fmt::format("{} left no features of frame {}", maker_of(*view), frame));
+  } else if (has_depth) {
+    output.write_panel("3", *view, "features_before",
+                       fmt::format("features before removal, those that {} removes told apart", whose));
     output.write_panel("4", *view, "features_after",
                        "features after removal, and what tracking made of them");
   } else {
-    output.leave_out("3 and 4", "the sequence has no depth, and features are those of the odometry");
+    output.leave_out("figures 3 and 4 are",
+                     "the sequence has no depth, and features are those of the odometry");
   }
-  if (has_depth && engine_of(place.config).has_stages)
+  if (has_depth && outside.empty() && engine_of(place.config).has_stages)
     output.write_panel("_odometry", *view, "motion",
                        fmt::format("stages of odometry {} at a glance, after those of method {}",
                                    place.config.run.odometry, method));
   if (has_depth && has_truth)
     output.write_panel("6", *view, "errors",
-                       fmt::format("relative pose error over time of method {}{}", method, beside));
+                       fmt::format("relative pose error over time of {}{}", whose, beside));
   else
-    output.leave_out("6", "errors need depth and ground truth, and the sequence lacks one of them");
+    output.leave_out("figure 6 is", "errors need depth and ground truth, and the sequence lacks one of them");
   fmt::print("{}written to {}\n", output.finish(), arguments.out);
 }
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -44,26 +42,6 @@ void choose_layout(const GenerateOptions& options, WriteOptions& write) {
     throw InputError(fmt::format("--layout {}: expected left-right, kitti or euroc with --stereo", name));
 }
 
-/// Frames done and the rate: one line that is rewritten on a terminal, a line every 50 frames elsewhere.
-class ProgressLine {
- public:
-  void operator()(int done, int total) const {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double rate = done / std::max(seconds, 1e-3);
-    const bool last = done == total;
-    if (terminal_)
-      fmt::print(stderr, "\r{}/{} frames, {:.1f} a second, {:.0f} s left   {}", done, total, rate,
-                 (total - done) / rate, last ? "\n" : "");
-    else if (last || done % 50 == 0)
-      fmt::print(stderr, "{}/{} frames, {:.1f} a second\n", done, total, rate);
-    std::fflush(stderr);
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-};
-
 void generate(const GenerateOptions& options) {
   WriteOptions write;
   choose_layout(options, write);
@@ -72,7 +50,8 @@ void generate(const GenerateOptions& options) {
   const auto sequence = make_generated_sequence(kind, options.frames, options.seed);
   write.force = options.force;
   write.threads = options.threads;
-  write.progress = ProgressLine();
+  Progress progress(sequence->name(), sequence->size());
+  write.progress = [&progress](int, int) { progress.advance("rendered"); };
   write.stop = &stop_requested();
   const int written = write_sequence(*sequence, options.out, write).frames;
   fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
@@ -88,27 +67,27 @@ void add_generate_command(CLI::App& app) {
                                          "Film a generated room and write it as a TUM RGB-D folder, in "
                                          "another data set's layout, or as stereo pairs");
   command
-      ->add_option("kind", options->kind,
-                   fmt::format("one of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
+      ->add_option("KIND", options->kind,
+                   fmt::format("One of: {}; or, harder, {}", fmt::join(generated_kinds(), ", "),
                                fmt::join(hard_generated_kinds(), ", ")))
       ->required();
-  command->add_option("--out", options->out, "the folder to write, created when missing")->required();
-  command->add_option("--frames", options->frames, "how many frames; 0 = the kind's own length (300)");
-  command->add_option("--seed", options->seed, "another seed is another sequence of the same kind")
+  command->add_option("--out", options->out, "Folder to write; made if missing")->required();
+  command->add_option("--frames", options->frames, "How many frames; 0 = the kind's own length (300)");
+  command->add_option("--seed", options->seed, "Another seed is another sequence of the same kind")
       ->capture_default_str();
   command
-      ->add_option("--threads", options->threads, "threads that make frames; any number gives the same files")
+      ->add_option("--threads", options->threads, "Threads that make frames; any number gives the same files")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_flag("--stereo", options->stereo,
-                    "film it by a stereo pair of 0.12 m: left/ and right/ in place of rgb/ and depth/");
+                    "Film it by a stereo pair of 0.12 m: left/ and right/ in place of rgb/ and depth/");
   std::vector<std::string> layouts;
   for (const RgbdLayout* layout : rgbd_layouts()) layouts.emplace_back(layout->name);
   command->add_option("--layout", options->layout,
-                      fmt::format("as a data set lays it out: tum (otherwise), {}; with --stereo left-right "
+                      fmt::format("As a data set lays it out: tum (otherwise), {}; with --stereo left-right "
                                   "(otherwise), kitti (KITTI odometry) or euroc (EuRoC/ASL)",
                                   fmt::join(layouts, ", ")));
-  command->add_flag("--force", options->force, "replace the sequence that the folder holds");
+  command->add_flag("--force", options->force, "Replace the sequence that the folder holds");
   command->callback([options] { generate(*options); });
 }
 

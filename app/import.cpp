@@ -7,6 +7,8 @@
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "core/odometry/frame_result.hpp"
+#include "core/out_folder.hpp"
 #include "core/run/outside_run.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
@@ -22,6 +24,7 @@ struct ImportArguments {
 };
 
 void import(const ImportArguments& arguments) {
+  const NewFolders made(arguments.out);
   OutsideRunFiles files = outside_run_argument(arguments.run);
   if (!arguments.quaternion.empty())
     files.quaternion = arguments.quaternion == "wxyz" ? QuaternionOrder::wxyz : QuaternionOrder::xyzw;
@@ -32,10 +35,17 @@ void import(const ImportArguments& arguments) {
   const auto source = reading.open(arguments.sequence, config);
   const SequenceOrigin origin = origin_of(*source, arguments.sequence, reading.options(config));
   std::vector<std::string> warnings;
-  const RecordedRun run = read_outside_run(*source, origin, files, warnings);
+  const std::string stopped = "stopped before it was done; nothing was written";
+  const RecordedRun run = [&] {
+    Progress progress(fmt::format("{} ({})", source->name(), files.name), source->size());
+    return read_outside_run(*source, origin, files, warnings, [&](const FrameRecord& record) {
+      progress.advance(std::string(to_string(record.status)));
+      throw_if_interrupted(stopped);
+    });
+  }();
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
-  throw_if_interrupted("stopped before it was done; nothing was written");
+  throw_if_interrupted(stopped);
   prepare_run_folder(arguments.out, arguments.force);
   write_outside_run(arguments.out, run, *source);
   RunReport report = report_on(run.run, *source);

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "app/progress.hpp"
 #include "core/config.hpp"
 #include "core/error.hpp"
+#include "core/inspect/frame_ranges.hpp"
 #include "core/inspect/motion_replay.hpp"
 #include "core/motion/methods.hpp"
 #include "core/motion/motion_stage.hpp"
@@ -33,45 +33,11 @@ struct MotionOptions {
   std::string second;  ///< the next image; empty for a sequence
   std::string out;
   ConfigArguments config;
-  std::string frames;  ///< A:B:STEP
+  std::string frames;  ///< as parse_frame_ranges has them; empty = all
   std::string method;  ///< empty = the first that keeps no state
   bool all_rounds = false;
   bool force = false;
 };
-
-/// Frames of a sequence, first to end (exclusive) by step.
-struct FrameRange {
-  int begin = 0, end = 0, step = 1;
-};
-
-FrameRange parse_range(const std::string& text, int size) {
-  FrameRange range{0, size, 1};
-  if (text.empty()) return range;
-  const auto wrong = [&text] {
-    return InputError(
-        fmt::format("--frames {}: expected A:B:STEP, whole numbers with 0 <= A < B and STEP >= 1; each "
-                    "may be left out",
-                    text));
-  };
-  std::vector<std::string> parts(1);
-  for (const char letter : text) {
-    if (letter == ':') {
-      parts.emplace_back();
-    } else if (std::isdigit(static_cast<unsigned char>(letter)) != 0 && parts.back().size() < 9) {
-      parts.back() += letter;
-    } else {
-      throw wrong();
-    }
-  }
-  if (parts.size() > 3) throw wrong();
-  if (!parts[0].empty()) range.begin = std::stoi(parts[0]);
-  if (parts.size() == 1) range.end = range.begin + 1;
-  if (parts.size() > 1 && !parts[1].empty()) range.end = std::min(size, std::stoi(parts[1]));
-  if (parts.size() > 2 && !parts[2].empty()) range.step = std::stoi(parts[2]);
-  if (range.step < 1 || range.begin >= range.end)
-    throw InputError(fmt::format("--frames {}: names none of the {} frames there are", text, size));
-  return range;
-}
 
 /// Whether a method judges frames by their images alone: without poses, features and true masks.
 bool judges_images(const MethodInfo& method) {
@@ -262,22 +228,22 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
     throw InputError(
         fmt::format("{}: has colour frames only, and --method {} needs depth", options.first, method.name));
   SequenceJudge judge(*source, config);
-  FrameRange range = parse_range(options.frames, source->size());
   const bool every = judge.sees_every_frame();
   const int gap = every ? 0 : judge.frames_back();
-  while (range.begin < gap && range.begin < range.end) range.begin += range.step;
-  if (range.begin >= range.end)
+  std::vector<int> frames =
+      parse_frame_ranges(options.frames.empty() ? "0:" : options.frames, source->size());
+  std::erase_if(frames, [gap](int frame) { return frame < gap; });
+  if (frames.empty())
     throw InputError(fmt::format("{}: of its {} frames none of those chosen has a reference {} frames back",
                                  options.first, source->size(), gap));
   MotionOutput output(options.out, options.force, options.all_rounds, method, judge.frames_back());
   describe_stand_in(options, method);
-  for (int index = every ? 0 : range.begin; index < range.end && !stop_requested();
-       index += every ? 1 : range.step) {
-    if (index < range.begin || (index - range.begin) % range.step != 0) {
-      judge.see(index);
-      continue;
-    }
+  int seen = 0;  // frames that a method with state has been shown
+  for (const int index : frames) {
+    while (every && seen < index && !stop_requested()) judge.see(seen++);
+    if (stop_requested()) break;
     const JudgedFrame frame = judge.judge(index);
+    seen = index + 1;
     output.add(frame);
     print_frame(frame);
   }
@@ -296,15 +262,15 @@ void add_motion_command(CLI::App& app) {
                          "What is dynamic between two images, or along a folder of colour frames: "
                          "masks, the method's stages, figures");
   command
-      ->add_option("first", options->first, "The previous image; or a sequence, when no next image is given")
+      ->add_option("FIRST", options->first, "The previous image; or a sequence, when no next image is given")
       ->required();
-  command->add_option("next", options->second, "The next image, of the same size");
+  command->add_option("NEXT", options->second, "The next image, of the same size");
   command->add_option("--out", options->out, "Folder for the results, made if missing")->required();
   options->config.add_to(*command, false);
   command->add_option(
       "--frames", options->frames,
-      "Frames A:B:STEP of a sequence, B not among them; those too near its start to have a reference are "
-      "left out");
+      "Frames of a sequence to judge, otherwise all: 10, 20:40:5 (40 not among them), -1 is the last; with "
+      "commas between; those too near its start to have a reference are left out");
   command->add_option("--method", options->method,
                       fmt::format("What judges: {}", fmt::join(described_methods(), "; ")));
   command->add_flag("--all-rounds", options->all_rounds, "Pictures of every round, not of the last alone");

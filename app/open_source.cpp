@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/progress.hpp"
 #include "core/error.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/run/open_run.hpp"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 /// A run's records, with what they lack told.
 RecordedRun read_run_records(const fs::path& folder) {
+  throw_if_no_records(folder);
   RecordedRun run = read_records(folder);
   warn_once(run.cut_short);
   return run;
@@ -115,9 +117,10 @@ void stand_beside(const SourceArguments& arguments, OpenedSource& opened) {
   for (const std::string& text : arguments.runs) {
     const OutsideRunFiles files = outside_run_argument(text);
     std::vector<std::string> warnings;
-    auto run = std::make_shared<RecordedRun>(is_run_folder(files.where)
-                                                 ? read_run_records(files.where)
-                                                 : read_outside_run(*opened.source, {}, files, warnings));
+    auto run = std::make_shared<RecordedRun>(
+        is_run_folder(files.where) ? read_run_records(files.where)
+                                   : read_outside_run(*opened.source, {}, files, warnings,
+                                                      [](const auto&) { throw_if_interrupted(); }));
     if (is_run_folder(files.where) && run->origin.fingerprint != sequence_fingerprint(*opened.source))
       throw InputError(
           fmt::format("--run {}: is a run of {}, not of the frames opened", text, run->origin.name));

@@ -13,6 +13,7 @@
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
 #include "core/odometry/frame_result.hpp"
+#include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
@@ -46,13 +47,15 @@ bool tell_frames(const Condition& condition, const RunResult& result, const RunR
   const FrameFigures figures(
       {result.records, report.evaluation ? &*report.evaluation : nullptr, &result.scores});
   const auto frames = condition.frames(figures);
-  const auto unknown = condition.unknown_figures(figures);
   fmt::print("  {}: ", condition.text());
-  if (frames.empty())
-    fmt::print("at no frame{}\n",
-               unknown.empty() ? "" : fmt::format("; none has {}", fmt::join(unknown, ", ")));
-  else
+  if (frames.empty()) {
+    std::vector<int> all;
+    for (int row = 0; row < figures.rows(); ++row) all.push_back(figures.frame(row));
+    const std::string reach = condition.reach(figures, all);
+    fmt::print("at no frame{}{}\n", reach.empty() ? "" : "; ", reach);
+  } else {
     fmt::print("at {} of {} frames: {}\n", frames.size(), result.records.size(), frames_text(frames));
+  }
   return !frames.empty();
 }
 
@@ -61,6 +64,7 @@ void run(const RunArguments& arguments) {
     fmt::print("{}", condition_help());
     return;
   }
+  const NewFolders made(arguments.out);
   const std::optional<Condition> condition = break_condition(arguments);
   const Config config = arguments.config.config();
   throw_if_no_pair(config);

@@ -211,14 +211,20 @@ std::optional<Condition> when_condition(const SnapshotArguments& arguments) {
 }
 
 /// Those of `frames` at which the condition holds.
+/// @throws InputError where there are none, with how near it came
 std::vector<int> frames_where(const Condition& condition, const RunView& run,
                               const std::vector<int>& frames) {
   const FrameFigures figures(run.measured());
-  if (const auto unknown = condition.unknown_figures(figures); !unknown.empty())
-    fmt::print(stderr, "stillpoint: warning: --when: no frame has {}\n", fmt::join(unknown, ", "));
   std::vector<int> chosen;
   for (const int frame : condition.frames(figures))
     if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
+  if (chosen.empty()) {
+    const std::string reach = condition.reach(figures, frames);
+    throw InputError(fmt::format("--when '{}': holds at none of {} frames, and nothing is drawn{}{}",
+                                 condition.text(), frames.size(), reach.empty() ? "" : "; ", reach));
+  }
+  if (const auto unknown = condition.unknown_figures(figures); !unknown.empty())
+    fmt::print(stderr, "stillpoint: warning: --when: no frame has {}\n", fmt::join(unknown, ", "));
   return chosen;
 }
 
@@ -254,6 +260,8 @@ PictureChoice asked_for(const SnapshotArguments& arguments, const PainterOptions
   PictureChoice chosen = choose_pictures(options);
   if (arguments.out.empty() && arguments.video.empty())
     throw InputError("--out or --video must say where the images go");
+  if (arguments.fps > 0 && arguments.video.empty())
+    throw InputError("--fps: goes with --video, and is of no use here");
   if (!arguments.video.empty() && chosen.count() != 1)
     throw InputError(
         fmt::format("--video takes one picture of each frame, and --panels names {}", chosen.count()));
@@ -340,7 +348,7 @@ void add_snapshot_command(CLI::App& app) {
   command->add_option(
       "--when", arguments->when,
       "Draw only frames at which a condition holds, such as 'rpe > 5 cm || lost', among all or those of "
-      "--frames; `stillpoint run --break help` tells of conditions");
+      "--frames; the status is 1 where there is none; `stillpoint run --break help` tells of conditions");
   command->add_option("--panels", arguments->panels,
                       "all (otherwise), workbench, or panels' names with commas between");
   command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing");

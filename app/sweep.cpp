@@ -54,6 +54,7 @@ struct SweepResults {
 };
 
 void sweep(const SweepArguments& arguments) {
+  const NewFolders made(arguments.out);
   const Config config = arguments.config.config();
   const SweepRange range = arguments.parameter.find('=') == std::string::npos
                                ? usual_sweep(config, arguments.parameter)

@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/text_file.hpp"
 
 namespace stillpoint {
 namespace {
@@ -53,7 +54,8 @@ void assign(const Parameter& p, const toml::node& node, const std::string& where
     const auto value = node.value_exact<std::string>();
     if (!p.choices.empty() &&
         (!value || std::find(p.choices.begin(), p.choices.end(), *value) == p.choices.end()))
-      throw InputError(fmt::format("{}{} takes one of: {}", where, p.key, fmt::join(p.choices, ", ")));
+      throw InputError(fmt::format("{}{} takes one of: {}{}", where, p.key, fmt::join(p.choices, ", "),
+                                   value ? ", and not " + in_quotes(*value) : ""));
     if (!value) throw InputError(fmt::format("{}{} takes a text", where, p.key));
     *std::get<std::string*>(p.value) = *value;
   }

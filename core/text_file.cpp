@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +36,33 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
   return columns;
 }
 
+/// Appends a code point in UTF-8.
+void append_utf8(std::string& text, std::uint32_t code) {
+  const auto put = [&text](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return put(code);
+  const int more = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // bytes after the first
+  put((0xFF00U >> (more + 1) & 0xFFU) | code >> (6 * more));
+  for (int i = more - 1; i >= 0; --i) put(0x80 | (code >> (6 * i) & 0x3F));
+}
+
+/// A text in UTF-16, as Windows' shells write it, in UTF-8. @param content without its byte order mark
+std::string from_utf16(std::string_view content, bool big_endian) {
+  const auto unit_at = [&](std::size_t at) {
+    const auto byte = [&](std::size_t i) {
+      return std::uint32_t{static_cast<unsigned char>(content[at + i])};
+    };
+    return big_endian ? byte(0) << 8 | byte(1) : byte(1) << 8 | byte(0);
+  };
+  std::string text;
+  for (std::size_t at = 0; at + 1 < content.size(); at += 2) {
+    std::uint32_t code = unit_at(at);
+    const bool pair = code >= 0xD800 && code < 0xDC00 && at + 3 < content.size();
+    if (pair) code = 0x10000 + ((code - 0xD800) << 10) + (unit_at(at += 2) - 0xDC00) % 0x400;
+    append_utf8(text, code);
+  }
+  return text;
+}
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
@@ -42,7 +71,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-std::string read_text(const std::string& path) {
+std::string read_text(const std::string& path, std::size_t most) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(fmt::format("{}: a folder, where a text file was expected", path));
@@ -51,16 +80,33 @@ std::string read_text(const std::string& path) {
   if (!file)
     throw InputError(
         fmt::format("{}: cannot be read: {}", path, errno != 0 ? std::strerror(errno) : "unknown cause"));
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes
+  std::string text;
+  for (std::size_t size = 0; file; text.resize(size)) {
+    if (size > most)
+      throw InputError(fmt::format("{}: holds more than {} MB, expected a text file", path,
+                                   most / (std::size_t{1} << 20)));
+    text.resize(size + kBlock);
+    file.read(text.data() + size, kBlock);
+    size += static_cast<std::size_t>(file.gcount());
+  }
   if (file.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
   return text;
 }
 
 std::vector<TextLine> text_lines(std::string_view content, std::vector<TextLine>* comments) {
   std::vector<TextLine> lines;
-  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+  std::string converted;
+  if (content.starts_with("\xEF\xBB\xBF")) {
+    content.remove_prefix(3);
+  } else if (content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF")) {
+    converted = from_utf16(content.substr(2), content.starts_with("\xFE"));
+    content = converted;
+  }
+  // A single CR ends lines where nothing else does; beside LF it is a blank.
+  const char line_end = content.find('\n') == std::string_view::npos ? '\r' : '\n';
   for (int number = 1; !content.empty(); ++number) {
-    const std::size_t end = std::min(content.find('\n'), content.size());
+    const std::size_t end = std::min(content.find(line_end), content.size());
     const std::string_view whole = trimmed(content.substr(0, end));
     const std::string_view text = trimmed(without_comment(whole));
     if (!text.empty())
@@ -106,6 +152,11 @@ std::optional<double> parse_comma_number(std::string_view text) {
   std::string point(text);
   std::replace(point.begin(), point.end(), ',', '.');
   return parse_number(point);
+}
+
+bool is_stamp(double number) {
+  constexpr double kMost = 1e19;
+  return std::abs(number) < kMost;  // and so no NaN
 }
 
 std::string lower_case(std::string text) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@ struct TextLine {
 };
 
 /// The lines of a small text file. `#` at the start of a line or after a blank begins a comment; blank lines
-/// are left out; LF and CRLF line ends and a byte order mark are understood.
+/// are left out; LF, CRLF and CR line ends, a byte order mark, and UTF-16 with one are understood.
 /// @param comments receives, where given, the lines that are nothing but a comment, without their `#`
 /// @throws InputError when the file cannot be read.
 [[nodiscard]] std::vector<TextLine> read_text_lines(const std::string& path,
@@ -25,8 +26,9 @@ struct TextLine {
                                                std::vector<TextLine>* comments = nullptr);
 
 /// A whole text file.
-/// @throws InputError when it cannot be read.
-[[nodiscard]] std::string read_text(const std::string& path);
+/// @param most bytes: devices have no end, and no list is as long as this
+/// @throws InputError when it cannot be read, or holds more.
+[[nodiscard]] std::string read_text(const std::string& path, std::size_t most = std::size_t{1} << 30);
 
 /// The columns of a line, parted by blanks, tabs, commas or semicolons.
 [[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
@@ -41,6 +43,9 @@ struct TextLine {
 /// The whole text as a number written in the C manner, whatever the locale is; nothing when it is not one.
 /// May be NaN or infinite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+/// Whether a number can be a stamp, in whatever unit: those of today have 19 digits in nanoseconds.
+[[nodiscard]] bool is_stamp(double number);
 
 /// With the letters A to Z made small.
 [[nodiscard]] std::string lower_case(std::string text);

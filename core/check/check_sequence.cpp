@@ -28,9 +28,11 @@ SequenceCheck check_sequence(const FrameSource& source, const std::stop_token& s
     for (Finding& finding : found) check.findings.push_back(std::move(finding));
   };
   add(check_frames(source));
-  add(check_registration(source));
+  // What depth of another time seems to say of its camera and its readings is its clock's doing.
+  const bool in_time = !source.depth_late_s();
+  if (in_time) add(check_registration(source));
   const std::size_t before = check.findings.size();
-  if (!stopped) add(check_parallax(source));
+  if (in_time && !stopped) add(check_parallax(source));
   // Poses that rest on what is no depth would be blamed on scale, camera or truth.
   if (check.findings.size() > before) return check;
   if (!stopped) add(check_odometry(source, kFramesTracked, &stopped));

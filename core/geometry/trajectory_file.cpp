@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLengthTolerance = 0.01;   // quaternions farther from unit length are no rotations
 constexpr double kLengthRemarkable = 1e-3;  // four decimals, as the benchmark writes, stay below this
+constexpr double kFarthest = 1e9;           // m; what is farther away was never measured
 constexpr int kFewRows = 4;                 // below, repeated stamps say nothing about a file
 
 /// Something that befell several rows, told in one sentence.
@@ -35,7 +36,7 @@ struct ReadPose {
 };
 
 /// Why a row holds no pose.
-enum class Fault { none, columns, number, not_finite, quaternion };
+enum class Fault { none, columns, number, not_finite, absurd, quaternion };
 
 class TrajectoryReader {
  public:
@@ -71,6 +72,9 @@ class TrajectoryReader {
         return;
       case Fault::not_finite:
         not_finite_.note(line.number);
+        break;
+      case Fault::absurd:
+        absurd_.note(line.number);
         break;
       case Fault::quaternion:
         quaternions_.note(line.number);
@@ -109,6 +113,14 @@ class TrajectoryReader {
     }
     if (!whole) return Fault::number;
     if (!finite) return Fault::not_finite;
+    const std::array<std::size_t, 3> position =
+        layout_.is_matrix ? std::array<std::size_t, 3>{3, 7, 11} : std::array<std::size_t, 3>{1, 2, 3};
+    if ((!layout_.is_matrix && !is_stamp(n[0])) ||
+        std::any_of(position.begin(), position.end(),
+                    [&n](std::size_t i) { return std::abs(n[i]) > kFarthest; })) {
+      fault(line, "found a stamp or a position beyond all measure");
+      return Fault::absurd;
+    }
     return layout_.is_matrix ? from_matrix(line, row, n, pose) : from_quaternion(line, n, pose);
   }
 
@@ -173,6 +185,7 @@ class TrajectoryReader {
                       "few digits to tell frames apart",
                       path_, repeated_.first_line, repeated_.count, file_.rows));
     not_finite_.tell(file_, path_, "a row of NaN or infinity holds no pose and was skipped");
+    absurd_.tell(file_, path_, "a row's stamp or position is beyond all measure and it was skipped");
     malformed_.tell(file_, path_,
                     fmt::format("a row holds no pose (expected {}) and was skipped", layout_.expected()));
     quaternions_.tell(file_, path_, "a row's rotation is none (zero, or off unit length) and it was skipped");
@@ -185,7 +198,7 @@ class TrajectoryReader {
   std::vector<TextLine> lines_;
   TrajectoryLayout layout_;
   TrajectoryFile file_;
-  Mishap not_finite_, malformed_, quaternions_, unsorted_, repeated_, normalised_;
+  Mishap not_finite_, absurd_, malformed_, quaternions_, unsorted_, repeated_, normalised_;
   std::string first_fault_;
 };
 

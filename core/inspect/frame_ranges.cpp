@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <optional>
 #include <set>
 
@@ -61,7 +62,8 @@ void add_range(std::string_view option, std::string_view part, int count, std::s
   if (step < 1) refuse(option, part);
   if (begin < 0 || begin >= end)
     throw InputError(fmt::format("{} {}: names none of the frames 0 to {}", option, part, count - 1));
-  for (int frame = begin; frame < end; frame += step) frames.insert(frame);
+  // 64 bits: a long step leads beyond the last int.
+  for (std::int64_t frame = begin; frame < end; frame += step) frames.insert(static_cast<int>(frame));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/motion/methods.hpp"
 #include "core/run/run_report.hpp"
 #include "core/text_file.hpp"
 
@@ -104,7 +105,8 @@ AblationCell ablation_cell(const RunReport& report) {
   AblationCell cell;
   if (report.evaluation && report.evaluation->rpe_time.translation_m.count > 0)
     cell.rpe_m = report.evaluation->rpe_time.translation_m.rmse;
-  if (report.scores.known) cell.mask_iou = report.scores.mask.iou();
+  // A baseline makes no masks that could be right or wrong.
+  if (report.scores.known && !method_named(report.method).baseline) cell.mask_iou = report.scores.mask.iou();
   cell.coverage = report.coverage;
   cell.median_ms = report.speed.median_ms;
   cell.hash = report.hash;

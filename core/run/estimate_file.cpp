@@ -15,6 +15,17 @@
 namespace stillpoint {
 namespace {
 
+/// What programs of the field call their trajectory, best first.
+constexpr const char* kTrajectoryNames[] = {"trajectory.txt",
+                                            "trajectory.csv",
+                                            "CameraTrajectory.txt",
+                                            "FrameTrajectory_TUM_Format.txt",
+                                            "traj.txt",
+                                            "poses.txt",
+                                            "estimate.txt",
+                                            "stamped_traj_estimate.txt",
+                                            "KeyFrameTrajectory.txt"};
+
 /// The estimate among the trajectories of evo's results, each NAME.tum or NAME.kitti.
 std::string estimate_in(const FileStore& results) {
   std::vector<std::string> trajectories;
@@ -37,8 +48,17 @@ std::string estimate_in(const FileStore& results) {
 
 }  // namespace
 
+std::string trajectory_in(const std::filesystem::path& folder) {
+  std::error_code none;
+  for (const char* name : kTrajectoryNames)
+    if (std::filesystem::is_regular_file(folder / name, none)) return folder / name;
+  throw InputError(
+      fmt::format("{}: holds no trajectory (trajectory.txt, CameraTrajectory.txt, …)", folder.string()));
+}
+
 TrajectoryFile read_estimate_file(const std::string& path, std::optional<QuaternionOrder> order) {
   std::error_code none;
+  if (std::filesystem::is_directory(path, none)) return read_trajectory_file(trajectory_in(path), order);
   if (!std::filesystem::is_regular_file(path, none) || !is_packed(path))
     return read_trajectory_file(path, order);
   const std::unique_ptr<FileStore> results = open_archive(unpack(path, {}).path, path);

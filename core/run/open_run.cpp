@@ -55,11 +55,21 @@ bool is_run_folder(const fs::path& folder) {
   return is_there(folder / kRecordsName) || is_there(folder / "summary.json");
 }
 
-OpenedRun open_run(const fs::path& folder, const std::string& sequence) {
-  if (!is_there(folder / kRecordsName))
+void throw_if_no_records(const fs::path& folder) {
+  if (is_there(folder / kRecordsName)) return;
+  if (!is_there(folder)) throw InputError(fmt::format("{}: there is no such folder", folder.string()));
+  if (is_there(folder / "summary.json"))
     throw InputError(fmt::format(
         "{}: has no {}, without which a run cannot be looked at; `stillpoint run … --force` writes it anew",
         folder.string(), kRecordsName));
+  throw InputError(
+      fmt::format("{}: is no finished run's folder, as it has no {}; `stillpoint run SEQUENCE --out FOLDER` "
+                  "leaves one",
+                  folder.string(), kRecordsName));
+}
+
+OpenedRun open_run(const fs::path& folder, const std::string& sequence) {
+  throw_if_no_records(folder);
   OpenedRun opened;
   // The sequence is opened while the records are read.
   std::future<std::unique_ptr<FrameSource>> opening;

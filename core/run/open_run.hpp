@@ -19,6 +19,10 @@ struct OpenedRun {
 /// Whether a folder holds what `stillpoint run` leaves, and is no sequence.
 [[nodiscard]] bool is_run_folder(const std::filesystem::path& folder);
 
+/// @throws InputError in one sentence for a folder that holds no run's records: one that is missing, or a
+/// sequence's, or a run's that lost them
+void throw_if_no_records(const std::filesystem::path& folder);
+
 /// Opens a run's folder, and the sequence it was of where that still is what it was.
 /// @param sequence where the sequence lies now; empty = where it lay, or, when run and sequence were moved
 /// together, where it lies from the run's folder

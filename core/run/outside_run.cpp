@@ -26,29 +26,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What programs of the field call their trajectory, best first.
-constexpr const char* kTrajectoryNames[] = {"trajectory.txt",
-                                            "trajectory.csv",
-                                            "CameraTrajectory.txt",
-                                            "FrameTrajectory_TUM_Format.txt",
-                                            "traj.txt",
-                                            "poses.txt",
-                                            "estimate.txt",
-                                            "stamped_traj_estimate.txt",
-                                            "KeyFrameTrajectory.txt"};
 constexpr const char* kMaskNames[] = {"masks", "mask", "masks.txt", "mask.txt"};
 constexpr const char* kFeaturesName = "features.csv";
 
 bool is_file(const fs::path& path) {
   std::error_code none;
   return fs::is_regular_file(path, none);
-}
-
-std::string trajectory_in(const fs::path& folder) {
-  for (const char* name : kTrajectoryNames)
-    if (is_file(folder / name)) return folder / name;
-  throw InputError(
-      fmt::format("{}: holds no trajectory (trajectory.txt, CameraTrajectory.txt, …)", folder.string()));
 }
 
 std::optional<std::string> masks_in(const fs::path& folder) {
@@ -283,7 +266,8 @@ OutsideRunFiles outside_run_argument(const std::string& text) {
 }
 
 RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& origin,
-                             const OutsideRunFiles& files, std::vector<std::string>& warnings) {
+                             const OutsideRunFiles& files, std::vector<std::string>& warnings,
+                             const std::function<void(const FrameRecord&)>& between) {
   std::error_code none;
   if (!fs::exists(files.where, none))
     throw InputError(fmt::format("{}: there is no such file or folder", files.where));
@@ -337,6 +321,7 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
     tell_parts_of_outside(result.record, !result.mask.empty());
     details[i].features = std::exchange(result.record.features, {});
     run.records[i] = std::move(result.record);
+    if (between) between(run.records[i]);
   }
   recorded.details = details_at_hand(std::move(details));
   recorded.hash = run_hash(run.records);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,10 +31,12 @@ struct OutsideRunFiles {
 /// Lays it onto the sequence's frames: a frame has the pose nearest in time, closer than 0.02 s, or none and
 /// is lost; poses keep their own stamps in the trajectory, which is what is measured. What of its files is
 /// odd is told in `warnings`.
+/// @param between called after each frame whose mask or features were read; what it throws ends the reading
 /// @returns a run with RecordedRun::outside set, without keyframes and map
 /// @throws InputError in one sentence where there is no trajectory, or one that meets no frame
 [[nodiscard]] RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& origin,
-                                           const OutsideRunFiles& files, std::vector<std::string>& warnings);
+                                           const OutsideRunFiles& files, std::vector<std::string>& warnings,
+                                           const std::function<void(const FrameRecord&)>& between = {});
 
 /// Sets of a record of such a run what is known of it: a pose, features where there are any, and a mask.
 void tell_parts_of_outside(FrameRecord& record, bool mask);

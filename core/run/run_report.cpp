@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
@@ -152,6 +153,16 @@ std::string image_gaps(const RunResult& run) {
   return gaps_text(run, lacking);
 }
 
+/// Which frames were read and have no pose, and why.
+std::string pose_gaps(const RunResult& run) {
+  static const std::string untold = "lost";
+  std::vector<Lacking> lacking;
+  for (const FrameRecord& record : run.records)
+    if (!record.estimated && record.status != FrameStatus::unreadable)
+      lacking.push_back({record.index, record.note.empty() ? &untold : &record.note});
+  return gaps_text(run, lacking);
+}
+
 /// Which frames lacked the mask that was to be given, and why.
 std::string mask_gaps(const RunResult& run) {
   std::vector<Lacking> lacking;
@@ -160,11 +171,18 @@ std::string mask_gaps(const RunResult& run) {
   return gaps_text(run, lacking);
 }
 
-/// What lets truth and estimate fit far better.
-std::string doubt_of(const TrajectoryEvaluation& evaluation) {
-  if (const auto suspicion = suspect_convention(evaluation.matched, false)) return suspicion->sentence();
+/// What lets truth and estimate fit far better. @param ours whether we made the estimate, from its depth
+std::string doubt_of(const TrajectoryEvaluation& evaluation, const FrameSource& source, bool ours) {
+  if (const auto suspicion = suspect_convention(evaluation.matched, !ours)) return suspicion->sentence();
   const std::string scale = scale_sentence(evaluation);
-  return scale.empty() ? scale : scale + ": is the depth scale right?";
+  if (scale.empty()) return {};
+  if (!ours) return scale + " (`stillpoint evaluate --align sim3` does so)";
+  if (const auto late = source.depth_late_s())
+    return fmt::format(
+        "its lengths do not fit the ground truth, as happens where depth is of another time than colour: the "
+        "clock of depth, which seems {:.3f} s {}, comes first",
+        std::abs(*late), *late > 0 ? "late" : "early");
+  return scale + ": is the depth scale right?";
 }
 
 std::string share_text(const std::optional<double>& share) {
@@ -195,9 +213,10 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   report.without_image = image_gaps(run);
   report.without_depth = depth_gaps(run);
   report.without_mask = mask_gaps(run);
-  if (report.evaluation) report.doubt = doubt_of(*report.evaluation);
+  report.without_pose = pose_gaps(run);
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.measured = parts_of(run);
+  if (report.evaluation) report.doubt = doubt_of(*report.evaluation, source, report.measured.solving);
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();
@@ -286,6 +305,7 @@ std::string to_text(const RunReport& report) {
     text += "  no ground truth: no errors\n";
   }
   if (!report.without_image.empty()) text += fmt::format("  no image      {}\n", report.without_image);
+  if (!report.without_pose.empty()) text += fmt::format("  no pose       {}\n", report.without_pose);
   if (!report.without_mask.empty()) text += fmt::format("  no mask       {}\n", report.without_mask);
   if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
   // Another program is no method of ours that could be asked what it removes.

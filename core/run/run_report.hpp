@@ -34,6 +34,7 @@ struct RunReport {
   std::string doubt;            ///< what lets truth and poses fit far better than as they stand; empty mostly
   std::string without_image;    ///< which frames could not be read and why, one sentence; empty where none
   std::string without_depth;    ///< which frames lacked depth and why, one sentence; empty where none did
+  std::string without_pose;     ///< which frames were read and have no pose, and why; likewise
   std::string without_mask;     ///< which frames lacked the mask they were to be given, and why; likewise
   FrameScores scores;           ///< summed over the frames
   RecordParts measured{};       ///< what is known of any frame; the rest has no value

@@ -27,6 +27,7 @@ class Excerpt : public FrameSource {
   [[nodiscard]] bool has_depth() const override { return whole_->has_depth(); }
   [[nodiscard]] bool has_masks() const override { return whole_->has_masks(); }
   [[nodiscard]] std::string why_not(FramePart part) const override { return whole_->why_not(part); }
+  [[nodiscard]] std::optional<double> depth_late_s() const override { return whole_->depth_late_s(); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
 
  private:

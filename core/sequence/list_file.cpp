@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <functional>
 
 #include "core/error.hpp"
@@ -23,7 +22,7 @@ class MalformedLine : public InputError {
 
 double read_stamp(const std::string& path, int line, std::string_view text, const char* expected) {
   const auto stamp = parse_number(text);
-  if (!stamp || !std::isfinite(*stamp))
+  if (!stamp || !is_stamp(*stamp))
     throw MalformedLine(
         fmt::format("{}:{}: found {} as a timestamp, expected {}", path, line, in_quotes(text), expected));
   return *stamp;

@@ -85,10 +85,11 @@ void ListedSequence::join_depth(FolderLists& lists) {
     const auto far = std::find_if(frames_.begin(), frames_.end(), [](const Entry& e) {
       return std::abs(e.colour.timestamp - e.depth->timestamp) >= kAssociationTolerance;
     });
-    if (far != frames_.end())
+    if (far != frames_.end()) {
+      depth_late_s_ = far->depth->timestamp - far->colour.timestamp;
       warnings_.push_back(fmt::format("{}:{}: pairs images {:.3f} s apart; it was taken at its word",
-                                      depth_list_, far->colour.line,
-                                      std::abs(far->colour.timestamp - far->depth->timestamp)));
+                                      depth_list_, far->colour.line, std::abs(*depth_late_s_)));
+    }
     return;
   }
   const std::size_t listed = lists.depths->entries.size();
@@ -104,6 +105,8 @@ void ListedSequence::join_depth(FolderLists& lists) {
         "first)",
         depth_list_, listed, kAssociationTolerance, begins, options_.depth_offset_s - later);
   } else if (joined < kFewestJoined * static_cast<double>(frames_.size())) {
+    // Who gave an offset settled the clock.
+    if (std::abs(later) >= kAssociationTolerance && options_.depth_offset_s == 0) depth_late_s_ = later;
     warnings_.push_back(
         fmt::format("{}: {} of {} colour images have no depth image within {} s; {} (if its "
                     "clock is, `--depth-offset {:.6f}` mends that)",
@@ -297,6 +300,21 @@ Frame ListedSequence::read(int index) const {
   return frame;
 }
 
+namespace {
+
+/// Whether a depth image that is not all zero has a reading.
+bool holds_measurement(const ImageRead& depth) {
+  // Most images tell by their first rows, and are looked at no further.
+  for (int row = 0; row < depth.image.rows; ++row) {
+    const cv::Mat values = depth.image.row(row);
+    const cv::Mat measured = depth.in_metres ? cv::Mat(values > 0) : cv::Mat((values > 0) & (values < 65535));
+    if (cv::countNonZero(measured) > 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
   if (!listed.depth) {
     frame.problem = fmt::format("no depth image within {} s", kAssociationTolerance);
@@ -310,6 +328,9 @@ void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
     frame.problem = std::move(fault);
   else if (cv::countNonZero(depth.image) == 0)
     frame.problem = fmt::format("{} is zero everywhere: no depth was measured", path);
+  else if (!holds_measurement(depth))
+    frame.problem = fmt::format("{} holds no depth above zero{}: none was measured", path,
+                                depth.in_metres ? "" : " but 65535");
   else {
     frame.depth = depth.image;
     if (!depth.in_metres) {

@@ -45,6 +45,7 @@ class ListedSequence final : public FrameSource {
   [[nodiscard]] bool has_depth() const override { return has_depth_; }
   [[nodiscard]] bool has_masks() const override { return has_masks_; }
   [[nodiscard]] std::string why_not(FramePart part) const override;
+  [[nodiscard]] std::optional<double> depth_late_s() const override { return depth_late_s_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
   [[nodiscard]] std::vector<std::string> contents() const override { return input_->contents(); }
 
@@ -85,6 +86,7 @@ class ListedSequence final : public FrameSource {
   std::string folder_, name_, colour_list_, depth_list_, mask_list_;
   OpenOptions options_;
   std::vector<Entry> frames_;
+  std::optional<double> depth_late_s_;
   StampUnit unit_ = StampUnit::seconds;
   Camera camera_;
   Trajectory ground_truth_;

@@ -48,6 +48,7 @@ std::vector<std::string> recordings_in(const std::string& folder) {
 }
 
 std::unique_ptr<SequenceInput> open_file(const std::string& where, const OpenOptions& options) {
+  std::error_code none;
   if (auto log = open_log(where, where, options)) return make_bag_input(std::move(log), options);
   if (is_video(where)) {
     if (!options.topics.empty())
@@ -56,10 +57,9 @@ std::unique_ptr<SequenceInput> open_file(const std::string& where, const OpenOpt
   }
   if (!is_packed(where))
     throw InputError(
-        fmt::format("{}: is a file, expected a folder in the TUM RGB-D layout, an "
-                    "archive of one (.tgz, "
-                    ".tar, .tar.bz2, .zip), a bag (.bag, .mcap, .db3), or a video (.mp4, .mkv, .avi)",
-                    where));
+        fmt::format("{}: is {} file, expected a folder in the TUM RGB-D layout, an archive of one (.tgz, .tar, "
+                    ".tar.bz2, .zip), a bag (.bag, .mcap, .db3), or a video (.mp4, .mkv, .avi)",
+                    where, fs::is_empty(where, none) ? "an empty" : "a"));
   const Unpacked unpacked = unpack(where, options);
   if (unpacked.is_copy)
     if (auto log = open_log(unpacked.path, where, options)) return make_bag_input(std::move(log), options);

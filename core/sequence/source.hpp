@@ -42,6 +42,9 @@ class FrameSource {
   [[nodiscard]] virtual bool has_masks() const = 0;
   /// Why a part that is there is of no use, one sentence; empty where it is of use, or not there at all.
   [[nodiscard]] virtual std::string why_not(FramePart) const { return {}; }
+  /// By how much depth seems to come too late (s), where it meets so few colour images that its clock is in
+  /// doubt; warnings() tells it too. Nothing else may be blamed for what depth of another time does.
+  [[nodiscard]] virtual std::optional<double> depth_late_s() const { return std::nullopt; }
   /// What was mended while opening, one sentence each (unsorted lists, dropped duplicates, …).
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
   /// What its file holds, a line each, where there is something to choose from: a bag's topics.

@@ -19,6 +19,7 @@ class WithCamera : public FrameSource {
   [[nodiscard]] bool has_depth() const override { return source_.has_depth(); }
   [[nodiscard]] bool has_masks() const override { return source_.has_masks(); }
   [[nodiscard]] std::string why_not(FramePart part) const override { return source_.why_not(part); }
+  [[nodiscard]] std::optional<double> depth_late_s() const override { return source_.depth_late_s(); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return source_.warnings(); }
   [[nodiscard]] std::vector<std::string> contents() const override { return source_.contents(); }
 

@@ -31,7 +31,7 @@ TEST_F(DebugCli, BreakTellsTheFramesAndTheRunIsComplete) {
   EXPECT_TRUE(fs::exists(sequence_.path("out/summary.json")));
   const CliResult without = run({"--break", "rpe > 1 m"});
   EXPECT_EQ(without.exit_code, 0) << without.err;
-  EXPECT_THAT(without.out, HasSubstr("rpe > 1 m: at no frame"));
+  EXPECT_THAT(without.out, HasSubstr("rpe > 1 m: at no frame; rpe from "));
 }
 
 TEST_F(DebugCli, BreakKnowsErrorsOfTheTruth) {
@@ -76,8 +76,16 @@ TEST_F(DebugCli, SnapshotsOfTheFramesWhereAConditionHolds) {
   EXPECT_THAT(fewer.out, HasSubstr("1 images of 1 frames"));
   const CliResult none = run_cli({"snapshot", sequence_.path(), "--method", "none", "--when", "lost",
                                   "--panels", "input", "--out", sequence_.path("none")});
-  EXPECT_EQ(none.exit_code, 0) << none.err;
-  EXPECT_THAT(none.out, HasSubstr("0 images"));
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err,
+              HasSubstr("--when 'lost': holds at none of 8 frames, and nothing is drawn; lost at none"));
+  EXPECT_FALSE(fs::exists(sequence_.path("none")));
+  const CliResult film =
+      run_cli({"snapshot", sequence_.path(), "--method", "none", "--when", "inliers > 5000", "--frames",
+               "2:8", "--panels", "input", "--video", sequence_.path("n.mp4")});
+  EXPECT_EQ(film.exit_code, 1);
+  EXPECT_THAT(film.err, HasSubstr("holds at none of 6 frames, and nothing is drawn; inliers from "));
+  EXPECT_FALSE(fs::exists(sequence_.path("n.mp4")));
 }
 
 TEST_F(DebugCli, ExportsFramesThatGiveTheSameRun) {
@@ -104,7 +112,7 @@ TEST_F(DebugCli, WhenKnowsTheTrueMasks) {
                     "--panels", "union_mask", "--out", sequence_.path(out), "--no-baseline"});
   };
   EXPECT_THAT(generated("frame == 1 && !(mask_iou < 99%)", "true").out, HasSubstr("of 1 frames"));
-  EXPECT_THAT(generated("mask_iou < 99%", "wrong").out, HasSubstr("of 0 frames"));
+  EXPECT_THAT(generated("mask_iou < 99%", "wrong").err, HasSubstr("; mask_iou is 100.00 % throughout"));
   const CliResult unknown = run({"--break", "mask_iou < 50%"});
   EXPECT_EQ(unknown.exit_code, 0);
   EXPECT_THAT(unknown.out, HasSubstr("at no frame; none has mask_iou"));

@@ -95,8 +95,10 @@ TEST_F(OutsideRunCli, IsDrawnBesideOrByItself) {
   EXPECT_EQ(alone.exit_code, 0) << alone.err;
   const CliResult when = run_cli({"snapshot", sequence.path("theirs"), "--when", "mask < 5 %", "--panels",
                                   "errors", "--out", sequence.path("when")});
-  EXPECT_EQ(when.exit_code, 0) << when.err;
-  EXPECT_THAT(when.err, HasSubstr("--when: no frame has mask"));
+  EXPECT_EQ(when.exit_code, 1) << when.err;
+  EXPECT_THAT(
+      when.err,
+      HasSubstr("--when 'mask < 5 %': holds at none of 40 frames, and nothing is drawn; none has mask"));
   EXPECT_FALSE(std::filesystem::exists(sequence.path("when/000020_errors.png")));
 }
 

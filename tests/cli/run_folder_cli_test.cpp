@@ -125,7 +125,7 @@ TEST_F(RunFolder, CutShortIsToldOnceByEveryCommand) {
 
 TEST_F(RunFolder, WhatIsWrongIsToldInOneSentence) {
   expect_one_sentence(snapshot({"--method", "paper"}), "is a finished run, which has its own configuration");
-  expect_one_sentence(snapshot({"--baseline", out_.path("nothing")}), "records.bin: cannot be read");
+  expect_one_sentence(snapshot({"--baseline", out_.path("nothing")}), "nothing: there is no such folder");
   expect_one_sentence(snapshot({"--sequence", out_.path("nothing")}), "nothing");
   expect_one_sentence(
       run_cli({"snapshot", sequence_.path(), "--baseline", run("none"), "--out", out_.path("i")}),

@@ -58,6 +58,23 @@ TEST(Stopped, PicturesAndFigures) {
   expect_stopped(
       stopped_when_ready({"figures", "generated:walking_xyz", "--frame", "-1", "--out", folder.path("f")}),
       "no figure was drawn");
+  EXPECT_FALSE(fs::exists(folder.path("f")));
+}
+
+TEST(Stopped, ARunThatIsTakenOver) {
+  const SmallSequence sequence(30);
+  sequence.write_lists(3000);
+  std::string poses;
+  for (int i = 0; i < 30; ++i) {
+    poses += std::to_string(SmallSequence::stamp(i)) + " 0 0 0 0 0 0 1\n";
+    sequence.folder.write("theirs/masks/" + std::to_string(i) + ".png",
+                          cv::Mat(SmallSequence::kHeight, SmallSequence::kWidth, CV_8UC1, cv::Scalar(0)));
+  }
+  sequence.folder.write("theirs/trajectory.txt", poses);
+  const std::string out = sequence.path("taken/over");
+  expect_stopped(stopped_when_ready({"import", sequence.path(), sequence.path("theirs"), "--out", out}),
+                 "nothing was written");
+  EXPECT_FALSE(fs::exists(sequence.path("taken")));
 }
 
 TEST(Stopped, RunsAndTheirTables) {

@@ -253,7 +253,7 @@ TEST_F(Archives, WhatIsNoneIsSaidToBeNone) {
     return input_error_of([&] { (void)open_sequence(places_.path(name)); });
   };
   EXPECT_THAT(sentence("a.tgz", "hello"), HasSubstr("is a file, expected a folder"));
-  EXPECT_THAT(sentence("a.tgz", ""), HasSubstr("is a file, expected a folder"));
+  EXPECT_THAT(sentence("a.tgz", ""), HasSubstr("is an empty file, expected a folder"));
   EXPECT_THAT(sentence("a.tar", std::string(2048, '\0')), HasSubstr("is no archive that can be read"));
   EXPECT_THAT(sentence("a.zip", std::string("PK\5\6") + std::string(18, '\0')), HasSubstr("without files"));
   EXPECT_THAT(sentence("b.tgz", "\x1f\x8b" + std::string(30, 'x')),

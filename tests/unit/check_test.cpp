@@ -207,6 +207,21 @@ TEST(Parallax, TellsWhatDepthImagesHoldInsteadOfDepth) {
   EXPECT_THAT(findings[0], says("depth", "depth does not go with the images"));
 }
 
+/// Depth whose clock is in doubt.
+class LateDepth final : public ChangedDepth {
+ public:
+  using ChangedDepth::ChangedDepth;
+  [[nodiscard]] std::optional<double> depth_late_s() const override { return 0.5; }
+};
+
+TEST(Check, DepthOfAnotherTimeIsNotBlamedOnCameraOrScale) {
+  const auto source = rendered("walking_xyz", 12);
+  const auto beside = says("depth", "does not lie on colour");
+  EXPECT_THAT(check_sequence(ChangedDepth(source, shifted({14, -8}))).findings, Contains(beside));
+  EXPECT_THAT(check_sequence(LateDepth(source, shifted({14, -8}))).findings,
+              ::testing::Not(Contains(beside)));
+}
+
 TEST(Remedies, AreTheSwitchesThatMendForCertain) {
   EXPECT_EQ(remedy_of({"depth", "it would be 1 to 2 m: `--depth-scale 1000` reads it so"}),
             (Remedy{"depth-scale", "1000"}));

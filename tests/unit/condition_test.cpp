@@ -214,5 +214,19 @@ TEST(FramesText, JoinsNeighbours) {
   EXPECT_EQ(frames_text({1, 2, 3, 7, 9, 10}), "1-3, 7, 9-10");
 }
 
+TEST(Condition, TellsHowNearItsFiguresCome) {
+  const std::vector<FrameRecord> ten = ten_records();
+  const FrameFigures figures({ten});
+  const std::vector<int> all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, some = {5, 6, 8};
+  EXPECT_EQ(Condition("inliers > 100").reach(figures, all), "inliers from 0 (frame 0) to 90 (frame 9)");
+  EXPECT_EQ(Condition("inliers > 100").reach(figures, some), "inliers from 50 (frame 5) to 80 (frame 8)");
+  EXPECT_EQ(Condition("mask > 50 %").reach(figures, some), "mask from 5.00 % (frame 5) to 8.00 % (frame 8)");
+  EXPECT_EQ(Condition("matches > 100").reach(figures, all), "matches is 100 throughout");
+  EXPECT_EQ(Condition("lost").reach(figures, some), "lost at none");
+  EXPECT_EQ(Condition("lost && inliers > 100").reach(figures, {3, 4, 5}),
+            "lost at some; inliers from 30 (frame 3) to 50 (frame 5)");
+  EXPECT_EQ(Condition("rpe > 2 cm").reach(figures, all), "none has rpe");
+}
+
 }  // namespace
 }  // namespace stillpoint

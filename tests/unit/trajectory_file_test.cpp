@@ -108,5 +108,20 @@ TEST_F(TrajectoryFiles, OneBadRowCostsThatRow) {
                   HasSubstr("t.txt:13: a row's rotation is none")));
 }
 
+TEST_F(TrajectoryFiles, RowsBeyondAllMeasureAreSkippedWithACount) {
+  const std::string rows = "1.5 0.25 -1.5 2 0.6 0 0 0.8\n2.5 1 2 3 0 0 0 1\n";
+  const TrajectoryFile file = read(rows + "3.5 1e200 0 0 0 0 0 1\n1e300 1 2 3 0 0 0 1\n");
+  expect_the_pose(file, 1.5);
+  EXPECT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.skipped, 2);
+  EXPECT_THAT(file.warnings,
+              ElementsAre(HasSubstr("t.txt:3: a row's stamp or position is beyond all measure and it was "
+                                    "skipped (2 in all)")));
+  EXPECT_THAT(input_error_of([this] { (void)read("1.5 1e200 0 0 0 0 0 1\n2.5 0 -1e99 0 0 0 0 1\n"); }),
+              HasSubstr("found a stamp or a position beyond all measure (2 of 2 rows hold no pose)"));
+  const TrajectoryFile matrix = read("1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 1 0 1 0 -1e12 0 0 1 3\n");
+  EXPECT_EQ(matrix.poses.size(), 1U);
+}
+
 }  // namespace
 }  // namespace stillpoint

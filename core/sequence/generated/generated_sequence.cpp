@@ -272,6 +272,8 @@ SensorTiming timing_from(std::string_view endings) {
     endings.remove_prefix(1);
     const std::string_view ending = endings.substr(0, endings.find(':'));
     endings.remove_prefix(ending.size());
+    if (ending == "stereo")
+      throw InputError("generated sequences are KIND:stereo, or KIND with times, and not both");
     const std::size_t equals = std::min(ending.find('='), ending.size());
     const std::string_view name = ending.substr(0, equals);
     const std::string number(ending.substr(std::min(equals + 1, ending.size())));

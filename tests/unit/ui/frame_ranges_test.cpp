@@ -60,5 +60,10 @@ TEST(List, OfNamesMayHoldACommaInAName) {
   EXPECT_THAT(split_names(" , "), ElementsAre());
 }
 
+TEST(FrameRanges, AStepBeyondAllFramesLeavesTheFirst) {
+  EXPECT_THAT(parse_frame_ranges("3:5:2147483647", 8), ElementsAre(3));
+  EXPECT_THAT(parse_frame_ranges("0:8:7", 8), ElementsAre(0, 7));
+}
+
 }  // namespace
 }  // namespace stillpoint
