@@ -145,7 +145,9 @@ void play_in_turn(benchmark::State& state) {
   std::vector<std::shared_ptr<const SessionView>> views;
   for (int frame = kFirst; frame < kFirst + kFrames; ++frame) {
     session.go_to(frame);
-    views.push_back(session.view());
+    auto playing = std::make_shared<SessionView>(*session.view());
+    playing->playing = true;
+    views.push_back(std::move(playing));
   }
   const std::vector<NamedLayout> layouts = named_layouts();
   const NamedLayout& chosen = layouts.at(static_cast<std::size_t>(state.range(0)));

@@ -36,8 +36,8 @@ PixelFormat pixel_format(int type) {
 
 }  // namespace
 
-Texture::Texture(const Gl& gl, Sampling sampling)
-    : gl_(&gl), texture_(make_texture(gl)), sampling_(sampling) {
+Texture::Texture(const Gl& gl, Sampling sampling, OneChannel one_channel)
+    : gl_(&gl), texture_(make_texture(gl)), sampling_(sampling), one_channel_(one_channel) {
   gl.BindTexture(GL_TEXTURE_2D, texture_.id());
   const GLint magnified = sampling == Sampling::kLinear ? GL_LINEAR : GL_NEAREST;
   const GLint reduced = sampling == Sampling::kNearest  ? GL_NEAREST
@@ -67,9 +67,12 @@ void Texture::upload(const cv::Mat& image) {
     width_ = image.cols;
     height_ = image.rows;
     type_ = image.type();
-    const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
+    const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE}, cover[] = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
     const GLint colour[] = {GL_RED, GL_GREEN, GL_BLUE, image.channels() == 4 ? GL_ALPHA : GL_ONE};
-    gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, image.channels() == 1 ? grey : colour);
+    gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA,
+                        image.channels() > 1                 ? colour
+                        : one_channel_ == OneChannel::kCover ? cover
+                                                             : grey);
   }
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   if (sampling_ == Sampling::kPixels) upload_levels(image);
@@ -108,7 +111,8 @@ void Texture::note_change() const {
 // C-style cast serves both. What is drawn with another content has another name, and so is drawn again.
 ImTextureID Texture::imgui_id() const {
   static_assert(sizeof(ImTextureID) == sizeof(std::uint64_t));
-  const bool opaque = type_ >= 0 && CV_MAT_CN(type_) < 4;
+  const bool opaque =
+      type_ >= 0 && CV_MAT_CN(type_) < 4 && (CV_MAT_CN(type_) > 1 || one_channel_ == OneChannel::kGrey);
   return (ImTextureID)((opaque ? kOpaque : 0) | (std::uint64_t{content_ & 0x7FFFFFFFU} << 32U) |
                        texture_.id());
 }

@@ -13,7 +13,7 @@ namespace stillpoint {
 namespace {
 
 constexpr Rgb kGainedColour = okabe_ito::kSkyBlue, kLostColour = okabe_ito::kVermillion,
-              kStaysColour = okabe_ito::kPurple;
+              kStaysColour = okabe_ito::kPurple, kWhite = {255, 255, 255};
 
 LegendEntry look_of(MarkKind kind, ThemeName theme) {
   switch (kind) {
@@ -111,12 +111,11 @@ void StagePainter::draw(const UiFrame& frame, const char* id, const Layer& pictu
                  : coloured(picture.image, scale_of(frame, picture), picture.kind == LayerKind::kLength);
     });
     if (over) {
-      const Texture& tint = over_.get(frame, view, variant, [&] {
-        return picture.kind == LayerKind::kMask
-                   ? tinted_mask(picture.image, role_colour(Role::kUnion, frame.theme.name))
-                   : changes(picture.image);
-      });
-      content.overlays.push_back({&tint, picture.kind == LayerKind::kMask ? 0.55F : 1.0F});
+      content.overlays.push_back(
+          picture.kind == LayerKind::kMask
+              ? over_.over(frame, view, variant, 0.55F, role_colour(Role::kUnion, frame.theme.name),
+                           [&] { return cover_of(picture.image); })
+              : over_.over(frame, view, variant, 1.0F, kWhite, [&] { return changes(picture.image); }));
     }
   }
   std::string heading = picture.name;

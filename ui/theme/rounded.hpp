@@ -1,0 +1,11 @@
+#pragma once
+
+#include <imgui.h>
+
+namespace stillpoint {
+
+/// Fills a rectangle with rounded corners, as ImDrawList::AddRectFilled() does and to the same pixels. All of
+/// it but the rows of its corners is a plain rectangle, which in software costs next to nothing to fill.
+void fill_rounded(ImDrawList& list, ImVec2 low, ImVec2 high, ImU32 colour, float rounding);
+
+}  // namespace stillpoint
