@@ -59,7 +59,8 @@ void Texture::upload(const cv::Mat& image) {
   gl_->BindTexture(GL_TEXTURE_2D, texture_.id());
   gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(image.step[0] / image.elemSize()));
-  if (image.cols == width_ && image.rows == height_ && image.type() == type_) {
+  const bool has_room = image.cols == width_ && image.rows == height_ && image.type() == type_;
+  if (has_room) {
     gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, format.format, format.type, image.data);
   } else {
     gl_->TexImage2D(GL_TEXTURE_2D, 0, format.internal, image.cols, image.rows, 0, format.format, format.type,
@@ -75,10 +76,10 @@ void Texture::upload(const cv::Mat& image) {
                                                              : grey);
   }
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  if (sampling_ == Sampling::kPixels) upload_levels(image);
+  if (sampling_ == Sampling::kPixels) upload_levels(image, has_room);
 }
 
-void Texture::upload_levels(const cv::Mat& image) {
+void Texture::upload_levels(const cv::Mat& image, bool has_room) {
   // Drawn in software, a driver's own way takes a compiler first and then as long as drawing does.
   const PixelFormat format = pixel_format(image.type());
   const std::vector<cv::Mat> levels = halved_levels(image);
@@ -88,8 +89,12 @@ void Texture::upload_levels(const cv::Mat& image) {
   if (levels.empty()) gl_->GenerateMipmap(GL_TEXTURE_2D);
   for (int i = 0; i < static_cast<int>(levels.size()); ++i) {
     const cv::Mat& level = levels[static_cast<std::size_t>(i)];
-    gl_->TexImage2D(GL_TEXTURE_2D, i + 1, format.internal, level.cols, level.rows, 0, format.format,
-                    format.type, level.data);
+    if (has_room)
+      gl_->TexSubImage2D(GL_TEXTURE_2D, i + 1, 0, 0, level.cols, level.rows, format.format, format.type,
+                         level.data);
+    else
+      gl_->TexImage2D(GL_TEXTURE_2D, i + 1, format.internal, level.cols, level.rows, 0, format.format,
+                      format.type, level.data);
   }
 }
 

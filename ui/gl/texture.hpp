@@ -49,7 +49,7 @@ class Texture {
   void note_change() const;
 
  private:
-  void upload_levels(const cv::Mat& image);
+  void upload_levels(const cv::Mat& image, bool has_room);
 
   const Gl* gl_;
   GlObject texture_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -69,13 +71,19 @@ cv::Mat as_picture(const UiFrame& frame, const cv::Mat& image) {
 }
 
 cv::Mat changes(const cv::Mat& image) {
-  cv::Mat picture(image.size(), CV_8UC4, cv::Scalar::all(0));
-  const auto fill = [&](MaskChange kind, Rgb colour, int alpha) {
-    picture.setTo(cv::Scalar(colour.b, colour.g, colour.r, alpha), image == kind);
+  std::array<cv::Vec4b, 256> looks{};
+  const auto look = [&](MaskChange kind, Rgb colour, std::uint8_t alpha) {
+    looks[kind] = {colour.b, colour.g, colour.r, alpha};
   };
-  fill(kStays, kStaysColour, 110);
-  fill(kGained, kGainedColour, 225);
-  fill(kLost, kLostColour, 225);
+  look(kStays, kStaysColour, 110);
+  look(kGained, kGainedColour, 225);
+  look(kLost, kLostColour, 225);
+  cv::Mat picture(image.size(), CV_8UC4);
+  for (int y = 0; y < image.rows; ++y) {
+    const auto* kinds = image.ptr<std::uint8_t>(y);
+    std::transform(kinds, kinds + image.cols, picture.ptr<cv::Vec4b>(y),
+                   [&](std::uint8_t kind) { return looks[kind]; });
+  }
   return picture;
 }
 

@@ -61,7 +61,7 @@ bool Workbench::keeps_up(const PlacedPanel& tile) const {
 }
 
 void Workbench::take_turns(const std::vector<PlacedPanel>& placed) {
-  constexpr float kShareAtOnce = 0.34F;    // of the work that all tiles are
+  constexpr float kShareAtOnce = 0.25F;    // of the work that all tiles are
   constexpr float kWorkOfPictures = 2.0F;  // for that of plots and tables of the same area
   ++drawn_;
   next_turn_s_ = std::numeric_limits<double>::infinity();
