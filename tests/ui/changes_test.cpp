@@ -81,7 +81,7 @@ TEST(ChangesTest, TilesTakeToAnotherFrameInTurnAndEndLevel) {
   const auto draw = [&](const std::shared_ptr<const SessionView>& view) {
     return offscreen.draw([&](UiFrame& frame) { workbench.draw_in_turn(frame, view); });
   };
-  for (int i = 0; i < kSettlingFrames; ++i) draw(views()[3]);
+  for (int i = 0; i < 12; ++i) draw(views()[3]);
   EXPECT_TRUE(workbench.is_level());
   const UiFrame first = draw(views()[4]);
   EXPECT_FALSE(workbench.is_level());
@@ -134,6 +134,34 @@ TEST(ChangesTest, WhilePlayingPicturesKeepUpAndPlotsFollowTenTimesASecond) {
   EXPECT_EQ(differing_pixels(offscreen.image(), drawn_afresh(*views()[3])), 0);
 }
 
+TEST(ChangesTest, TilesTakeToAnotherSequenceInTurn) {
+  Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
+  Workbench workbench(make_panels());
+  const auto draw = [&](const std::shared_ptr<const SessionView>& view) {
+    offscreen.draw([&](UiFrame& frame) { workbench.draw_in_turn(frame, view); });
+    return offscreen.image();
+  };
+  const auto other = std::make_shared<SessionView>(*views()[2]);
+  other->title = "another";
+  for (const std::shared_ptr<const SessionView>& view :
+       {views()[3], std::shared_ptr<const SessionView>(other)}) {
+    draw(view);
+    EXPECT_FALSE(workbench.is_level()) << "not all at once";
+    int frames = 1;
+    for (; !workbench.is_level() && frames < 20; ++frames) draw(view);
+    EXPECT_TRUE(workbench.is_level());
+    EXPECT_LE(frames, 7);
+    for (int i = 0; i < kSettlingFrames; ++i) draw(view);
+    EXPECT_EQ(differing_pixels(draw(view), drawn_afresh(*view)), 0);
+  }
+  // A panel that is added to what is shown does not wait.
+  LayoutNode layout = workbench.layout();
+  add_panel(layout, "pose", {0, 0, kChangesWidth, kChangesHeight});
+  workbench.set_layout(layout);
+  draw(other);
+  EXPECT_TRUE(workbench.is_level());
+}
+
 TEST(ChangesTest, WhatNeedNotKeepUpSaysWhenItIsDrawnNext) {
   Offscreen offscreen({.width = kChangesWidth, .height = kChangesHeight});
   Workbench workbench(make_panels());
@@ -148,7 +176,7 @@ TEST(ChangesTest, WhatNeedNotKeepUpSaysWhenItIsDrawnNext) {
     view->playing = true;
     return view;
   };
-  for (int i = 0; i < kSettlingFrames; ++i) draw(views()[1]);
+  for (int i = 0; i < 12; ++i) draw(views()[1]);
   draw(playing(2));
   EXPECT_TRUE(workbench.is_level()) << "it was not drawn for long";
   const auto next = playing(3);
@@ -182,6 +210,10 @@ TEST(ChangesTest, AnImageIsShownBeforeItsOverlaysByTilesThatAreWorthIt) {
   };
   EXPECT_TRUE(changed(before, meanwhile, "features_before"));
   EXPECT_FALSE(changed(before, meanwhile, "motion")) << "stages stay until there are others";
+  offscreen.draw([&](UiFrame& frame) { workbench.draw_in_turn(frame, views()[4]); });
+  const cv::Mat first = offscreen.image();
+  EXPECT_FALSE(changed(meanwhile, first, "features_before") && changed(meanwhile, first, "features_after"))
+      << "overlays come in turn";
   const cv::Mat after = draw(views()[4]).clone();
   EXPECT_TRUE(changed(meanwhile, after, "motion"));
   EXPECT_EQ(differing_pixels(after, drawn_afresh(*views()[4])), 0);

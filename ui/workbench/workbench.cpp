@@ -302,6 +302,7 @@ void Workbench::draw_tile(const PlacedPanel& tile) {
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, tile, heading);
+  if (!has_view(name)) return ImGui::PopID();
   PanelActions wanted;
   frame_->choices = &choices_[name];
   const SessionView& session = visible(view_of(name), *panel);

@@ -26,20 +26,32 @@ std::vector<const PlacedPanel*> Workbench::waiting_tiles(const std::vector<Place
   constexpr double kBetweenTurnsS = 0.1;  // s, of what need not keep up while playing
   constexpr double kEpsilonS = 1e-6;      // s: the clock adds up sixtieths
   std::vector<const PlacedPanel*> waiting;
+  // Of another sequence none has shown anything: what was shown of the one before goes.
+  const bool all_new = std::none_of(placed.begin(), placed.end(), [this](const PlacedPanel& panel) {
+    const auto tile = tile_views_.find(panel.panel);
+    return tile != tile_views_.end() && tile->second.view != nullptr &&
+           tile->second.view->title == turning_to_->title;
+  });
+  if (all_new) tile_views_.clear();
   for (const PlacedPanel& panel : placed) {
-    TileView& tile = tile_views_[panel.panel];
+    const auto [found, added] = tile_views_.try_emplace(panel.panel);
+    TileView& tile = found->second;
     const Panel* shown = find_panel(panel.panel);
     // An image whose overlays follow is shown by panels that are worth looking at without them.
     if (turning_to_->current->image_alone && tile.view != nullptr && shown != nullptr &&
         !shown->shows_image_alone() && tile.view->title == turning_to_->title)
       continue;
-    // Only another frame of the same sequence is worth waiting for: all else is little work.
-    if (tile.view == nullptr || tile.view->title != turning_to_->title ||
-        tile.view->current->index == turning_to_->current->index)
+    // Only another frame of the same sequence is worth waiting for, or the first, or what lies over an image
+    // that was shown alone: all else is little work.
+    if (tile.view == nullptr ? added && !all_new
+                             : tile.view->title != turning_to_->title ||
+                                   (tile.view->current->index == turning_to_->current->index &&
+                                    tile.view->current->image_alone == turning_to_->current->image_alone))
       tile.view = turning_to_;
     if (tile.view == turning_to_) continue;
     const double left_s = tile.taken_s + kBetweenTurnsS - time_s_;
-    if (turning_to_->playing && left_s > kEpsilonS && shown != nullptr && !shown->keeps_up()) {
+    if (turning_to_->playing && left_s > kEpsilonS && tile.view != nullptr && shown != nullptr &&
+        !shown->keeps_up()) {
       next_turn_s_ = std::min(next_turn_s_, left_s);
       continue;
     }
@@ -89,7 +101,12 @@ void Workbench::take_turns(const std::vector<PlacedPanel>& placed) {
 
 const SessionView& Workbench::view_of(const std::string& tile) const {
   const auto found = tile_views_.find(tile);
-  return found == tile_views_.end() ? *session_ : *found->second.view;
+  return found == tile_views_.end() || found->second.view == nullptr ? *session_ : *found->second.view;
+}
+
+bool Workbench::has_view(const std::string& tile) const {
+  const auto found = tile_views_.find(tile);
+  return found == tile_views_.end() || found->second.view != nullptr;
 }
 
 }  // namespace stillpoint
