@@ -13,8 +13,9 @@ namespace {
 constexpr double kNearest = 0.05;  // m before the camera: nearer, a pixel means nothing
 
 Eigen::Vector3d back_project(const Camera& camera, const Eigen::Vector2d& pixel, double z) {
-  const cv::Point2f ideal =
-      camera.undistort({{static_cast<float>(pixel.x()), static_cast<float>(pixel.y())}}).front();
+  const cv::Point2f given(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+  // Asked for each pixel of an image: a list of one is not made for nothing.
+  const cv::Point2f ideal = camera.has_distortion() ? camera.undistort({given}).front() : given;
   return camera.back_project({static_cast<double>(ideal.x), static_cast<double>(ideal.y)}, z);
 }
 

@@ -1,5 +1,9 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+
 #include "core/run/removal_errors.hpp"
 #include "core/run/sweep.hpp"
 #include "tests/ui/gallery.hpp"
@@ -115,6 +119,74 @@ void draw_playing(benchmark::State& state) {
 }
 BENCHMARK(draw_playing)
     ->DenseRange(-1, 7)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+/// ms of processor time so far, of this thread or of all.
+double used_ms(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// The window's frames while a session plays whose pictures are computed already: every other one has another
+/// frame of the sequence, to which tiles take in turn. range(0) is the layout. Counters are processor time a
+/// frame of the interface: its mean, what 95 % stay within, the worst; and of the mean, what building it
+/// takes, what the drawing thread does for OpenGL, and what OpenGL's own threads do.
+void play_in_turn(benchmark::State& state) {
+  constexpr int kFirst = 20, kFrames = 24;
+  OpenOptions short_one;
+  short_one.frames = kFirst + kFrames;
+  Config config;
+  config.run.method = "stillpoint";
+  const char* where = std::getenv("STILLPOINT_BENCH_SEQUENCE");
+  Session session(open_sequence(where == nullptr ? "generated:walking_xyz" : where, short_one), config);
+  std::vector<std::shared_ptr<const SessionView>> views;
+  for (int frame = kFirst; frame < kFirst + kFrames; ++frame) {
+    session.go_to(frame);
+    auto playing = std::make_shared<SessionView>(*session.view());
+    playing->playing = true;
+    views.push_back(std::move(playing));
+  }
+  const std::vector<NamedLayout> layouts = named_layouts();
+  const NamedLayout& chosen = layouts.at(static_cast<std::size_t>(state.range(0)));
+  state.SetLabel(std::string(chosen.title));
+  Offscreen offscreen({.width = 1600, .height = 900});
+  Workbench workbench(make_panels());
+  workbench.set_layout(chosen.make(config.run.method));
+  std::size_t drawn = 0;
+  double built_ms = 0.0;
+  const FrameFunction draw = [&](UiFrame& frame) {
+    const double begin = used_ms(CLOCK_THREAD_CPUTIME_ID);
+    workbench.draw_in_turn(frame, views[drawn / 2 % views.size()]);
+    built_ms += used_ms(CLOCK_THREAD_CPUTIME_ID) - begin;
+  };
+  for (; drawn < 2 * views.size(); ++drawn) offscreen.draw(draw);  // all is there once
+  std::vector<double> frames_ms;
+  double mine_ms = 0.0, sum_ms = 0.0;
+  built_ms = 0.0;
+  for (auto _ : state) {
+    const double all = used_ms(CLOCK_PROCESS_CPUTIME_ID), mine = used_ms(CLOCK_THREAD_CPUTIME_ID);
+    offscreen.draw(draw);
+    ++drawn;
+    mine_ms += used_ms(CLOCK_THREAD_CPUTIME_ID) - mine;
+    frames_ms.push_back(used_ms(CLOCK_PROCESS_CPUTIME_ID) - all);
+    sum_ms += frames_ms.back();
+  }
+  std::sort(frames_ms.begin(), frames_ms.end());
+  const auto count = static_cast<double>(frames_ms.size());
+  state.counters["mean"] = sum_ms / count;
+  state.counters["95%"] = frames_ms[frames_ms.size() * 95 / 100];
+  state.counters["worst"] = frames_ms.back();
+  state.counters["build"] = built_ms / count;
+  state.counters["gl"] = (mine_ms - built_ms) / count;
+  state.counters["raster"] = (sum_ms - mine_ms) / count;
+  offscreen.make_current();
+}
+BENCHMARK(play_in_turn)
+    ->DenseRange(0, 4)
+    ->Iterations(192)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

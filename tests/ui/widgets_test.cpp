@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 
 #include "tests/support/golden.hpp"
 #include "tests/ui/gallery.hpp"
 #include "ui/gl/texture.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/rounded.hpp"
 #include "ui/theme/text.hpp"
 
 namespace stillpoint::testing {
@@ -228,6 +230,65 @@ TEST(Text, LinesEndAtSpacesAndFiguresKeepTheirUnits) {
     EXPECT_LE(width(cut_to(font, text, 100.0F)), 100.0F);
     EXPECT_EQ(cut_to(font, text, 1e4F), text);
   });
+}
+
+/// What a function draws into a window without decoration.
+cv::Mat drawn_by(const std::function<void(ImDrawList&)>& draw) {
+  Offscreen offscreen({.width = 200, .height = 160});
+  return offscreen.render([&](UiFrame&) { draw(*ImGui::GetBackgroundDrawList()); });
+}
+
+TEST(RoundedTest, IsFilledToTheSamePixelsAsInOneGo) {
+  struct Case {
+    ImVec2 low, high;
+    float rounding;
+  };
+  for (const Case& one : {Case{{20, 10}, {180, 150}, 6.0F}, Case{{20, 10}, {180, 150}, 9.5F},
+                          Case{{20, 10}, {180, 150}, 2.0F}, Case{{20.4F, 10.3F}, {180.1F, 150.6F}, 6.0F},
+                          Case{{20, 10}, {30, 150}, 6.0F}, Case{{20, 10}, {180, 24}, 6.0F}}) {
+    const ImU32 colour = IM_COL32(40, 120, 200, 255);
+    const cv::Mat in_one =
+        drawn_by([&](ImDrawList& list) { list.AddRectFilled(one.low, one.high, colour, one.rounding); });
+    const cv::Mat in_parts =
+        drawn_by([&](ImDrawList& list) { fill_rounded(list, one.low, one.high, colour, one.rounding); });
+    EXPECT_GT(cv::norm(in_one, cv::NORM_INF), 0.0);
+    EXPECT_LE(cv::norm(in_one, in_parts, cv::NORM_INF), one.rounding < 3.0F ? 1.0 : 0.0)
+        << one.low.x << ' ' << one.high.x << ' ' << one.high.y << ' ' << one.rounding;
+  }
+}
+
+TEST(CoverTest, LiesOverAPictureAsItsColourWithAlphaDoes) {
+  const Rgb colour{230, 120, 30};
+  cv::Mat mask(96, 128, CV_8UC1, cv::Scalar(0));
+  cv::circle(mask, {70, 40}, 19, cv::Scalar(255), cv::FILLED);
+  cv::Mat tinted(mask.size(), CV_8UC4, cv::Scalar(colour.b, colour.g, colour.r, 0));
+  tinted.setTo(cv::Scalar(colour.b, colour.g, colour.r, 255), mask);
+  const auto over_picture = [&](const cv::Mat& over, Rgb times, std::optional<cv::Rect> part) {
+    Offscreen offscreen({.width = 200, .height = 160});
+    Texture picture(offscreen.gl()), cover(offscreen.gl(), Sampling::kPixels, OneChannel::kCover);
+    picture.upload(example_image(128, 96));
+    cover.upload(over);
+    EXPECT_FALSE(is_opaque(cover.imgui_id()));
+    ImageView view;
+    cv::Mat image = offscreen.render([&](UiFrame& frame) {
+      ImageContent content{.texture = &picture};
+      content.overlays.push_back({&cover, 0.55F, times, part});
+      ImGui::SetNextWindowPos({0, 0});
+      ImGui::Begin("picture", nullptr, ImGuiWindowFlags_NoDecoration);
+      draw_image(frame, "image", content, view, {100, 80});
+      ImGui::End();
+    });
+    offscreen.make_current();
+    return image;
+  };
+  const cv::Mat with_alpha = over_picture(tinted, {255, 255, 255}, std::nullopt);
+  const cv::Rect round_it = cv::boundingRect(mask);
+  const cv::Rect part =
+      cv::Rect(round_it.tl() - cv::Point(8, 8), round_it.br() + cv::Point(8, 8)) & cv::Rect({}, mask.size());
+  EXPECT_LE(cv::norm(with_alpha, over_picture(mask, colour, std::nullopt), cv::NORM_INF), 1.0);
+  EXPECT_LE(cv::norm(with_alpha, over_picture(mask, colour, part), cv::NORM_INF), 1.0);
+  EXPECT_GT(cv::norm(with_alpha, over_picture(mask, colour, cv::Rect()), cv::NORM_INF), 30.0)
+      << "without it the picture is another";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "ui/gl/changed_regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -21,16 +22,38 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29U);
 }
 
-std::uint64_t hashed(std::uint64_t hash, const void* data, std::size_t bytes) {
+/// @param less taken from each whole word of the data
+std::uint64_t hashed(std::uint64_t hash, const void* data, std::size_t bytes, std::uint64_t less = 0) {
   const auto* at = static_cast<const unsigned char*>(data);
   std::uint64_t word = 0;
+  // A word waits for the one before it only in a lane of its own.
+  std::array<std::uint64_t, 4> lanes{hash, hash + 1, hash + 2, hash + 3};
+  std::array<std::uint64_t, 4> words{};
+  for (; bytes >= sizeof(words); bytes -= sizeof(words), at += sizeof(words)) {
+    std::memcpy(words.data(), at, sizeof(words));
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = mixed(lanes[i], words[i] - less);
+  }
+  for (const std::uint64_t lane : lanes) hash = mixed(hash, lane);
   for (; bytes >= sizeof(word); bytes -= sizeof(word), at += sizeof(word)) {
     std::memcpy(&word, at, sizeof(word));
-    hash = mixed(hash, word);
+    hash = mixed(hash, word - less);
   }
   word = 0;
   std::memcpy(&word, at, bytes);
   return mixed(hash, word);
+}
+
+/// Of indices, as counted from the lowest of them: where a shape lies in its buffers does not matter.
+std::uint64_t hashed_indices(std::uint64_t hash, const ImDrawIdx* indices, std::size_t count,
+                             std::uint32_t lowest) {
+  constexpr std::size_t kInWord = sizeof(std::uint64_t) / sizeof(ImDrawIdx);
+  // None is lower, so that taking it from all of a word at once borrows nothing.
+  std::uint64_t less = 0;
+  for (std::size_t i = 0; i < kInWord; ++i) less |= std::uint64_t{lowest} << (8 * sizeof(ImDrawIdx) * i);
+  const std::size_t whole = count - count % kInWord;
+  hash = hashed(hash, indices, whole * sizeof(ImDrawIdx), less);
+  for (std::size_t i = whole; i < count; ++i) hash = mixed(hash, indices[i] - lowest);
+  return hash;
 }
 
 /// Whether four corners have one colour and one place in the texture, as ImGui's plain rectangles have.
@@ -67,13 +90,11 @@ PixelRect PixelRect::cut_to(const PixelRect& other) const {
   return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
 }
 
-void ChangedRegions::add_shape(const ImDrawList& list, const DrawnCommand& command, std::uint32_t first,
-                               std::uint32_t count) {
-  const ImDrawIdx* indices = list.IdxBuffer.Data + first;
-  const auto [low, high] = std::minmax_element(indices, indices + count);
+void ChangedRegions::add_shape(const ImDrawList& list, const DrawnCommand& command, const Run& run) {
+  const ImDrawIdx* indices = list.IdxBuffer.Data + run.first;
   const ImDrawVert* vertices = list.VtxBuffer.Data + command.command->VtxOffset;
-  ImVec2 least = vertices[*low].pos, most = least;
-  for (auto i = std::size_t{*low}; i <= std::size_t{*high}; ++i) {
+  ImVec2 least = vertices[run.lowest].pos, most = least;
+  for (std::size_t i = run.lowest; i <= run.highest; ++i) {
     least = {std::min(least.x, vertices[i].pos.x), std::min(least.y, vertices[i].pos.y)};
     most = {std::max(most.x, vertices[i].pos.x), std::max(most.y, vertices[i].pos.y)};
   }
@@ -84,13 +105,13 @@ void ChangedRegions::add_shape(const ImDrawList& list, const DrawnCommand& comma
                               : -static_cast<int>(kFarthest);
   };
   DrawnShape shape;
-  shape.first_index = first;
-  shape.indices = count;
+  shape.first_index = run.first;
+  shape.indices = run.count;
   shape.box = {pixel(least.x), pixel(least.y), pixel(most.x) + 1, pixel(most.y) + 1};
-  if (count == 6 && *high - *low == 3)
-    shape.drawing = drawing_of(vertices + *low, least, most, command.command->GetTexID());
+  if (run.count == 6 && run.highest - run.lowest == 3)
+    shape.drawing = drawing_of(vertices + run.lowest, least, most, command.command->GetTexID());
   if (shape.drawing == Drawing::kFill) {
-    shape.colour = vertices[*low].col;
+    shape.colour = vertices[run.lowest].col;
     // Pixels whose middles it covers.
     shape.box = {pixel(least.x + 0.5F), pixel(least.y + 0.5F), pixel(most.x + 0.5F), pixel(most.y + 0.5F)};
   }
@@ -98,8 +119,9 @@ void ChangedRegions::add_shape(const ImDrawList& list, const DrawnCommand& comma
   const PixelRect& box = shape.box;
   if (box.empty()) return;
   shapes_.push_back(shape);
-  std::uint64_t hash = hashed(0, vertices + *low, (std::size_t{*high} - *low + 1) * sizeof(ImDrawVert));
-  for (std::uint32_t i = 0; i < count; ++i) hash = mixed(hash, static_cast<std::uint64_t>(indices[i] - *low));
+  std::uint64_t hash =
+      hashed(0, vertices + run.lowest, (run.highest - run.lowest + std::size_t{1}) * sizeof(ImDrawVert));
+  hash = hashed_indices(hash, indices, run.count, run.lowest);
   const ImTextureID texture = command.command->GetTexID();
   hash = hashed(hash, &texture, sizeof(texture));
   hash = hashed(hash, &command.clip, sizeof(command.clip));
@@ -128,18 +150,20 @@ void ChangedRegions::add_list(const ImDrawList& list, std::vector<DrawnCommand>&
     DrawnCommand drawn{.command = &command, .clip = clip, .first_shape = shapes_.size()};
     // A triangle whose corners all come after those of the triangles before it begins another shape.
     const ImDrawIdx* indices = list.IdxBuffer.Data;
-    std::uint32_t first = command.IdxOffset, highest = 0;
+    Run run{.first = command.IdxOffset};
     const std::uint32_t end = command.IdxOffset + command.ElemCount;
-    for (std::uint32_t at = first; at < end; at += 3) {
-      const auto [lowest_of, highest_of] = std::minmax({indices[at], indices[at + 1], indices[at + 2]});
-      if (at > first && (lowest_of > highest || at - first >= kShapeIndices)) {
-        add_shape(list, drawn, first, at - first);
-        first = at;
-        highest = 0;
+    for (std::uint32_t at = run.first; at < end; at += 3) {
+      const auto [lowest, highest] =
+          std::minmax<std::uint32_t>({indices[at], indices[at + 1], indices[at + 2]});
+      if (run.count > 0 && (lowest > run.highest || run.count >= kShapeIndices)) {
+        add_shape(list, drawn, run);
+        run = {.first = at};
       }
-      highest = std::max<std::uint32_t>(highest, highest_of);
+      run.lowest = run.count == 0 ? lowest : std::min(run.lowest, lowest);
+      run.highest = std::max(run.highest, highest);
+      run.count += 3;
     }
-    add_shape(list, drawn, first, end - first);
+    add_shape(list, drawn, run);
     drawn.shapes = shapes_.size() - drawn.first_shape;
     commands.push_back(drawn);
   }

@@ -60,9 +60,13 @@ class ChangedRegions {
   [[nodiscard]] const std::vector<DrawnShape>& shapes() const { return shapes_; }
 
  private:
+  /// Indices of a command that make a shape, and the vertices they are of.
+  struct Run {
+    std::uint32_t first = 0, count = 0;     // in the list's indices
+    std::uint32_t lowest = 0, highest = 0;  // in the command's vertices
+  };
   void add_list(const ImDrawList& list, std::vector<DrawnCommand>& commands);
-  void add_shape(const ImDrawList& list, const DrawnCommand& command, std::uint32_t first,
-                 std::uint32_t count);
+  void add_shape(const ImDrawList& list, const DrawnCommand& command, const Run& run);
   void collect_changes(const std::vector<std::uint64_t>& before, bool all);
 
   int width_ = 0, height_ = 0, columns_ = 0;

@@ -8,10 +8,9 @@ namespace {
 std::uint8_t mean(std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>((a + b + 1) >> 1); }
 float mean(float a, float b) { return a + (b - a) * 0.5F; }
 
-template <typename Sample>
+template <typename Sample, int channels>
 cv::Mat halved(const cv::Mat& image) {
   cv::Mat half(image.rows / 2, image.cols / 2, image.type());
-  const int channels = image.channels();
   for (int y = 0; y < half.rows; ++y) {
     const auto *upper = image.ptr<Sample>(2 * y), *lower = image.ptr<Sample>(2 * y + 1);
     auto* to = half.ptr<Sample>(y);
@@ -20,6 +19,14 @@ cv::Mat halved(const cv::Mat& image) {
         *to++ = mean(mean(upper[c], upper[c + channels]), mean(lower[c], lower[c + channels]));
   }
   return half;
+}
+
+/// @param image of 1, 3 or 4 channels
+template <typename Sample>
+cv::Mat halved(const cv::Mat& image) {
+  return image.channels() == 1   ? halved<Sample, 1>(image)
+         : image.channels() == 3 ? halved<Sample, 3>(image)
+                                 : halved<Sample, 4>(image);
 }
 
 }  // namespace

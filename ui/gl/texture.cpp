@@ -36,8 +36,8 @@ PixelFormat pixel_format(int type) {
 
 }  // namespace
 
-Texture::Texture(const Gl& gl, Sampling sampling)
-    : gl_(&gl), texture_(make_texture(gl)), sampling_(sampling) {
+Texture::Texture(const Gl& gl, Sampling sampling, OneChannel one_channel)
+    : gl_(&gl), texture_(make_texture(gl)), sampling_(sampling), one_channel_(one_channel) {
   gl.BindTexture(GL_TEXTURE_2D, texture_.id());
   const GLint magnified = sampling == Sampling::kLinear ? GL_LINEAR : GL_NEAREST;
   const GLint reduced = sampling == Sampling::kNearest  ? GL_NEAREST
@@ -59,7 +59,8 @@ void Texture::upload(const cv::Mat& image) {
   gl_->BindTexture(GL_TEXTURE_2D, texture_.id());
   gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(image.step[0] / image.elemSize()));
-  if (image.cols == width_ && image.rows == height_ && image.type() == type_) {
+  const bool has_room = image.cols == width_ && image.rows == height_ && image.type() == type_;
+  if (has_room) {
     gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, format.format, format.type, image.data);
   } else {
     gl_->TexImage2D(GL_TEXTURE_2D, 0, format.internal, image.cols, image.rows, 0, format.format, format.type,
@@ -67,15 +68,18 @@ void Texture::upload(const cv::Mat& image) {
     width_ = image.cols;
     height_ = image.rows;
     type_ = image.type();
-    const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
+    const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE}, cover[] = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
     const GLint colour[] = {GL_RED, GL_GREEN, GL_BLUE, image.channels() == 4 ? GL_ALPHA : GL_ONE};
-    gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, image.channels() == 1 ? grey : colour);
+    gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA,
+                        image.channels() > 1                 ? colour
+                        : one_channel_ == OneChannel::kCover ? cover
+                                                             : grey);
   }
   gl_->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  if (sampling_ == Sampling::kPixels) upload_levels(image);
+  if (sampling_ == Sampling::kPixels) upload_levels(image, has_room);
 }
 
-void Texture::upload_levels(const cv::Mat& image) {
+void Texture::upload_levels(const cv::Mat& image, bool has_room) {
   // Drawn in software, a driver's own way takes a compiler first and then as long as drawing does.
   const PixelFormat format = pixel_format(image.type());
   const std::vector<cv::Mat> levels = halved_levels(image);
@@ -85,8 +89,12 @@ void Texture::upload_levels(const cv::Mat& image) {
   if (levels.empty()) gl_->GenerateMipmap(GL_TEXTURE_2D);
   for (int i = 0; i < static_cast<int>(levels.size()); ++i) {
     const cv::Mat& level = levels[static_cast<std::size_t>(i)];
-    gl_->TexImage2D(GL_TEXTURE_2D, i + 1, format.internal, level.cols, level.rows, 0, format.format,
-                    format.type, level.data);
+    if (has_room)
+      gl_->TexSubImage2D(GL_TEXTURE_2D, i + 1, 0, 0, level.cols, level.rows, format.format, format.type,
+                         level.data);
+    else
+      gl_->TexImage2D(GL_TEXTURE_2D, i + 1, format.internal, level.cols, level.rows, 0, format.format,
+                      format.type, level.data);
   }
 }
 
@@ -108,7 +116,8 @@ void Texture::note_change() const {
 // C-style cast serves both. What is drawn with another content has another name, and so is drawn again.
 ImTextureID Texture::imgui_id() const {
   static_assert(sizeof(ImTextureID) == sizeof(std::uint64_t));
-  const bool opaque = type_ >= 0 && CV_MAT_CN(type_) < 4;
+  const bool opaque =
+      type_ >= 0 && CV_MAT_CN(type_) < 4 && (CV_MAT_CN(type_) > 1 || one_channel_ == OneChannel::kGrey);
   return (ImTextureID)((opaque ? kOpaque : 0) | (std::uint64_t{content_ & 0x7FFFFFFFU} << 32U) |
                        texture_.id());
 }

@@ -16,13 +16,21 @@ enum class Sampling {
   kPixels,   ///< sharp pixels when enlarged, smooth (by mipmaps) when reduced: for images one inspects
 };
 
+/// What an image of one channel says.
+enum class OneChannel {
+  kGrey,   ///< how bright it is
+  kCover,  ///< how much of a colour covers what lies below: white, with the channel as alpha
+};
+
 /// A picture on the graphics card.
 class Texture {
  public:
-  explicit Texture(const Gl& gl, Sampling sampling = Sampling::kPixels);
+  explicit Texture(const Gl& gl, Sampling sampling = Sampling::kPixels,
+                   OneChannel one_channel = OneChannel::kGrey);
 
-  /// Takes over an image: 8UC1 and 32FC1 (0 to 1) show as grey, 8UC3 is BGR, 8UC4 is BGRA. Rows may be
-  /// padded. Storage is kept while size and type stay the same. An empty image leaves the texture empty.
+  /// Takes over an image: 8UC1 and 32FC1 (0 to 1) are what `one_channel` says, 8UC3 is BGR, 8UC4 is BGRA.
+  /// Rows may be padded. Storage is kept while size and type stay the same. An empty image leaves the texture
+  /// empty.
   /// @throws std::invalid_argument for another type.
   void upload(const cv::Mat& image);
 
@@ -41,11 +49,12 @@ class Texture {
   void note_change() const;
 
  private:
-  void upload_levels(const cv::Mat& image);
+  void upload_levels(const cv::Mat& image, bool has_room);
 
   const Gl* gl_;
   GlObject texture_;
   Sampling sampling_;
+  OneChannel one_channel_;
   int width_ = 0, height_ = 0, type_ = -1, last_level_ = -1;
   mutable std::uint32_t content_ = 0;  // no two contents of any texture have the same
 };

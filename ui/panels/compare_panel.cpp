@@ -38,6 +38,7 @@ class ComparePanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {440.0F, 320.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return false; }
+  [[nodiscard]] bool keeps_up() const override { return true; }
   [[nodiscard]] bool lists_runs() const override { return true; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {

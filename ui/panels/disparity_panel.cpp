@@ -166,7 +166,8 @@ class StereoHolesPanel final : public FramePanel {
       const cv::Mat mask = holes == static_cast<int>(kHoles[i].hole);
       shares_[i] = static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(mask.total());
       all_ += shares_[i];
-      tinted_mask(mask, kHoles[i].colour).copyTo(tint, mask);
+      const Rgb colour = kHoles[i].colour;
+      tint.setTo(cv::Scalar(colour.b, colour.g, colour.r, 255), mask);
     }
     return tint;
   }

@@ -77,6 +77,7 @@ class FeaturePanel final : public FramePanel {
   explicit FeaturePanel(Shared shared) : FramePanel("feature", "Feature", std::move(shared)) {}
 
   [[nodiscard]] PanelSize least() const override { return {280.0F, 240.0F}; }
+  [[nodiscard]] bool keeps_up() const override { return false; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     const FrameView& view = *session.current;

@@ -71,10 +71,9 @@ class FeaturesPanel final : public FramePanel {
     });
     content.values = view.frame.readable() ? &view.frame.gray : nullptr;
     if (moment_ == FeatureMoment::kBefore && mask_ && !view.mask.empty()) {
-      const Texture& tint = tint_.get(frame, session.current, 0, [&] {
-        return tinted_mask(view.mask, role_colour(Role::kUnion, frame.theme.name));
-      });
-      content.overlays.push_back({&tint, 0.35F});
+      content.overlays.push_back(tint_.over(frame, session.current, 0, 0.35F,
+                                            role_colour(Role::kUnion, frame.theme.name),
+                                            [&] { return cover_of(view.mask); }));
     }
     const ImageResponse response =
         draw_frame_image(frame, "features", content, *shared_, room_above(frame, footer), {session, actions});
@@ -189,7 +188,7 @@ class FeaturesPanel final : public FramePanel {
   int hovered_ = -1;
   std::weak_ptr<const FrameView> hovered_in_;
   FeatureExplanation explanation_;
-  FrameTexture ground_, tint_;
+  FrameTexture ground_, tint_{OneChannel::kCover};
 };
 
 }  // namespace

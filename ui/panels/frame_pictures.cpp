@@ -9,7 +9,6 @@
 
 #include "core/inspect/frame_view.hpp"
 #include "core/motion/methods.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/shown_runs.hpp"
@@ -24,10 +23,23 @@ cv::Vec4b to_bgra(Rgb colour, int alpha) {
   return {colour.b, colour.g, colour.r, static_cast<std::uint8_t>(alpha)};
 }
 
+/// @param image CV_8UC4, or a cover
+cv::Rect part_not_transparent(const cv::Mat& image) {
+  constexpr int kMargin = 8;  // px: at an eighth of its size one of its pixels is still seen that far away
+  cv::Mat alpha = image;
+  if (image.channels() == 4) cv::extractChannel(image, alpha, 3);
+  const cv::Rect part = alpha.empty() ? cv::Rect() : cv::boundingRect(alpha);
+  if (part.empty()) return part;
+  const cv::Point margin(kMargin, kMargin);
+  return cv::Rect(part.tl() - margin, part.br() + margin) & cv::Rect({}, image.size());
+}
+
 }  // namespace
 
 FrameTexture::FrameTexture() : FrameTexture(Sampling::kPixels) {}
-FrameTexture::FrameTexture(Sampling sampling) : sampling_(sampling) {}
+FrameTexture::FrameTexture(Sampling sampling) : sampling_(sampling), one_channel_(OneChannel::kGrey) {}
+FrameTexture::FrameTexture(OneChannel one_channel)
+    : sampling_(Sampling::kPixels), one_channel_(one_channel) {}
 FrameTexture::~FrameTexture() = default;
 FrameTexture::FrameTexture(FrameTexture&&) noexcept = default;
 FrameTexture& FrameTexture::operator=(FrameTexture&&) noexcept = default;
@@ -35,25 +47,28 @@ FrameTexture& FrameTexture::operator=(FrameTexture&&) noexcept = default;
 const Texture& FrameTexture::get(const UiFrame& frame, const std::shared_ptr<const FrameView>& view,
                                  int variant, const std::function<cv::Mat()>& make) {
   const bool same = !view_.owner_before(view) && !view.owner_before(view_);
-  if (!texture_) texture_ = std::make_unique<Texture>(frame.gl, sampling_);
+  if (!texture_) texture_ = std::make_unique<Texture>(frame.gl, sampling_, one_channel_);
   if (same && variant_ == variant && theme_ == frame.theme.name) return *texture_;
   image_ = make();
   texture_->upload(image_);
+  part_.reset();
   view_ = view;
   variant_ = variant;
   theme_ = frame.theme.name;
   return *texture_;
 }
 
+ImageOverlay FrameTexture::over(const UiFrame& frame, const std::shared_ptr<const FrameView>& view,
+                                int variant, float opacity, Rgb colour,
+                                const std::function<cv::Mat()>& make) {
+  const Texture& texture = get(frame, view, variant, make);
+  if (!part_) part_ = part_not_transparent(image_);
+  return {&texture, opacity, colour, part_};
+}
+
 const cv::Mat& picture_of(const Frame& frame) { return frame.colour.empty() ? frame.gray : frame.colour; }
 
-cv::Mat tinted_mask(const cv::Mat& mask, Rgb colour) {
-  if (mask.empty()) return {};
-  // Transparent pixels carry the colour too, so that smoothing at a smaller size does not darken the edge.
-  cv::Mat tinted(mask.size(), CV_8UC4, cv::Scalar(colour.b, colour.g, colour.r, 0));
-  tinted.setTo(cv::Scalar(colour.b, colour.g, colour.r, 255), mask);
-  return tinted;
-}
+cv::Mat cover_of(const cv::Mat& mask) { return mask.empty() ? cv::Mat() : cv::Mat(mask != 0); }
 
 cv::Mat plain_mask(const cv::Mat& mask, Rgb colour, Rgb ground) {
   if (mask.empty()) return {};

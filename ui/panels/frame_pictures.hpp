@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/pixel_conventions.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/frame_marks.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/view/image_widget.hpp"
@@ -15,7 +16,6 @@ namespace stillpoint {
 struct Frame;
 struct FrameView;
 struct StageLog;
-enum class Sampling;
 
 // Pictures made of a frame's images, and textures that hold them as long as the frame stays.
 
@@ -24,19 +24,24 @@ class FrameTexture {
  public:
   FrameTexture();  ///< sharp when enlarged, smooth when reduced
   explicit FrameTexture(Sampling sampling);
+  explicit FrameTexture(OneChannel one_channel);
   ~FrameTexture();
   FrameTexture(FrameTexture&&) noexcept;
   FrameTexture& operator=(FrameTexture&&) noexcept;
 
   const Texture& get(const UiFrame& frame, const std::shared_ptr<const FrameView>& view, int variant,
                      const std::function<cv::Mat()>& make);
-  /// What the texture was made of.
-  [[nodiscard]] const cv::Mat& image() const { return image_; }
+  /// The same as something laid over a picture, drawn where it is not transparent alone.
+  /// @param make gives CV_8UC4, or CV_8UC1 where this is a cover
+  ImageOverlay over(const UiFrame& frame, const std::shared_ptr<const FrameView>& view, int variant,
+                    float opacity, Rgb colour, const std::function<cv::Mat()>& make);
 
  private:
   Sampling sampling_;
+  OneChannel one_channel_;
   std::unique_ptr<Texture> texture_;
-  cv::Mat image_;
+  cv::Mat image_;                 // that it was made of
+  std::optional<cv::Rect> part_;  // of it that is not transparent, once somebody asked
   std::weak_ptr<const FrameView> view_;
   int variant_ = -1;
   ThemeName theme_ = ThemeName::kDark;
@@ -45,8 +50,8 @@ class FrameTexture {
 /// The frame as it is looked at: colour where there is colour.
 [[nodiscard]] const cv::Mat& picture_of(const Frame& frame);
 
-/// CV_8UC4: `colour` where the mask is set, transparent elsewhere.
-[[nodiscard]] cv::Mat tinted_mask(const cv::Mat& mask, Rgb colour);
+/// CV_8UC1: 255 where the mask is set, for textures that cover (OneChannel).
+[[nodiscard]] cv::Mat cover_of(const cv::Mat& mask);
 
 /// CV_8UC3: `colour` where the mask is set, `ground` elsewhere.
 [[nodiscard]] cv::Mat plain_mask(const cv::Mat& mask, Rgb colour, Rgb ground);

@@ -85,6 +85,8 @@ class InspectorPanel final : public FramePanel {
  public:
   explicit InspectorPanel(Shared shared) : FramePanel("inspector", "Inspector", std::move(shared)) {}
 
+  [[nodiscard]] bool keeps_up() const override { return false; }
+
   [[nodiscard]] std::vector<PanelCommand> commands() override {
     return {{.name = "pin",
              .title = "Pin the pixel under the mouse, or take its pin out",

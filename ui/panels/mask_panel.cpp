@@ -69,11 +69,11 @@ class MaskPanel final : public FramePanel {
     if (!is_the_runs()) take_layers();
     const int variant = 3 * round_shown(*log_, round_) + stage_;
     const Frame& ground = space_ == FrameSpace::kReference ? view.reference : view.frame;
-    const Texture& tint = tint_.get(frame, session.current, variant, [&] {
+    const ImageOverlay tint = tint_.over(frame, session.current, variant, opacity_, colour(frame), [&] {
       outlines_ = outlines_of(mask_);
       regions_ = stage_ == kCleaned ? find_regions(mask_).regions : std::vector<MotionRegion>();
       score_ = has_truth && !in_target_.empty() ? score_mask(in_target_, view.truth.moving) : MaskScore{};
-      return tinted_mask(mask_, colour(frame));
+      return cover_of(mask_);
     });
 
     const bool beside = has_truth && !in_target_.empty() && shows_truth(frame);
@@ -89,7 +89,7 @@ class MaskPanel final : public FramePanel {
     } else {
       content.texture = &ground_.get(frame, session.current, &ground == &view.frame ? 0 : 1,
                                      [&] { return picture_of(ground); });
-      content.overlays.push_back({&tint, opacity_});
+      content.overlays.push_back(tint);
     }
     const ImVec2 start = ImGui::GetCursorScreenPos();
     const char* heading = &ground == &view.frame ? "Found in frame t" : "Found in the reference frame";
@@ -213,7 +213,7 @@ class MaskPanel final : public FramePanel {
   int stage_ = kCleaned, look_ = kOverlay, round_ = -1;
   float opacity_ = 0.45F;
   std::optional<bool> beside_;
-  FrameTexture ground_, tint_, alone_, compared_, truth_ground_;
+  FrameTexture ground_, alone_, compared_, truth_ground_, tint_{OneChannel::kCover};
   // Of what is being drawn.
   const StageLog* log_ = nullptr;
   cv::Mat mask_, in_target_;

@@ -133,9 +133,8 @@ class OutlinePanel final : public FramePanel {
     content.texture = &picture_.get(frame, session.current, 0, [&] { return picture_of(view.frame); });
     content.values = &view.frame.gray;
     if (!drawn && !view.truth.moving.empty())
-      content.overlays.push_back({&truth_.get(frame, session.current, 0,
-                                              [&] { return tinted_mask(view.truth.moving, carried(frame)); }),
-                                  0.4F});
+      content.overlays.push_back(truth_.over(frame, session.current, 0, 0.4F, carried(frame),
+                                             [&] { return cover_of(view.truth.moving); }));
     const ImageResponse response =
         draw_frame_image(frame, "outline", content, *shared_, room_above(frame, footer));
     if (response.hovered) hovered_in_ = ImGui::GetFrameCount();
@@ -369,7 +368,7 @@ class OutlinePanel final : public FramePanel {
   std::vector<Outline> held_;                  // while a corner of them is dragged
   std::optional<CornerOf> grabbed_;            // that corner
   std::optional<std::vector<Outline>> asked_;  // until the session has them
-  FrameTexture picture_, truth_;
+  FrameTexture picture_, truth_{OneChannel::kCover};
 };
 
 }  // namespace

@@ -51,6 +51,9 @@ class Panel {
   [[nodiscard]] virtual PanelSize least() const { return {270.0F, 180.0F}; }
   /// Whether it shows the frame at hand, and so, while there is one, its preview (with_preview()).
   [[nodiscard]] virtual bool previews() const { return false; }
+  /// Whether it shows each frame while they are played, as far as there is time: a picture. Curves and
+  /// numbers follow more slowly, for nobody reads them as fast.
+  [[nodiscard]] virtual bool keeps_up() const { return previews(); }
   /// Whether what it shows of the frame is a run's, and so can be another run's as well (as_run()).
   [[nodiscard]] virtual bool shows_a_run() const { return false; }
   /// Whether it lists all runs, those too that other panels are not to show.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -13,7 +15,7 @@ namespace stillpoint {
 namespace {
 
 constexpr Rgb kGainedColour = okabe_ito::kSkyBlue, kLostColour = okabe_ito::kVermillion,
-              kStaysColour = okabe_ito::kPurple;
+              kStaysColour = okabe_ito::kPurple, kWhite = {255, 255, 255};
 
 LegendEntry look_of(MarkKind kind, ThemeName theme) {
   switch (kind) {
@@ -69,13 +71,19 @@ cv::Mat as_picture(const UiFrame& frame, const cv::Mat& image) {
 }
 
 cv::Mat changes(const cv::Mat& image) {
-  cv::Mat picture(image.size(), CV_8UC4, cv::Scalar::all(0));
-  const auto fill = [&](MaskChange kind, Rgb colour, int alpha) {
-    picture.setTo(cv::Scalar(colour.b, colour.g, colour.r, alpha), image == kind);
+  std::array<cv::Vec4b, 256> looks{};
+  const auto look = [&](MaskChange kind, Rgb colour, std::uint8_t alpha) {
+    looks[kind] = {colour.b, colour.g, colour.r, alpha};
   };
-  fill(kStays, kStaysColour, 110);
-  fill(kGained, kGainedColour, 225);
-  fill(kLost, kLostColour, 225);
+  look(kStays, kStaysColour, 110);
+  look(kGained, kGainedColour, 225);
+  look(kLost, kLostColour, 225);
+  cv::Mat picture(image.size(), CV_8UC4);
+  for (int y = 0; y < image.rows; ++y) {
+    const auto* kinds = image.ptr<std::uint8_t>(y);
+    std::transform(kinds, kinds + image.cols, picture.ptr<cv::Vec4b>(y),
+                   [&](std::uint8_t kind) { return looks[kind]; });
+  }
   return picture;
 }
 
@@ -111,12 +119,11 @@ void StagePainter::draw(const UiFrame& frame, const char* id, const Layer& pictu
                  : coloured(picture.image, scale_of(frame, picture), picture.kind == LayerKind::kLength);
     });
     if (over) {
-      const Texture& tint = over_.get(frame, view, variant, [&] {
-        return picture.kind == LayerKind::kMask
-                   ? tinted_mask(picture.image, role_colour(Role::kUnion, frame.theme.name))
-                   : changes(picture.image);
-      });
-      content.overlays.push_back({&tint, picture.kind == LayerKind::kMask ? 0.55F : 1.0F});
+      content.overlays.push_back(
+          picture.kind == LayerKind::kMask
+              ? over_.over(frame, view, variant, 0.55F, role_colour(Role::kUnion, frame.theme.name),
+                           [&] { return cover_of(picture.image); })
+              : over_.over(frame, view, variant, 1.0F, kWhite, [&] { return changes(picture.image); }));
     }
   }
   std::string heading = picture.name;

@@ -16,7 +16,7 @@ class StagePainter {
             const FramePlace& place, ImVec2 size);
 
  private:
-  FrameTexture ground_, over_;
+  FrameTexture ground_, over_{OneChannel::kCover};
 };
 
 /// What the signs and colours of a picture mean; empty for one that needs no words.

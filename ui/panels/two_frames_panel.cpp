@@ -28,6 +28,7 @@ class TwoFramesPanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {420.0F, 240.0F}; }
 
   [[nodiscard]] bool shows_image_alone() const override { return false; }
+  [[nodiscard]] bool keeps_up() const override { return true; }
   [[nodiscard]] bool shows_a_run() const override { return true; }
   [[nodiscard]] std::unique_ptr<Panel> another() const override {
     return std::make_unique<TwoFramesPanel>(shared_);

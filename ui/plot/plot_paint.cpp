@@ -6,6 +6,7 @@
 
 #include "ui/shell/ui_frame.hpp"
 #include "ui/theme/fonts.hpp"
+#include "ui/theme/rounded.hpp"
 #include "ui/theme/text.hpp"
 #include "ui/theme/theme.hpp"
 
@@ -71,7 +72,7 @@ void PlotPaint::label(ImVec2 at, const std::string& words, Rgb colour) const {
   text(at, words, to_u32(colour));
 }
 
-void PlotPaint::ground(const Plot&) const { list_.AddRectFilled(low, high, to_u32(frame_.theme.plot), 2.0F); }
+void PlotPaint::ground(const Plot&) const { fill_rounded(list_, low, high, to_u32(frame_.theme.plot), 2.0F); }
 
 void PlotPaint::axes(const Plot& plot, ImVec2, ImVec2 outer_high) const {
   const ImU32 grid = to_u32(frame_.theme.grid), faint = to_u32(frame_.theme.grid, 0.45F);

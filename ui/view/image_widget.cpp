@@ -154,8 +154,20 @@ void draw_pictures(const ImageContent& content, const ImageResponse& response,
   }
   for (const ImageOverlay& overlay : content.overlays) {
     if (overlay.texture == nullptr || overlay.texture->empty()) continue;
-    list.AddImage(overlay.texture->imgui_id(), low, high, {0, 0}, {1, 1},
-                  IM_COL32(255, 255, 255, static_cast<int>(255.0F * overlay.opacity)));
+    const cv::Rect part =
+        overlay.part.value_or(cv::Rect(0, 0, overlay.texture->width(), overlay.texture->height()));
+    if (part.empty()) continue;
+    const ImU32 tint = IM_COL32(overlay.colour.r, overlay.colour.g, overlay.colour.b,
+                                static_cast<int>(255.0F * overlay.opacity));
+    const auto share_of = [&overlay](int x, int y) {
+      return ImVec2{static_cast<float>(x) / static_cast<float>(overlay.texture->width()),
+                    static_cast<float>(y) / static_cast<float>(overlay.texture->height())};
+    };
+    const ImVec2 from = share_of(part.x, part.y), to = share_of(part.br().x, part.br().y);
+    const auto at = [&](ImVec2 share) {
+      return ImVec2{low.x + share.x * (high.x - low.x), low.y + share.y * (high.y - low.y)};
+    };
+    list.AddImage(overlay.texture->imgui_id(), at(from), at(to), from, to, tint);
   }
 }
 

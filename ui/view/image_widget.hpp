@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/pixel_conventions.hpp"
+#include "ui/theme/palette.hpp"
 #include "ui/view/image_view.hpp"
 
 namespace stillpoint {
@@ -19,6 +20,8 @@ struct UiFrame;
 struct ImageOverlay {
   const Texture* texture = nullptr;
   float opacity = 0.5F;
+  Rgb colour{255, 255, 255};       ///< times its own; of a cover (OneChannel) all of it
+  std::optional<cv::Rect> part{};  ///< of its pixels, those that are not all transparent; else any may be
 };
 
 /// What an image panel shows.

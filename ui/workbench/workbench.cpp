@@ -14,6 +14,7 @@
 #include "ui/panels/run_pictures.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/theme/icons.hpp"
+#include "ui/theme/rounded.hpp"
 #include "ui/theme/text.hpp"
 
 namespace stillpoint {
@@ -44,7 +45,7 @@ void draw_card(const UiFrame& frame, const LayoutRect& rect, float heading, bool
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float rounding = 6.0F * frame.scale;
   const ImVec2 low{rect.x, rect.y}, high{rect.x + rect.width, rect.y + rect.height};
-  list.AddRectFilled(low, high, to_u32(frame.theme.panel), rounding);
+  fill_rounded(list, low, high, to_u32(frame.theme.panel), rounding);
   list.AddRectFilled(low, {high.x, low.y + heading},
                      to_u32(mix(frame.theme.panel, frame.theme.raised, 0.55F)), rounding,
                      ImDrawFlags_RoundCornersTop);
@@ -301,6 +302,7 @@ void Workbench::draw_tile(const PlacedPanel& tile) {
   draw_card(*frame_, rect, heading, hovered && maximised_.empty());
   ImGui::PushID(name.c_str());
   draw_tile_heading(*panel, tile, heading);
+  if (!has_view(name)) return ImGui::PopID();
   PanelActions wanted;
   frame_->choices = &choices_[name];
   const SessionView& session = visible(view_of(name), *panel);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,8 +50,9 @@ class Workbench {
 
   /// Draws everything. Without a session it shows the start page.
   void draw(UiFrame& frame, const SessionView* session);
-  /// The same for a session that goes on: when it shows another frame, tiles take to it in turn, some with
-  /// each frame of the interface and pictures first, so that none takes long.
+  /// The same for a session that goes on: when it shows another frame, or is another, tiles take to it in
+  /// turn, some with each frame of the interface and pictures first, so that none takes long. While it plays,
+  /// what need not keep up (Panel::keeps_up()) takes to it ten times a second.
   void draw_in_turn(UiFrame& frame, std::shared_ptr<const SessionView> session);
   /// Whether every tile shows what was given last.
   [[nodiscard]] bool is_level() const { return level_; }
@@ -144,7 +146,10 @@ class Workbench {
   void draw_tiles(const LayoutRect& area);
   void draw_splitters(const PlacedLayout& placed);
   void take_turns(const std::vector<PlacedPanel>& placed);
+  [[nodiscard]] std::vector<const PlacedPanel*> waiting_tiles(const std::vector<PlacedPanel>& placed);
+  [[nodiscard]] bool keeps_up(const PlacedPanel& tile) const;
   [[nodiscard]] const SessionView& view_of(const std::string& tile) const;
+  [[nodiscard]] bool has_view(const std::string& tile) const;
   void draw_tile(const PlacedPanel& tile);
   [[nodiscard]] PlacedLayout placed_tiles(const LayoutRect& area) const;
   void bring_to_front(const std::string& panel);
@@ -235,12 +240,14 @@ class Workbench {
 
   /// What a tile shows while others have their turn.
   struct TileView {
-    std::shared_ptr<const SessionView> view;
-    long taken = 0;  // the frame of the interface it was taken in
+    std::shared_ptr<const SessionView> view;  // null until its first turn with another sequence
+    long taken = 0;                           // the frame of the interface it was taken in …
+    double taken_s = -std::numeric_limits<double>::infinity();  // … and its time
   };
   std::map<std::string, TileView> tile_views_;
   long drawn_ = 0;  // frames of the interface
   bool level_ = true;
+  double next_turn_s_ = 0.0;  // until the next tile has its turn, where not all are level
 
   // How fast frames go by while playing.
   struct Pace {
