@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 #include "tests/support/board_scene.hpp"
 
@@ -76,6 +77,47 @@ TEST(Superpixels, AdjacencyEdgesAreAllPairsThatTouchOnASurface) {
         EXPECT_GE(expected.size() + 1, superpixels.size()) << "one column at the least hangs together";
       }
     }
+}
+
+TEST(Superpixels, AreTheSameByWideLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::Mat gray, depth;
+  BoardScene{}.render(gray, depth);
+  cv::Mat noise(depth.size(), CV_32FC1);
+  cv::RNG random(8);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, 0.03);
+  depth += noise;
+  depth(cv::Rect(100, 90, 80, 50)) = 0.0F;
+  for (const cv::Size& size : {cv::Size(640, 480), cv::Size(628, 452), cv::Size(61, 480), cv::Size(9, 30)})
+    for (const int side : {4, 10, 13}) {
+      SCOPED_TRACE(::testing::Message() << size << " by " << side);
+      const cv::Rect part({0, 0}, size);
+      const RgbdView view = make_rgbd_view(gray(part), depth(part), board_camera(), 4, false),
+                     wide_view = make_rgbd_view(gray(part), depth(part), board_camera(), 4, true);
+      EXPECT_EQ(cv::norm(view.gray, wide_view.gray, cv::NORM_INF), 0.0);
+      StillpointConfig config;
+      config.superpixel_px = side;
+      const Superpixels plain = make_superpixels(view, config, false),
+                        wide = make_superpixels(view, config, true);
+      EXPECT_EQ(cv::norm(plain.labels, wide.labels, cv::NORM_INF), 0.0);
+      ASSERT_EQ(plain.all.size(), wide.all.size());
+      for (std::size_t i = 0; i < plain.all.size(); ++i) {
+        EXPECT_EQ(plain.all[i].centre, wide.all[i].centre);
+        EXPECT_EQ(plain.all[i].depth, wide.all[i].depth);
+        EXPECT_EQ(plain.all[i].pixels, wide.all[i].pixels);
+      }
+    }
+}
+
+TEST(RgbdView, BlocksAreAveragedAlikeByWideLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::Mat gray(64, 96, CV_8UC1), expected;
+  cv::RNG random(9);
+  random.fill(gray, cv::RNG::UNIFORM, 0, 256);
+  gray.row(3) = 255, gray.row(2) = 255, gray.row(1) = 255, gray.row(0) = 255;
+  cv::resize(gray, expected, {24, 16}, 0, 0, cv::INTER_AREA);
+  expected.convertTo(expected, CV_32F);
+  EXPECT_EQ(cv::norm(make_rgbd_view(gray, {}, board_camera(), 4, true).gray, expected, cv::NORM_INF), 0.0);
 }
 
 TEST(Superpixels, EvenTheSmallestViewHasAPatch) {
