@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/geometry/camera.hpp"
+#include "core/wide_lanes.hpp"
 
 namespace stillpoint {
 
@@ -21,8 +22,9 @@ struct RgbdView {
 };
 
 /// @param gray CV_8UC1; @param depth CV_32FC1 of the same size, m
+/// @param wide by code for processors with AVX2, where blocks have 4 px a side; the view is the same
 [[nodiscard]] RgbdView make_rgbd_view(const cv::Mat& gray, const cv::Mat& depth, const Camera& camera,
-                                      int factor);
+                                      int factor, bool wide = has_wide_lanes());
 
 /// A small mask (CV_8UC1) at full size, by blocks; what no block covers takes after the nearest.
 [[nodiscard]] cv::Mat enlarged(const cv::Mat& small_mask, int factor, const cv::Size& size);

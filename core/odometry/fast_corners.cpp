@@ -78,10 +78,12 @@ void score_row(const uchar* row, int width, int readable, const FastCircle& circ
   std::fill_n(scores + 1 + width, kMostLanes + 1, uchar{0});
 }
 
-/// Corners of the middle one of three rows of scores: those above all eight neighbours.
-void append_peaks(const std::array<uchar*, 3>& rows, int width, const cv::Point& first,
-                  std::vector<cv::KeyPoint>& corners) {
+using ThreeRows = std::array<uchar*, 3>;
+
+/// Which of the middle one of three rows of scores are above all eight neighbours, a bit each.
+void find_peaks(const ThreeRows& rows, int width, unsigned* peaks) {
   const auto score_at = [&](int x) { return Bytes16::load(rows[1] + 1 + x); };
+  std::fill_n(peaks, (width + kMostLanes - 1) / kMostLanes, 0U);
   for (int x = 0; x < width; x += kLanes) {
     // Mostly there are none: looked for in twice as many at a time.
     if (x % (2 * kLanes) == 0 && !max(score_at(x), score_at(x + kLanes)).any()) {
@@ -93,12 +95,23 @@ void append_peaks(const std::array<uchar*, 3>& rows, int width, const cv::Point&
     cv::v_uint8x16 about = cv::v_max(cv::v_load(rows[1] + x), cv::v_load(rows[1] + x + 2));
     for (const uchar* beside : {rows[0], rows[2]})
       for (int shift = 0; shift <= 2; ++shift) about = cv::v_max(about, cv::v_load(beside + x + shift));
-    for (int peaks = cv::v_signmask(score > about); peaks != 0; peaks &= peaks - 1) {
-      const int at = x + std::countr_zero(static_cast<unsigned>(peaks));
+    peaks[x / kMostLanes] |= static_cast<unsigned>(cv::v_signmask(score > about)) << x % kMostLanes;
+  }
+}
+
+/// Corners of the middle one of three rows of scores.
+void append_peaks(const ThreeRows& rows, int width, const cv::Point& first, bool wide, unsigned* peaks,
+                  std::vector<cv::KeyPoint>& corners) {
+  if (wide)
+    fast_peaks_by_avx2(rows[0] + 1, rows[1] + 1, rows[2] + 1, width, peaks);
+  else
+    find_peaks(rows, width, peaks);
+  for (int x = 0; x < width; x += kMostLanes)
+    for (unsigned those = peaks[x / kMostLanes]; those != 0; those &= those - 1) {
+      const int at = x + std::countr_zero(those);
       corners.emplace_back(static_cast<float>(first.x + at), static_cast<float>(first.y), 7.0F, -1.0F,
                            static_cast<float>(rows[1][1 + at]));
     }
-  }
 }
 
 }  // namespace
@@ -113,7 +126,8 @@ void append_fast_corners(const cv::Mat& image, const cv::Rect& where, int thresh
   const auto stride = static_cast<std::size_t>(where.width + 2 * kMostLanes + 2);
   cv::AutoBuffer<uchar, 4096> memory(3 * stride);
   std::fill_n(memory.data(), memory.size(), uchar{0});
-  std::array<uchar*, 3> rows{memory.data(), memory.data() + stride, memory.data() + 2 * stride};
+  cv::AutoBuffer<unsigned, 64> peaks(static_cast<std::size_t>((where.width + kMostLanes - 1) / kMostLanes));
+  ThreeRows rows{memory.data(), memory.data() + stride, memory.data() + 2 * stride};
   for (int y = 0; y <= where.height; ++y) {
     std::rotate(rows.begin(), rows.begin() + 1,
                 rows.end());  // the last is that of y, the middle one of y - 1
@@ -122,7 +136,7 @@ void append_fast_corners(const cv::Mat& image, const cv::Rect& where, int thresh
                 wide, rows[2]);
     else
       std::fill_n(rows[2], stride, uchar{0});
-    if (y > 0) append_peaks(rows, where.width, {where.x, where.y + y - 1}, corners);
+    if (y > 0) append_peaks(rows, where.width, {where.x, where.y + y - 1}, wide, peaks.data(), corners);
   }
 }
 

@@ -77,4 +77,11 @@ class FastScores {
 int fast_scores_by_avx2(const FastCircle& circle, int threshold, const unsigned char* row, int width,
                         int readable, unsigned char* scores);
 
+/// Which of a row's scores are above those of all eight neighbours, a bit each, 32 pixels at a time; only on
+/// processors that have AVX2.
+/// @param above, row, below scores, each with one before its first and 34 behind its last
+/// @param peaks as many as it takes for `width` bits
+void fast_peaks_by_avx2(const unsigned char* above, const unsigned char* row, const unsigned char* below,
+                        int width, unsigned* peaks);
+
 }  // namespace stillpoint

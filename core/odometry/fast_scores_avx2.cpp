@@ -38,12 +38,27 @@ int fast_scores_by_avx2(const FastCircle& circle, int threshold, const unsigned 
   return FastScores<Bytes32>(circle, threshold).of_row(row, width, readable, scores);
 }
 
+void fast_peaks_by_avx2(const unsigned char* above, const unsigned char* row, const unsigned char* below,
+                        int width, unsigned* peaks) {
+  for (int x = 0; x < width; x += Bytes32::kLanes) {
+    Bytes32 about = max(Bytes32::load(row + x - 1), Bytes32::load(row + x + 1));
+    for (const unsigned char* beside : {above, below})
+      for (int shift = -1; shift <= 1; ++shift) about = max(about, Bytes32::load(beside + x + shift));
+    const Bytes32 score = Bytes32::load(row + x);
+    // At most what is about it: no peak.
+    const __m256i lower = _mm256_cmpeq_epi8(max(score, about).bytes, about.bytes);
+    peaks[x / Bytes32::kLanes] = ~static_cast<unsigned>(_mm256_movemask_epi8(lower));
+  }
+}
+
 }  // namespace stillpoint
 #else
 
 namespace stillpoint {
 
 int fast_scores_by_avx2(const FastCircle&, int, const unsigned char*, int, int, unsigned char*) { return 0; }
+
+void fast_peaks_by_avx2(const unsigned char*, const unsigned char*, const unsigned char*, int, unsigned*) {}
 
 }  // namespace stillpoint
 #endif

@@ -35,12 +35,19 @@ void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, in
   for (int r = row(pixel.y - radius); r <= row(pixel.y + radius); ++r) {
     const auto first_cell = static_cast<std::size_t>(r * columns_ + first_column);
     const auto last_cell = static_cast<std::size_t>(r * columns_ + last_column);
-    for (int k = cell_start_[first_cell]; k < cell_start_[last_cell + 1]; ++k) {
+    const int first = cell_start_[first_cell], end = cell_start_[last_cell + 1];
+    // Which are inside is as good as chance, and no branch foretells it: all are written, and those that are
+    // not inside written over.
+    std::size_t count = found.size();
+    found.resize(count + static_cast<std::size_t>(end - first) + 1);
+    for (int k = first; k < end; ++k) {
       const Placed& placed = placed_[static_cast<std::size_t>(k)];
-      if (placed.octave < min_octave || placed.octave > max_octave) continue;
       const cv::Point2f d = placed.pixel - pixel;
-      if (std::abs(d.x) <= radius && std::abs(d.y) <= radius) found.push_back(placed.feature);
+      found[count] = placed.feature;
+      count += (placed.octave >= min_octave) & (placed.octave <= max_octave) & (std::abs(d.x) <= radius) &
+               (std::abs(d.y) <= radius);
     }
+    found.resize(count);
   }
 }
 

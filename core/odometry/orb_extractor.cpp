@@ -4,20 +4,19 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <future>
 #include <numeric>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "core/geometry/pixel_conventions.hpp"
 #include "core/odometry/fast_corners.hpp"
+#include "core/odometry/orb_descriptors.hpp"
+#include "core/odometry/smaller_level.hpp"
 
 namespace stillpoint {
 namespace {
 
-constexpr int kPatchRadius = 15;  // px: the disc of the intensity centroid, and half the descriptor's patch
-constexpr int kBorder = 19;    // px: corners keep this far from the level's edge, so that patches stay inside
+constexpr int kPatchRadius = kOrbPatchRadius;  // px: that of the intensity centroid's disc, too
+constexpr int kBorder = kOrbBorder;
 constexpr int kFastCell = 32;  // px: where FAST finds nothing in such a cell, the low threshold is tried
 
 /// Weights of the intensity centroid's disc: a row of 32 pixels each, from kPatchRadius left of the corner
@@ -88,32 +87,40 @@ void fast_corners(const cv::Mat& image, const cv::Rect& inside, int threshold, i
   }
 }
 
-/// Candidates by cell, the best of each first: index into the candidates, and where each cell begins.
+/// A candidate and which of them it is.
+struct Ranked {
+  float response;
+  int index;
+  [[nodiscard]] bool before(const Ranked& other) const {
+    return response != other.response ? response > other.response : index < other.index;
+  }
+};
+
+/// Candidates by cell, the best of each first, and where each cell begins.
 struct ByCell {
-  std::vector<int> start, index;
+  std::vector<int> start;
+  std::vector<Ranked> candidates;
 };
 
 ByCell sort_by_cell(const std::vector<cv::KeyPoint>& candidates, double side, int width, int height) {
   const int columns = static_cast<int>(width / side) + 1, rows = static_cast<int>(height / side) + 1;
-  const auto cell_of = [&](const cv::KeyPoint& candidate) {
-    return static_cast<std::size_t>(static_cast<int>(candidate.pt.y / side) * columns +
-                                    static_cast<int>(candidate.pt.x / side));
-  };
   ByCell cells;
   cells.start.assign(static_cast<std::size_t>(columns * rows) + 1, 0);
-  cells.index.resize(candidates.size());
-  for (const auto& candidate : candidates) ++cells.start[cell_of(candidate) + 1];
+  std::vector<std::size_t> cell_of(candidates.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    cell_of[i] = static_cast<std::size_t>(static_cast<int>(candidates[i].pt.y / side) * columns +
+                                          static_cast<int>(candidates[i].pt.x / side));
+    ++cells.start[cell_of[i] + 1];
+  }
   for (std::size_t c = 1; c < cells.start.size(); ++c) cells.start[c] += cells.start[c - 1];
   std::vector<int> next(cells.start.begin(), cells.start.end() - 1);
+  cells.candidates.resize(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    cells.index[static_cast<std::size_t>(next[cell_of(candidates[i])]++)] = static_cast<int>(i);
+    cells.candidates[static_cast<std::size_t>(next[cell_of[i]]++)] = {candidates[i].response,
+                                                                      static_cast<int>(i)};
   for (std::size_t c = 0; c + 1 < cells.start.size(); ++c)
-    std::sort(cells.index.begin() + cells.start[c], cells.index.begin() + cells.start[c + 1],
-              [&](int a, int b) {
-                const float left = candidates[static_cast<std::size_t>(a)].response,
-                            right = candidates[static_cast<std::size_t>(b)].response;
-                return left != right ? left > right : a < b;
-              });
+    std::sort(cells.candidates.begin() + cells.start[c], cells.candidates.begin() + cells.start[c + 1],
+              [](const Ranked& a, const Ranked& b) { return a.before(b); });
   return cells;
 }
 
@@ -136,21 +143,16 @@ std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& candidates, in
     if (taken + in_round > wanted) break;
   }
   struct Last {
-    float response;
-    int index;
+    Ranked candidate;
     std::size_t cell;
   };
   std::vector<Last> last;
   last.reserve(count);
   for (std::size_t c = 0; c < count; ++c)
-    if (size_of(c) > rounds) {
-      const int index = cells.index[static_cast<std::size_t>(cells.start[c] + rounds)];
-      last.push_back({candidates[static_cast<std::size_t>(index)].response, index, c});
-    }
+    if (size_of(c) > rounds)
+      last.push_back({cells.candidates[static_cast<std::size_t>(cells.start[c] + rounds)], c});
   std::nth_element(last.begin(), last.begin() + (wanted - taken), last.end(),
-                   [](const Last& a, const Last& b) {
-                     return a.response != b.response ? a.response > b.response : a.index < b.index;
-                   });
+                   [](const Last& a, const Last& b) { return a.candidate.before(b.candidate); });
   std::vector<std::uint8_t> one_more(count, 0);
   for (int i = 0; i < wanted - taken; ++i) one_more[last[static_cast<std::size_t>(i)].cell] = 1;
 
@@ -159,7 +161,8 @@ std::vector<cv::KeyPoint> spread(const std::vector<cv::KeyPoint>& candidates, in
   for (std::size_t c = 0; c < count; ++c) {
     const int end = cells.start[c] + std::min(size_of(c), rounds + one_more[c]);
     for (int i = cells.start[c]; i < end; ++i)
-      chosen.push_back(candidates[static_cast<std::size_t>(cells.index[static_cast<std::size_t>(i)])]);
+      chosen.push_back(
+          candidates[static_cast<std::size_t>(cells.candidates[static_cast<std::size_t>(i)].index)]);
   }
   return chosen;
 }
@@ -170,8 +173,6 @@ OrbExtractor::OrbExtractor(const FeatureConfig& config) : config_(config) {
   double share = config.count * (1.0 - shrink) / (1.0 - std::pow(shrink, config.levels));
   for (int level = 0; level + 1 < config.levels; ++level, share *= shrink) wanted_.push_back(cvRound(share));
   wanted_.push_back(std::max(0, config.count - std::accumulate(wanted_.begin(), wanted_.end(), 0)));
-  descriptor_ =
-      cv::ORB::create(config.count, 2.0F, 1, kBorder, 0, 2, cv::ORB::FAST_SCORE, 2 * kPatchRadius + 1);
 }
 
 void OrbExtractor::find_corners(int wanted, Level& level) const {
@@ -191,10 +192,7 @@ void OrbExtractor::find_corners(int wanted, Level& level) const {
 void OrbExtractor::extract_level(int index, const cv::Size& full, Level& level) const {
   OrbFeatures& found = level.found;
   find_corners(wanted_[static_cast<std::size_t>(index)], level);
-  found.descriptors.resize(found.keypoints.size());
-  if (found.keypoints.empty()) return;
-  descriptor_->compute(level.image, found.keypoints, level.descriptor_rows);
-  found.descriptors.resize(found.keypoints.size());
+  describe_corners(level.image, found.keypoints, level.blurred, found.descriptors);
   const double scale = std::pow(config_.scale_factor, index);
   for (std::size_t i = 0; i < found.keypoints.size(); ++i) {
     cv::KeyPoint& keypoint = found.keypoints[i];
@@ -204,8 +202,6 @@ void OrbExtractor::extract_level(int index, const cv::Size& full, Level& level) 
                              static_cast<float>(level.image.rows));
     keypoint.octave = index;
     keypoint.size = static_cast<float>((2 * kPatchRadius + 1) * scale);
-    std::memcpy(found.descriptors[i].data(), level.descriptor_rows.ptr(static_cast<int>(i)),
-                sizeof(Descriptor));
   }
 }
 
@@ -216,7 +212,7 @@ int OrbExtractor::fill_pyramid(const cv::Size& full, std::vector<Level>& levels)
     const cv::Size size(cvRound(full.width / scale), cvRound(full.height / scale));
     if (size.width <= 2 * kBorder || size.height <= 2 * kBorder) break;
     const auto at = static_cast<std::size_t>(level);
-    cv::resize(levels[at - 1].image, levels[at].image, size, 0, 0, cv::INTER_LINEAR);
+    make_smaller_level(levels[at - 1].image, size, levels[at].image);
   }
   return level;
 }

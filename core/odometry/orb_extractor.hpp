@@ -5,10 +5,7 @@
 
 #include "core/config.hpp"
 #include "core/odometry/feature_set.hpp"
-
-namespace cv {
-class ORB;
-}
+#include "core/odometry/orb_blur.hpp"
 
 namespace stillpoint {
 
@@ -34,7 +31,7 @@ class OrbExtractor {
   struct Level {
     cv::Mat image;                         // CV_8UC1
     std::vector<cv::KeyPoint> candidates;  // all its corners
-    cv::Mat descriptor_rows;               // CV_8UC1, one row a feature
+    BlurredLevel blurred;                  // what descriptors look at
     OrbFeatures found;
   };
 
@@ -44,8 +41,7 @@ class OrbExtractor {
   int fill_pyramid(const cv::Size& full, std::vector<Level>& levels) const;
 
   FeatureConfig config_;
-  std::vector<int> wanted_;      // corners a level
-  cv::Ptr<cv::ORB> descriptor_;  // computes descriptors of one level at a time
+  std::vector<int> wanted_;  // corners a level
 };
 
 /// Picks `wanted` of the candidates so that they spread over a `width` x `height` image: round by round, the

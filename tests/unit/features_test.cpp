@@ -8,8 +8,11 @@
 #include "core/odometry/fast_corners.hpp"
 #include "core/odometry/feature_set.hpp"
 #include "core/odometry/matching.hpp"
+#include "core/odometry/orb_blur.hpp"
+#include "core/odometry/orb_descriptors.hpp"
 #include "core/odometry/orb_extractor.hpp"
 #include "core/odometry/rolling_shutter.hpp"
+#include "core/odometry/smaller_level.hpp"
 
 namespace stillpoint {
 namespace {
@@ -83,6 +86,57 @@ TEST(FastCorners, AreComparedWithinTheirWindowAlone) {
   append_fast_corners(image, {}, 10, found);
   EXPECT_EQ(found.size(), expected.size() + 1);
   EXPECT_THROW(append_fast_corners(image, {2, 3, 20, 20}, 10, found), cv::Exception);
+}
+
+/// Of an image, what cv::ORB blurs it to: a part of a larger one that is the image mirrored.
+cv::Mat blurred_by_opencv(const cv::Mat& image) {
+  constexpr int kBeside = 8;  // px
+  cv::Mat larger;
+  cv::copyMakeBorder(image, larger, kBeside, kBeside, kBeside, kBeside, cv::BORDER_REFLECT_101);
+  cv::Mat part = larger(cv::Rect({kBeside, kBeside}, image.size()));
+  cv::GaussianBlur(part, part, {7, 7}, 2, 2, cv::BORDER_REFLECT_101);
+  return part;
+}
+
+TEST(OrbDescriptors, AreThoseOfOpenCv) {
+  if (!has_wide_lanes() || !can_blur_wide()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::RNG random(5);
+  // Widths about multiples of the lanes, and the smallest there is a corner in.
+  for (const auto& size : {cv::Size(39, 39), cv::Size(64, 57), cv::Size(65, 40), cv::Size(179, 134),
+                           cv::Size(533, 400), cv::Size(640, 480)})
+    for (const bool noise : {false, true}) {
+      cv::Mat image = rich(size.width, size.height, static_cast<unsigned>(size.width));
+      if (noise) random.fill(image, cv::RNG::UNIFORM, 0, 256);
+      std::vector<cv::KeyPoint> corners;
+      for (int i = 0; i < 500; ++i)
+        corners.emplace_back(static_cast<float>(random.uniform(kOrbBorder, size.width - kOrbBorder)),
+                             static_cast<float>(random.uniform(kOrbBorder, size.height - kOrbBorder)), 31.0F,
+                             i == 0 ? 0.0F : random.uniform(0.0F, 360.0F));
+      BlurredLevel blurred;
+      std::vector<Descriptor> expected, found;
+      describe_corners(image, corners, blurred, expected, false);
+      describe_corners(image, corners, blurred, found, true);
+      EXPECT_EQ(found, expected) << size;
+      EXPECT_GT(std::set<Descriptor>(found.begin(), found.end()).size(), 100U) << size;
+      const cv::Mat blurred_image(size, CV_8UC1, blurred.pixels.data(),
+                                  static_cast<std::size_t>(blurred.step));
+      EXPECT_EQ(cv::norm(blurred_image, blurred_by_opencv(image), cv::NORM_INF), 0.0) << size;
+    }
+}
+
+TEST(SmallerLevel, IsThatOfOpenCv) {
+  cv::RNG random(6);
+  for (int i = 0; i < 60; ++i) {
+    const cv::Size size(random.uniform(16, 660), random.uniform(3, 90));
+    const double scale = i % 2 == 0 ? 1.2 : random.uniform(1.0, 2.1);  // beyond 2 left to OpenCV
+    const cv::Size less(std::max(1, cvRound(size.width / scale)), std::max(1, cvRound(size.height / scale)));
+    cv::Mat image(size, CV_8UC1), expected, found;
+    random.fill(image, cv::RNG::UNIFORM, 0, 256);
+    make_smaller_level(image, less, expected, false);
+    make_smaller_level(image, less, found, has_wide_lanes());
+    ASSERT_EQ(found.size(), less);
+    EXPECT_EQ(cv::norm(found, expected, cv::NORM_INF), 0.0) << size << " to " << less;
+  }
 }
 
 TEST(OrbExtractor, KeepsNothingOfTheImageBefore) {

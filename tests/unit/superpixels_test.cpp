@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <map>
+#include <memory>
+#include <opencv2/imgproc.hpp>
 
+#include "core/motion/stillpoint/depth_evidence.hpp"
+#include "core/motion/stillpoint/depth_warp.hpp"
 #include "tests/support/board_scene.hpp"
 
 namespace stillpoint {
@@ -76,6 +81,110 @@ TEST(Superpixels, AdjacencyEdgesAreAllPairsThatTouchOnASurface) {
         EXPECT_GE(expected.size() + 1, superpixels.size()) << "one column at the least hangs together";
       }
     }
+}
+
+TEST(Superpixels, AreTheSameByWideLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::Mat gray, depth;
+  BoardScene{}.render(gray, depth);
+  cv::Mat noise(depth.size(), CV_32FC1);
+  cv::RNG random(8);
+  random.fill(noise, cv::RNG::NORMAL, 0.0, 0.03);
+  depth += noise;
+  depth(cv::Rect(100, 90, 80, 50)) = 0.0F;
+  for (const cv::Size& size : {cv::Size(640, 480), cv::Size(628, 452), cv::Size(61, 480), cv::Size(9, 30)})
+    for (const int side : {4, 10, 13}) {
+      SCOPED_TRACE(::testing::Message() << size << " by " << side);
+      const cv::Rect part({0, 0}, size);
+      const RgbdView view = make_rgbd_view(gray(part), depth(part), board_camera(), 4, false),
+                     wide_view = make_rgbd_view(gray(part), depth(part), board_camera(), 4, true);
+      EXPECT_EQ(cv::norm(view.gray, wide_view.gray, cv::NORM_INF), 0.0);
+      StillpointConfig config;
+      config.superpixel_px = side;
+      const Superpixels plain = make_superpixels(view, config, false),
+                        wide = make_superpixels(view, config, true);
+      EXPECT_EQ(cv::norm(plain.labels, wide.labels, cv::NORM_INF), 0.0);
+      ASSERT_EQ(plain.all.size(), wide.all.size());
+      for (std::size_t i = 0; i < plain.all.size(); ++i) {
+        EXPECT_EQ(plain.all[i].centre, wide.all[i].centre);
+        EXPECT_EQ(plain.all[i].depth, wide.all[i].depth);
+        EXPECT_EQ(plain.all[i].pixels, wide.all[i].pixels);
+      }
+    }
+}
+
+/// Bit by bit, so that what is unknown equals what is.
+bool same_bits(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && a.isContinuous() && b.isContinuous() &&
+         std::memcmp(a.data, b.data, a.total() * a.elemSize()) == 0;
+}
+
+/// The board moved, the camera moved and turned a little, and depth is noisy; widths about the lanes.
+TEST(DepthEvidence, IsTheSameByWideLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::RNG random(10);
+  const auto view_of = [&](const BoardScene& scene, const cv::Size& size) {
+    cv::Mat gray, depth;
+    scene.render(gray, depth);
+    cv::Mat noise(depth.size(), CV_32FC1);
+    random.fill(noise, cv::RNG::NORMAL, 0.0, 0.01);
+    depth += noise;
+    depth(cv::Rect(30, 90, 80, 50)) = 0.0F;
+    const cv::Rect part({0, 0}, size);
+    Camera camera = board_camera();
+    camera.width = size.width, camera.height = size.height;
+    return std::make_shared<const RgbdView>(make_rgbd_view(gray(part), depth(part), camera, 4));
+  };
+  for (const cv::Size& size : {cv::Size(640, 480), cv::Size(500, 300), cv::Size(24, 40)})
+    for (const bool old : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << size << (old ? " old" : ""));
+      const auto now = view_of({0.06, 0.30}, size), then = view_of({0.0, 0.22, 1.1}, size);
+      Pose then_from_now = Pose::Identity();
+      then_from_now.translation() = Eigen::Vector3d(0.06, 0.002, -0.01);
+      then_from_now.rotate(Eigen::AngleAxisd(0.004, Eigen::Vector3d::UnitZ()));
+      ReferenceView reference;
+      reference.view = then, reference.reference_from_current = then_from_now, reference.old = old;
+      const cv::Mat prior = cv::Mat::zeros(now->depth.size(), CV_32FC1);
+      const ReferenceEvidence plain = compare_with_reference(*now, reference, prior, {}, false),
+                              wide = compare_with_reference(*now, reference, prior, {}, true);
+      EXPECT_EQ(plain.registration_error_px, wide.registration_error_px);
+      EXPECT_EQ(plain.intensity_sigma, wide.intensity_sigma);
+      EXPECT_TRUE(same_bits(plain.depth_residual, wide.depth_residual));
+      EXPECT_TRUE(same_bits(plain.intensity_residual, wide.intensity_residual));
+      EXPECT_TRUE(same_bits(plain.log_odds, wide.log_odds));
+      if (size.width == 640) {
+        EXPECT_GT(cv::countNonZero(plain.log_odds > 0), 100) << "some is seen to move";
+        EXPECT_GT(cv::countNonZero(plain.log_odds < 0), 1000) << "and most not to";
+      }
+      DepthWarp by_few(now->camera, then_from_now, false), by_many(now->camera, then_from_now, true);
+      std::vector<float> sampled_by_few, sampled_by_many;
+      int inside = 0;
+      for (int y = 0; y < now->depth.rows; ++y) {
+        by_few.warp_row(y, now->depth.ptr<float>(y)), by_many.warp_row(y, now->depth.ptr<float>(y));
+        by_few.sample_row(then->gray, sampled_by_few), by_many.sample_row(then->gray, sampled_by_many);
+        for (int x = 0; x < now->depth.cols; ++x) {
+          ASSERT_EQ(by_few.inside(x), by_many.inside(x));
+          if (!by_few.inside(x)) continue;
+          ++inside;
+          const auto at = static_cast<std::size_t>(x);
+          ASSERT_EQ(by_few.nearest(x), by_many.nearest(x));
+          ASSERT_EQ(by_few.z(x), by_many.z(x));
+          ASSERT_EQ(sampled_by_few[at], sampled_by_many[at]);
+        }
+      }
+      EXPECT_GT(inside, 0);
+    }
+}
+
+TEST(RgbdView, BlocksAreAveragedAlikeByWideLanes) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this processor has no wide lanes";
+  cv::Mat gray(64, 96, CV_8UC1), expected;
+  cv::RNG random(9);
+  random.fill(gray, cv::RNG::UNIFORM, 0, 256);
+  gray.row(3) = 255, gray.row(2) = 255, gray.row(1) = 255, gray.row(0) = 255;
+  cv::resize(gray, expected, {24, 16}, 0, 0, cv::INTER_AREA);
+  expected.convertTo(expected, CV_32F);
+  EXPECT_EQ(cv::norm(make_rgbd_view(gray, {}, board_camera(), 4, true).gray, expected, cv::NORM_INF), 0.0);
 }
 
 TEST(Superpixels, EvenTheSmallestViewHasAPatch) {

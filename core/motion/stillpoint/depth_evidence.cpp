@@ -1,9 +1,9 @@
 #include "core/motion/stillpoint/depth_evidence.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "core/median.hpp"
@@ -56,33 +56,16 @@ float depth_residual(float measured, const Expected& expected, int x) {
   return measured > 0 ? (measured - expected.depth[x]) / std::sqrt(a * a + b * b + c * c) : kUnknown;
 }
 
-/// The same of a row.
-void depth_residuals(const float* measured, const Expected& expected, int width, float* out) {
-  const cv::v_float32x4 base = cv::v_setall_f32(expected.noise.floor_m),
-                        growth = cv::v_setall_f32(expected.noise.per_m2),
-                        off = cv::v_setall_f32(expected.off), unknown = cv::v_setall_f32(kUnknown),
-                        zero = cv::v_setzero_f32();
-  const auto sigma = [&](const cv::v_float32x4& depth) { return base + growth * depth * depth; };
-  int x = 0;
-  for (; x + cv::v_float32x4::nlanes <= width; x += cv::v_float32x4::nlanes) {
-    const cv::v_float32x4 m = cv::v_load(measured + x), a = sigma(cv::v_load(expected.here + x)),
-                          b = sigma(m), c = off * cv::v_load(expected.slope + x);
-    const cv::v_float32x4 residual = (m - cv::v_load(expected.depth + x)) / cv::v_sqrt(a * a + b * b + c * c);
-    cv::v_store(out + x, cv::v_select(m > zero, residual, unknown));
-  }
-  for (; x < width; ++x) out[x] = depth_residual(measured[x], expected, x);
-}
-
 /// By how much of a pixel slanted surfaces lie beside where they are expected: the pose is not exact, depth
 /// and colour are of different moments, and rows are read one after the other. Of what is not in the prior to
 /// move; a median, so that other dynamic objects do not count.
 float registration_error(const RgbdView& current, const ReferenceView& reference, const cv::Mat& prior,
-                         const StillpointConfig& config) {
+                         const StillpointConfig& config, bool wide) {
   constexpr int kEvery = 4;                  // rows: a quarter of the pixels tells a median as well
   constexpr std::size_t kFewest = 100;       // pixels: fewer tell no median of noise
   constexpr float kMedianOfSquare = 0.455F;  // of a standard normal variable
   constexpr float kRounding = 0.45F;         // px: what is left of going to the nearest pixel
-  DepthWarp warped(current.camera, reference.reference_from_current);
+  DepthWarp warped(current.camera, reference.reference_from_current, wide);
   const DepthNoise depth_noise = stillpoint::depth_noise(current);
   const auto* then = reference.view->depth.ptr<float>();
   std::vector<float> squares;  // px²
@@ -105,46 +88,107 @@ float registration_error(const RgbdView& current, const ReferenceView& reference
                     static_cast<float>(config.max_registration_error_px));
 }
 
+/// A row of the current view as it is compared with the reference.
+struct ComparedRow {
+  DepthWarp::WarpedRow warped;
+  const float* gray;  // grey levels
+  Expected expected;
+  // What is found; what is not written stays unknown, and 0.
+  float *residuals, *log_odds, *differences;
+};
+
+#if defined(__x86_64__)
+STILLPOINT_AVX2 inline __m256 sigma_of(const DepthNoise& noise, __m256 z) {
+  return _mm256_add_ps(_mm256_set1_ps(noise.floor_m),
+                       _mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(noise.per_m2), z), z));
+}
+
+/// depth_residual() of eight pixels.
+STILLPOINT_AVX2 inline __m256 residuals_of_eight(__m256 measured, const Expected& expected, int x) {
+  const __m256 a = sigma_of(expected.noise, _mm256_loadu_ps(expected.here + x)),
+               b = sigma_of(expected.noise, measured),
+               c = _mm256_mul_ps(_mm256_set1_ps(expected.off), _mm256_loadu_ps(expected.slope + x));
+  const __m256 sigma = _mm256_sqrt_ps(
+      _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(a, a), _mm256_mul_ps(b, b)), _mm256_mul_ps(c, c)));
+  const __m256 residual = _mm256_div_ps(_mm256_sub_ps(measured, _mm256_loadu_ps(expected.depth + x)), sigma);
+  return _mm256_blendv_ps(_mm256_set1_ps(kUnknown), residual,
+                          _mm256_cmp_ps(measured, _mm256_setzero_ps(), _CMP_GT_OQ));
+}
+
+/// Compares eight pixels with their own pixels in the reference.
+/// @returns a bit for each that is inside there and does not fit
+STILLPOINT_AVX2 int compare_eight(const RgbdView& reference, float limit, int x, const ComparedRow& row) {
+  const __m256i nearest = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.warped.nearest + x));
+  const __m256 inside = _mm256_castsi256_ps(_mm256_cmpgt_epi32(nearest, _mm256_set1_epi32(-1)));
+  const __m256 measured = _mm256_mask_i32gather_ps(_mm256_setzero_ps(), reference.depth.ptr<float>(), nearest,
+                                                   inside, sizeof(float));
+  const __m256 residual = residuals_of_eight(measured, row.expected, x);
+  const __m256 size = _mm256_andnot_ps(_mm256_set1_ps(-0.0F), residual);
+  const __m256 fits = _mm256_and_ps(inside, _mm256_cmp_ps(size, _mm256_set1_ps(limit), _CMP_LE_OQ));
+  const __m256 then = bilinear_eight(reference.gray, _mm256_loadu_ps(row.warped.u + x),
+                                     _mm256_loadu_ps(row.warped.v + x), fits);
+  _mm256_storeu_ps(row.residuals + x, residual);
+  _mm256_storeu_ps(row.log_odds + x, _mm256_and_ps(fits, _mm256_set1_ps(kSameDepth)));
+  _mm256_storeu_ps(
+      row.differences + x,
+      _mm256_blendv_ps(_mm256_set1_ps(kUnknown), _mm256_sub_ps(_mm256_loadu_ps(row.gray + x), then), fits));
+  return _mm256_movemask_ps(_mm256_andnot_ps(fits, inside));
+}
+#else
+int compare_eight(const RgbdView&, float, int, const ComparedRow&) { return 0; }
+#endif
+
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
 cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, const StillpointConfig& config,
-                      ReferenceEvidence& evidence) {
+                      bool wide, ReferenceEvidence& evidence) {
+  constexpr int kAtOnce = 8;
   const cv::Size size = current.depth.size();
   evidence.depth_residual = cv::Mat(size, CV_32FC1);
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
   cv::Mat brightness(size, CV_32FC1, cv::Scalar(kUnknown));
-  DepthWarp warped(current.camera, reference.reference_from_current);
+  DepthWarp warped(current.camera, reference.reference_from_current, wide);
   const auto limit = static_cast<float>(config.depth_sigmas);
   const cv::Mat &then = reference.view->depth, &gray_then = reference.view->gray;
   const auto* depth_then = then.ptr<float>();
-  std::vector<float> measured(static_cast<std::size_t>(size.width));  // of a row, where it is warped to
   for (int y = 0; y < size.height; ++y) {
-    const auto *depth = current.depth.ptr<float>(y), *gray = current.gray.ptr<float>(y);
-    auto *residuals = evidence.depth_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y),
-         *differences = brightness.ptr<float>(y);
+    const auto* depth = current.depth.ptr<float>(y);
     warped.warp_row(y, depth);
-    const Expected there{warped.expected_depth(), depth, current.depth_slope.ptr<float>(y),
-                         static_cast<float>(evidence.registration_error_px), depth_noise(current)};
-    for (int x = 0; x < size.width; ++x)
-      measured[static_cast<std::size_t>(x)] = warped.inside(x) ? warped.at(depth_then, x) : 0.0F;
-    depth_residuals(measured.data(), there, size.width, residuals);
-    for (int x = 0; x < size.width; ++x) {
+    const ComparedRow row{warped.row(),
+                          current.gray.ptr<float>(y),
+                          {warped.row().z, depth, current.depth_slope.ptr<float>(y),
+                           static_cast<float>(evidence.registration_error_px), depth_noise(current)},
+                          evidence.depth_residual.ptr<float>(y),
+                          evidence.log_odds.ptr<float>(y),
+                          brightness.ptr<float>(y)};
+    const auto same_surface_at = [&](int x) {
+      row.log_odds[x] = kSameDepth;
+      row.differences[x] = row.gray[x] - bilinear(gray_then, warped.u(x), warped.v(x));
+    };
+    // Only what does not fit at its own pixel is sought beside it.
+    const auto seek_beside = [&](int x) {
+      const float expected = warped.z(x), beside = nearest_depth(then, warped.nearest(x), expected);
+      const float residual = depth_residual(beside, row.expected, x);
+      row.residuals[x] = residual;
+      if (beside <= 0) return;
+      if (residual > limit)
+        row.log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residual - limit));
+      else if (residual < -limit && expected - beside < kStepBackLimit)
+        row.log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
+      else if (!(residual < -limit))
+        same_surface_at(x);
+    };
+    int x = 0;
+    for (; wide && x + kAtOnce <= size.width; x += kAtOnce)
+      for (int misfits = compare_eight(*reference.view, limit, x, row); misfits != 0; misfits &= misfits - 1)
+        seek_beside(x + std::countr_zero(static_cast<unsigned>(misfits)));
+    for (; x < size.width; ++x) {
+      const float measured = warped.inside(x) ? warped.at(depth_then, x) : 0.0F;
+      row.residuals[x] = depth_residual(measured, row.expected, x);
       if (!warped.inside(x)) continue;
-      // Only what does not fit at its own pixel is sought beside it.
-      if (!(std::abs(residuals[x]) <= limit)) {
-        const float expected = warped.z(x), beside = nearest_depth(then, warped.nearest(x), expected);
-        residuals[x] = depth_residual(beside, there, x);
-        if (beside <= 0) continue;
-        if (residuals[x] > limit) {
-          log_odds[x] = kSeenThrough * std::min(1.0F, 0.5F + 0.1F * (residuals[x] - limit));
-          continue;
-        }
-        if (residuals[x] < -limit) {
-          if (expected - beside < kStepBackLimit) log_odds[x] = reference.old ? kSteppedBack : kStepsBack;
-          continue;
-        }
-      }
-      log_odds[x] = kSameDepth;
-      differences[x] = gray[x] - bilinear(gray_then, warped.u(x), warped.v(x));
+      if (std::abs(row.residuals[x]) <= limit)
+        same_surface_at(x);
+      else
+        seek_beside(x);
     }
   }
   return brightness;
@@ -153,10 +197,11 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
 }  // namespace
 
 ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
-                                         const cv::Mat& prior, const StillpointConfig& config) {
+                                         const cv::Mat& prior, const StillpointConfig& config, bool wide) {
   ReferenceEvidence evidence;
-  evidence.registration_error_px = static_cast<double>(registration_error(current, reference, prior, config));
-  const cv::Mat brightness = compare_depth(current, reference, config, evidence);
+  evidence.registration_error_px =
+      static_cast<double>(registration_error(current, reference, prior, config, wide));
+  const cv::Mat brightness = compare_depth(current, reference, config, wide, evidence);
   if (!config.use_depth) evidence.log_odds.setTo(0.0F);
 
   // Exposure may have changed between the two: the median difference is taken off; what spreads about it is

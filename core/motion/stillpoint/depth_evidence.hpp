@@ -9,9 +9,11 @@ namespace stillpoint {
 /// Warps every pixel of `current` into the reference and compares depth, then brightness.
 /// @param prior CV_32FC1, prior log-odds of each pixel: how exact the comparison can be is judged by
 /// what is not classified as dynamic
+/// @param wide eight pixels at a time, for processors that have such lanes; the evidence is the same
 [[nodiscard]] ReferenceEvidence compare_with_reference(const RgbdView& current,
                                                        const ReferenceView& reference, const cv::Mat& prior,
-                                                       const StillpointConfig& config);
+                                                       const StillpointConfig& config,
+                                                       bool wide = has_wide_lanes());
 
 /// The prior, at a later frame's pixels.
 struct WarpedPrior {

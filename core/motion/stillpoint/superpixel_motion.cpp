@@ -74,10 +74,12 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Dep
   std::vector<Sums> sums(superpixels);
   const auto* seen = reference.surface.ptr<cv::Vec4f>();
   const DepthNoise noise = depth_noise(current);
+  std::vector<float> brightness;  // of a row, where it is warped to
   for (int y = 1; y + 1 < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* here = current.surface.ptr<cv::Vec4f>(y);
     warped.warp_row(y, current.depth.ptr<float>(y));
+    warped.sample_row(reference.gray, brightness);
     RunSums run;  // of the superpixel the row passes through
     int of = -1;
     for (int x = 1; x + 1 < labels.cols; ++x) {
@@ -91,7 +93,7 @@ std::vector<Sums> gather(const RgbdView& current, const RgbdView& reference, Dep
         of = label[x];
       }
       run.add(here[x][0] + there[0], here[x][1] + there[1],
-              here[x][2] - bilinear(reference.gray, warped.u(x), warped.v(x)), step);
+              here[x][2] - brightness[static_cast<std::size_t>(x)], step);
     }
     if (of >= 0) run.give_to(sums[static_cast<std::size_t>(of)]);
   }

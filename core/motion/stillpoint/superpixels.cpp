@@ -7,6 +7,11 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <span>
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#define STILLPOINT_AVX2 __attribute__((target("avx2")))
+#endif
+
 namespace stillpoint {
 namespace {
 
@@ -38,7 +43,7 @@ std::vector<Superpixel> seeds(const RgbdView& view, int side) {
   return superpixels;
 }
 
-constexpr int kLanes = cv::v_float32x4::nlanes;
+constexpr int kLanes = cv::v_float32x4::nlanes, kWideLanes = 8;
 
 /// The nine superpixels that may have the pixels of one row of cells: a superpixel never wanders far from its
 /// seed. What a superpixel's distance needs stands at every column, so that several pixels are compared at
@@ -59,17 +64,19 @@ class Candidates {
   void gather(const std::vector<Superpixel>& superpixels, int row) {
     for (std::size_t k = 0; k < all_.size(); ++k) {
       Candidate& candidate = all_[k];
-      const int r = row - 1 + static_cast<int>(k) / 3;
-      for (std::size_t x = 0; x < candidate.x.size(); ++x) {
-        const int c = std::min(static_cast<int>(x) / side_, columns_ - 1) - 1 + static_cast<int>(k) % 3;
+      const int r = row - 1 + static_cast<int>(k) / 3, width = static_cast<int>(candidate.x.size());
+      for (int column = 0; column < columns_; ++column) {
+        const int c = column - 1 + static_cast<int>(k) % 3;
         const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
         constexpr float kNowhere = 1e9F;  // px: beyond every image, so that it is nobody's nearest
-        const Superpixel* superpixel =
-            exists ? &superpixels[static_cast<std::size_t>(r * columns_ + c)] : nullptr;
-        candidate.x[x] = superpixel ? superpixel->centre.x : kNowhere;
-        candidate.y[x] = superpixel ? superpixel->centre.y : kNowhere;
-        candidate.z[x] = superpixel ? superpixel->depth : 0.0F;
-        candidate.label[x] = r * columns_ + c;
+        const Superpixel nobody{.centre = {kNowhere, kNowhere}};
+        const Superpixel& superpixel =
+            exists ? superpixels[static_cast<std::size_t>(r * columns_ + c)] : nobody;
+        const int begin = column * side_, end = column + 1 < columns_ ? begin + side_ : width;
+        std::fill(candidate.x.begin() + begin, candidate.x.begin() + end, superpixel.centre.x);
+        std::fill(candidate.y.begin() + begin, candidate.y.begin() + end, superpixel.centre.y);
+        std::fill(candidate.z.begin() + begin, candidate.z.begin() + end, superpixel.depth);
+        std::fill(candidate.label.begin() + begin, candidate.label.begin() + end, r * columns_ + c);
       }
     }
   }
@@ -109,12 +116,54 @@ void offer(const Candidate& candidate, float y, float side, Row& row) {
   }
 }
 
+/// The nearest superpixel of each pixel of a row, by offer() of all candidates.
+void find_nearest(const std::array<Candidate, 9>& candidates, float y, float side, Row& row) {
+  for (std::size_t x = 0; x < row.depth.size(); ++x)
+    row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
+  std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
+  for (const Candidate& candidate : candidates) offer(candidate, y, side, row);
+}
+
+#if defined(__x86_64__)
+/// The same, eight pixels at a time and each with all its candidates.
+STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<Candidate, 9>& candidates, float y, float side,
+                                          Row& row) {
+  const __m256 no_depth = _mm256_set1_ps(2.0F), zero = _mm256_setzero_ps(), down = _mm256_set1_ps(y),
+               by_side = _mm256_set1_ps(1.0F / side);
+  for (std::size_t x = 0; x < row.x.size(); x += kWideLanes) {
+    const __m256 at = _mm256_loadu_ps(&row.x[x]), depth = _mm256_loadu_ps(&row.depth[x]);
+    const __m256 by_depth = _mm256_div_ps(
+        _mm256_set1_ps(1.0F),
+        _mm256_mul_ps(_mm256_set1_ps(kDepthScale), _mm256_max_ps(depth, _mm256_set1_ps(kNearest))));
+    __m256 best = _mm256_set1_ps(std::numeric_limits<float>::max());
+    __m256i* label = reinterpret_cast<__m256i*>(&row.label[x]);
+    __m256 best_label = _mm256_castsi256_ps(_mm256_loadu_si256(label));
+    for (const Candidate& candidate : candidates) {
+      const __m256 z = _mm256_loadu_ps(&candidate.z[x]);
+      const __m256 dx = _mm256_mul_ps(_mm256_sub_ps(at, _mm256_loadu_ps(&candidate.x[x])), by_side);
+      const __m256 dy = _mm256_mul_ps(_mm256_sub_ps(down, _mm256_loadu_ps(&candidate.y[x])), by_side);
+      const __m256 dz = _mm256_blendv_ps(no_depth, _mm256_mul_ps(_mm256_sub_ps(depth, z), by_depth),
+                                         _mm256_cmp_ps(z, zero, _CMP_GT_OQ));
+      const __m256 d =
+          _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
+      const __m256 nearer = _mm256_cmp_ps(d, best, _CMP_LT_OQ);
+      best = _mm256_blendv_ps(best, d, nearer);
+      best_label = _mm256_blendv_ps(
+          best_label, _mm256_loadu_ps(reinterpret_cast<const float*>(&candidate.label[x])), nearer);
+    }
+    _mm256_storeu_si256(label, _mm256_castps_si256(best_label));
+  }
+}
+#else
+void find_nearest_by_avx2(const std::array<Candidate, 9>&, float, float, Row&) {}
+#endif
+
 /// What giving pixels to superpixels is done in, round after round.
 struct Workspace {
   Workspace(int width, std::size_t superpixels, int side)
       : columns(patches_along(width, side)),
         rows(static_cast<int>(superpixels) / columns),
-        padded(static_cast<std::size_t>((width + kLanes - 1) / kLanes * kLanes)),
+        padded(static_cast<std::size_t>((width + kWideLanes - 1) / kWideLanes * kWideLanes)),
         candidates(static_cast<int>(padded), side, columns, rows),
         row{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded),
             std::vector<float>(padded), std::vector<int>(padded)},
@@ -130,10 +179,9 @@ struct Workspace {
 };
 
 /// Gives each pixel to the nearest superpixel.
-void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, int side, Workspace& work,
-            cv::Mat& labels) {
+void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, int side, bool wide,
+            Workspace& work, cv::Mat& labels) {
   const int rows = work.rows, width = view.depth.cols;
-  const std::size_t n = work.padded;
   Candidates& candidates = work.candidates;
   Row& row = work.row;
   int gathered = -1;
@@ -142,13 +190,28 @@ void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, in
       candidates.gather(superpixels, gathered = r);
     const auto* depth = view.depth.ptr<float>(y);
     std::copy(depth, depth + width, row.depth.begin());
-    for (std::size_t x = 0; x < n; ++x)
-      row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
-    std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
-    for (const Candidate& candidate : candidates.all())
-      offer(candidate, static_cast<float>(y), static_cast<float>(side), row);
+    (wide ? find_nearest_by_avx2 : find_nearest)(candidates.all(), static_cast<float>(y),
+                                                 static_cast<float>(side), row);
     auto* label = labels.ptr<int>(y);
     for (int x = 0; x < width; ++x) label[x] = depth[x] > 0 ? row.label[static_cast<std::size_t>(x)] : -1;
+  }
+}
+
+/// Adds the pixels of row y to their superpixels' sums; those side by side in one go, as sums of whole
+/// numbers are exact. Depths are added one by one.
+void add_row(const int* label, const float* depth, int width, int y, std::vector<Sum>& sums) {
+  for (int x = 0; x < width;) {
+    const int of = label[x], first = x;
+    if (of < 0) {
+      ++x;
+      continue;
+    }
+    Sum& sum = sums[static_cast<std::size_t>(of)];
+    double z = sum.z;
+    for (; x < width && label[x] == of; ++x) z += depth[x];
+    const int count = x - first;
+    sum.x += 0.5 * (first + x - 1) * count, sum.y += static_cast<double>(y) * count;
+    sum.z = z, sum.count += count;
   }
 }
 
@@ -193,7 +256,7 @@ std::vector<AdjacencyEdge> find_adjacency(const RgbdView& view, const cv::Mat& l
   constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;
   std::vector<int> counts(superpixels * kPlaces, 0);
   const auto look = [&](int a, int b, float za, float zb) {
-    if (a < 0 || b < 0 || a == b || !same_surface(za, zb)) return;
+    if (a == b || a < 0 || b < 0 || !same_surface(za, zb)) return;
     const int first = std::min(a, b), second = std::max(a, b);
     const int down = second / columns - first / columns, right = second % columns - first % columns;
     ++counts[static_cast<std::size_t>(first * kPlaces + down * kWide + right + kFar)];
@@ -217,24 +280,17 @@ std::vector<AdjacencyEdge> find_adjacency(const RgbdView& view, const cv::Mat& l
 
 }  // namespace
 
-Superpixels make_superpixels(const RgbdView& view, const StillpointConfig& config) {
+Superpixels make_superpixels(const RgbdView& view, const StillpointConfig& config, bool wide) {
   Superpixels made{
       cv::Mat(view.depth.size(), CV_32SC1, cv::Scalar(-1)), seeds(view, config.superpixel_px), {}};
   auto& [labels, superpixels, adjacency] = made;
   Workspace work(view.depth.cols, superpixels.size(), config.superpixel_px);
   std::vector<Sum>& sums = work.sums;
   for (int round = 0; round < kRounds; ++round) {
-    assign(view, superpixels, config.superpixel_px, work, labels);
+    assign(view, superpixels, config.superpixel_px, wide, work, labels);
     std::fill(sums.begin(), sums.end(), Sum{});
-    for (int y = 0; y < labels.rows; ++y) {
-      const auto* label = labels.ptr<int>(y);
-      const auto* depth = view.depth.ptr<float>(y);
-      for (int x = 0; x < labels.cols; ++x) {
-        if (label[x] < 0) continue;
-        Sum& sum = sums[static_cast<std::size_t>(label[x])];
-        sum.x += x, sum.y += y, sum.z += depth[x], ++sum.count;
-      }
-    }
+    for (int y = 0; y < labels.rows; ++y)
+      add_row(labels.ptr<int>(y), view.depth.ptr<float>(y), labels.cols, y, sums);
     for (std::size_t i = 0; i < superpixels.size(); ++i) {
       superpixels[i].pixels = sums[i].count;
       if (sums[i].count == 0) continue;
