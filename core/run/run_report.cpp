@@ -305,7 +305,9 @@ std::string to_text(const RunReport& report) {
     text += "  no ground truth: no errors\n";
   }
   if (!report.without_image.empty()) text += fmt::format("  no image      {}\n", report.without_image);
-  if (!report.without_pose.empty()) text += fmt::format("  no pose       {}\n", report.without_pose);
+  // Where no frame has one, the run ends with the reason.
+  if (!report.without_pose.empty() && report.tracked > 0)
+    text += fmt::format("  no pose       {}\n", report.without_pose);
   if (!report.without_mask.empty()) text += fmt::format("  no mask       {}\n", report.without_mask);
   if (!report.without_depth.empty()) text += fmt::format("  no depth      {}\n", report.without_depth);
   // Another program is no method of ours that could be asked what it removes.
