@@ -23,6 +23,20 @@ StoredDepth stored_depth(const cv::Mat& metres, double units, std::uint16_t none
   return stored;
 }
 
+cv::Mat metres_of(const cv::Mat& stored, double units) {
+  constexpr int kNothing = 65535;  // the largest value is what sensors write where they measured nothing
+  CV_Assert(stored.type() == CV_16UC1);
+  cv::Mat metres(stored.size(), CV_32FC1);
+  const auto unit = static_cast<float>(1.0 / units);
+  for (int y = 0; y < stored.rows; ++y) {
+    const auto* from = stored.ptr<std::uint16_t>(y);
+    auto* to = metres.ptr<float>(y);
+    for (int x = 0; x < stored.cols; ++x)
+      to[x] = static_cast<float>(from[x] == kNothing ? 0 : static_cast<int>(from[x])) * unit;
+  }
+  return metres;
+}
+
 std::string too_far_told(std::int64_t pixels, double units) {
   if (pixels == 0) return "";
   return fmt::format(

@@ -21,6 +21,10 @@ struct StoredDepth {
 /// measurement
 [[nodiscard]] StoredDepth stored_depth(const cv::Mat& metres, double units, std::uint16_t none = 0);
 
+/// Depth in metres, CV_32FC1, of an image of 16 bits; 0 where nothing was measured, be it stored as 0 or as
+/// 65535. @param stored CV_16UC1 @param units a metre, above 0
+[[nodiscard]] cv::Mat metres_of(const cv::Mat& stored, double units);
+
 /// What to tell of pixels that were too far, in a sentence; "" where there are none.
 /// @param units a metre, as stored
 [[nodiscard]] std::string too_far_told(std::int64_t pixels, double units);

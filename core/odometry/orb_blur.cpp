@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -87,8 +88,7 @@ void blur_for_orb(const cv::Mat& level, BlurredLevel& blurred) {
   static const BlurWeights weights = orb_weights();
   const int width = level.cols, height = level.rows, padded = (width + kBytes - 1) / kBytes * kBytes;
   CV_Assert(level.type() == CV_8UC1 && width > kBlurRadius && height > kBlurRadius);
-  blurred.step = padded;
-  blurred.pixels.resize(static_cast<std::size_t>(padded) * static_cast<std::size_t>(height));
+  blurred.pixels.create(height, padded, CV_8UC1);
   // A row of floats with room to both sides, and the sums of the seven rows last summed.
   std::vector<float> memory(static_cast<std::size_t>(padded * (kTaps + 1) + 2 * kFloats), 0.0F);
   float *floats = memory.data() + kFloats, *sums = floats + padded + kFloats;
@@ -103,7 +103,7 @@ void blur_for_orb(const cv::Mat& level, BlurredLevel& blurred) {
     for (int k = 0; k < kTaps; ++k)
       rows[static_cast<std::size_t>(k)] =
           sums_of(cv::borderInterpolate(y + k - kBlurRadius, height, cv::BORDER_REFLECT_101));
-    sum_rows_down(rows, padded, weights, blurred.pixels.data() + static_cast<std::ptrdiff_t>(y) * padded);
+    sum_rows_down(rows, padded, weights, blurred.pixels.ptr(y));
   }
 }
 

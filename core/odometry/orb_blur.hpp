@@ -1,19 +1,12 @@
 #pragma once
 
-#include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
 
 namespace stillpoint {
 
 /// What ORB's descriptors look at: a level of the pyramid, blurred.
 struct BlurredLevel {
-  std::vector<std::uint8_t> pixels;
-  int step = 0;  // px from row to row
-
-  [[nodiscard]] const std::uint8_t* at(int x, int y) const {
-    return pixels.data() + static_cast<std::ptrdiff_t>(y) * step + x;
-  }
+  cv::Mat pixels;  // CV_8UC1, with columns to spare
 };
 
 /// Blurs a level as cv::ORB does before it describes: a Gaussian of 7x7 px and sigma 2, the level mirrored at

@@ -141,9 +141,10 @@ void describe_corners(const cv::Mat& level, const std::vector<cv::KeyPoint>& cor
   if (wide && can_blur_wide() && level.cols < (1 << 15)) {
     static const OrbTests tests = found_tests();
     blur_for_orb(level, blurred);
+    const auto step = static_cast<int>(blurred.pixels.step);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const float angle = corners[i].angle * static_cast<float>(CV_PI / 180.0);
-      descriptors[i] = describe(blurred.at(cvRound(corners[i].pt.x), cvRound(corners[i].pt.y)), blurred.step,
+      descriptors[i] = describe(blurred.pixels.ptr(cvRound(corners[i].pt.y), cvRound(corners[i].pt.x)), step,
                                 {std::cos(angle), std::sin(angle)}, tests);
     }
     return;

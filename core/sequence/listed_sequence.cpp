@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/media/stored_depth.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/image_file.hpp"
@@ -333,11 +334,7 @@ void ListedSequence::read_depth(const Entry& listed, Frame& frame) const {
                                 depth.in_metres ? "" : " but 65535");
   else {
     frame.depth = depth.image;
-    if (!depth.in_metres) {
-      // The largest value is what sensors write where they measured nothing.
-      depth.image.setTo(0, depth.image == 65535);
-      depth.image.convertTo(frame.depth, CV_32F, 1.0 / camera_.depth_scale);
-    }
+    if (!depth.in_metres) frame.depth = metres_of(depth.image, camera_.depth_scale);
     if (registration_) register_depth(path, frame);
     frame.depth_timestamp = listed.depth->timestamp;
   }

@@ -79,5 +79,17 @@ TEST(StoredDepth, AnExportedSequenceHasNoWallWhereItEnds) {
 
 TEST(StoredDepth, NothingIsToldWhereAllIsHeld) { EXPECT_EQ(too_far_told(0, kTumUnits), ""); }
 
+TEST(StoredDepth, IsReadAsOpenCvConvertsIt) {
+  cv::Mat stored(256, 256, CV_16UC1);
+  for (int i = 0; i < 65536; ++i) stored.at<std::uint16_t>(i / 256, i % 256) = static_cast<std::uint16_t>(i);
+  for (const double units : {1000.0, 5000.0, 5208.0, 6553.5}) {
+    cv::Mat expected;
+    stored.convertTo(expected, CV_32F, 1.0 / units);
+    expected.at<float>(255, 255) = 0.0F;
+    EXPECT_EQ(cv::norm(metres_of(stored, units), expected, cv::NORM_INF), 0.0) << units;
+    EXPECT_EQ(metres_of(stored.colRange(3, 8), units).at<float>(1, 0), expected.at<float>(1, 3));
+  }
+}
+
 }  // namespace
 }  // namespace stillpoint

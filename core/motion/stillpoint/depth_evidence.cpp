@@ -20,6 +20,7 @@ constexpr float kStepsBack = 0.5F;    // a surface nearer by little: most likely
 constexpr float kSteppedBack = 0.1F;  // … less likely the same one, the longer ago
 constexpr float kOtherBrightness = 0.6F;
 constexpr float kSameDepth = -0.25F;     // weak: the middle of a dynamic object agrees with itself
+constexpr float kTextured = 3.0F;        // standard deviations of noise that a textured pixel's gradient has
 constexpr float kSameTexture = -0.4F;    // a textured pixel that looks the same is static
 constexpr float kStepBackLimit = 0.15F;  // m: a surface farther off than this was another one
 
@@ -194,6 +195,64 @@ cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, c
   return brightness;
 }
 
+/// A row's brightness differences and what they are judged by, grey levels.
+struct BrightnessRow {
+  const float *difference, *gradient;  // NaN where there is none; of the current view
+  float shift;                         // what all differ by
+  float gradient_share, limit, sigma;
+  bool counts;  // whether it changes log-odds
+};
+
+#if defined(__x86_64__)
+/// judge_brightness() of eight pixels at a time, as far as there are eight; returns the first that is left.
+STILLPOINT_AVX2 int judge_brightness_by_avx2(const BrightnessRow& row, int width, float* residuals,
+                                             float* log_odds) {
+  constexpr int kAtOnce = 8;
+  const __m256 zero = _mm256_setzero_ps(), limit = _mm256_set1_ps(row.limit),
+               sigma = _mm256_set1_ps(row.sigma);
+  int x = 0;
+  for (; x + kAtOnce <= width; x += kAtOnce) {
+    const __m256 difference = _mm256_loadu_ps(row.difference + x),
+                 gradient = _mm256_loadu_ps(row.gradient + x);
+    const __m256 known = _mm256_cmp_ps(difference, difference, _CMP_ORD_Q);
+    const __m256 size =
+        _mm256_andnot_ps(_mm256_set1_ps(-0.0F), _mm256_sub_ps(difference, _mm256_set1_ps(row.shift)));
+    const __m256 residual =
+        _mm256_max_ps(_mm256_sub_ps(size, _mm256_mul_ps(_mm256_set1_ps(row.gradient_share), gradient)), zero);
+    _mm256_storeu_ps(residuals + x, _mm256_blendv_ps(_mm256_set1_ps(kUnknown), residual, known));
+    if (!row.counts) continue;
+    const __m256 other = _mm256_cmp_ps(residual, limit, _CMP_GT_OQ);
+    const __m256 same =
+        _mm256_and_ps(_mm256_cmp_ps(gradient, _mm256_mul_ps(_mm256_set1_ps(kTextured), sigma), _CMP_GT_OQ),
+                      _mm256_cmp_ps(residual, sigma, _CMP_LT_OQ));
+    const __m256 more = _mm256_mul_ps(_mm256_set1_ps(kOtherBrightness),
+                                      _mm256_min_ps(_mm256_div_ps(residual, limit), _mm256_set1_ps(2.0F)));
+    const __m256 says = _mm256_blendv_ps(_mm256_set1_ps(kSameTexture), more, other);
+    const __m256 before = _mm256_loadu_ps(log_odds + x);
+    _mm256_storeu_ps(log_odds + x, _mm256_blendv_ps(before, _mm256_add_ps(before, says),
+                                                    _mm256_and_ps(known, _mm256_or_ps(other, same))));
+  }
+  return x;
+}
+#else
+int judge_brightness_by_avx2(const BrightnessRow&, int, float*, float*) { return 0; }
+#endif
+
+/// Second pass: what a row's brightness says, once it is known how much all of it changed.
+void judge_brightness(const BrightnessRow& row, int width, bool wide, float* residuals, float* log_odds) {
+  for (int x = wide ? judge_brightness_by_avx2(row, width, residuals, log_odds) : 0; x < width; ++x) {
+    const bool known = !std::isnan(row.difference[x]);
+    const float residual =
+        std::max(0.0F, std::abs(row.difference[x] - row.shift) - row.gradient_share * row.gradient[x]);
+    residuals[x] = known ? residual : kUnknown;
+    if (!known || !row.counts) continue;
+    if (residual > row.limit)
+      log_odds[x] += kOtherBrightness * std::min(2.0F, residual / row.limit);
+    else if (row.gradient[x] > kTextured * row.sigma && residual < row.sigma)
+      log_odds[x] += kSameTexture;
+  }
+}
+
 }  // namespace
 
 ReferenceEvidence compare_with_reference(const RgbdView& current, const ReferenceView& reference,
@@ -218,22 +277,12 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   evidence.intensity_sigma = sigma;
 
   const auto limit = static_cast<float>(config.intensity_sigmas) * sigma;
-  const auto share = static_cast<float>(config.gradient_share);
   evidence.intensity_residual = cv::Mat(brightness.size(), CV_32FC1);
-  for (int y = 0; y < brightness.rows; ++y) {
-    const auto *difference = brightness.ptr<float>(y), *gradient = current.gradient.ptr<float>(y);
-    auto *residuals = evidence.intensity_residual.ptr<float>(y), *log_odds = evidence.log_odds.ptr<float>(y);
-    for (int x = 0; x < brightness.cols; ++x) {
-      const bool known = !std::isnan(difference[x]);
-      const float residual = std::max(0.0F, std::abs(difference[x] - shift) - share * gradient[x]);
-      residuals[x] = known ? residual : kUnknown;
-      if (!known || !config.use_brightness) continue;
-      if (residual > limit)
-        log_odds[x] += kOtherBrightness * std::min(2.0F, residual / limit);
-      else if (gradient[x] > 3.0F * sigma && residual < sigma)
-        log_odds[x] += kSameTexture;
-    }
-  }
+  for (int y = 0; y < brightness.rows; ++y)
+    judge_brightness({brightness.ptr<float>(y), current.gradient.ptr<float>(y), shift,
+                      static_cast<float>(config.gradient_share), limit, sigma, config.use_brightness},
+                     brightness.cols, wide, evidence.intensity_residual.ptr<float>(y),
+                     evidence.log_odds.ptr<float>(y));
   return evidence;
 }
 
