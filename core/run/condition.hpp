@@ -45,6 +45,8 @@ class Condition {
   /// Names in it of figures that no frame has, such as errors without ground truth: no comparison with them
   /// holds. None as long as there are no frames.
   [[nodiscard]] std::vector<std::string_view> unknown_figures(const FrameFigures& figures) const;
+  /// What it is made of, indices into frame_figure_infos(): all it asks of FrameFigures.
+  [[nodiscard]] const std::set<int>& figures() const { return columns_; }
   /// The text it was read from.
   [[nodiscard]] const std::string& text() const { return text_; }
 

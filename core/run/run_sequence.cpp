@@ -167,16 +167,15 @@ std::vector<SavedPoint> moved_points(const LocalMap& map) {
   return points;
 }
 
-Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records) {
+Trajectory trajectory_so_far(const Odometry& odometry, const FrameRecords& records) {
   Trajectory trajectory;
   KeyframePoses poses(odometry.map());
   for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
-    const auto revised = odometry.revised_poses().find(record.index);
     const KeyframeRelativePose pose =
-        revised != odometry.revised_poses().end()
-            ? revised->second
-            : KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference};
+        odometry.revised_poses()
+            .of(record.index)
+            .value_or(KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference});
     const Pose camera_from_world = pose.camera_from_reference * poses.of(pose.reference_keyframe);
     trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
   }
@@ -196,8 +195,9 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   const auto begin = [&](int index) {
     return PreparedNext(reader.read(index), preparer, config.run.threads);
   };
-  result.records.reserve(static_cast<std::size_t>(std::max(0, end - options.first)));
-  result.scores.reserve(result.records.capacity());
+  const std::shared_ptr<ByteStore> store = ByteStore::make();
+  result.records = records_put_by(store);
+  result.scores = scores_put_by(store);
   std::vector<double> units;
   PointColours colours;
   std::optional<PreparedNext> next;

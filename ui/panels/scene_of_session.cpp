@@ -50,16 +50,16 @@ void add_run(const SessionView& session, const RunView& run, const Pose& world_f
   const double start = series_start(session);
   std::size_t error = 0;
   const auto& errors = run.evaluation.ate.errors;
-  const FrameRecord* before = nullptr;
+  std::optional<PathFrame> before;
   for (const FrameRecord& record : run.records) {
     if (!record.estimated) continue;
-    if (before != nullptr && record.index != before->index + 1) {
+    if (before && record.index != before->index + 1) {
       path.positions.push_back(broken());
-      frames.push_back({before->index, before->timestamp - start, {}});
+      frames.push_back(*before);
     }
-    before = &record;
+    before = PathFrame{record.index, record.timestamp - start, {}};
     path.positions.push_back((world_from_estimate * record.world_from_camera.translation()).cast<float>());
-    PathFrame frame{record.index, record.timestamp - start, {}};
+    PathFrame frame = *before;
     while (error < errors.size() && errors[error].timestamp < record.timestamp - 1e-6) ++error;
     if (error < errors.size() && std::abs(errors[error].timestamp - record.timestamp) < 1e-6)
       frame.error_m = errors[error].translation_m;
