@@ -311,11 +311,16 @@ SessionView handmade_example() {
   view.frame_count = 60;
   view.processed = 40;
   view.current = current;
-  for (int i = 0; i < 60; ++i) view.ground_truth.push_back({i / 30.0, handmade_pose(i, 0.0)});
-  for (int i = 0; i < 40; i += 9) view.keyframes.push_back({i / 9, i, {i / 30.0, handmade_pose(i, 0.01)}});
+  Trajectory truth;
+  for (int i = 0; i < 60; ++i) truth.push_back({i / 30.0, handmade_pose(i, 0.0)});
+  view.ground_truth = std::move(truth);
+  std::vector<SavedKeyframe> keyframes;
+  for (int i = 0; i < 40; i += 9) keyframes.push_back({i / 9, i, {i / 30.0, handmade_pose(i, 0.01)}});
+  view.keyframes = std::move(keyframes);
+  std::vector<SavedPoint> points;
   for (int i = 0; i < 400; ++i)
-    view.map_points.push_back(
-        {i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+    points.push_back({i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+  view.map_points = std::move(points);
   auto other = std::make_shared<FrameView>();
   other->index = 22;
   other->frame = handmade_frame(22);

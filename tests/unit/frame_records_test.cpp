@@ -99,7 +99,9 @@ TEST(FrameRecords, ThatArePutByTakeNoMemory) {
   std::size_t half = 0;
   for (std::size_t i = 0; i < kMany; ++i) {
     records.push_back(full_record(static_cast<int>(i)));
-    scores.push_back({.known = true, .dynamic_inliers = static_cast<int>(i)});
+    FrameScores scored;
+    scored.known = true, scored.dynamic_inliers = static_cast<int>(i);
+    scores.push_back(scored);
     if (i + 1 == kMany / 2) half = records.held_bytes() + scores.held_bytes();
   }
   const std::size_t grown = records.held_bytes() + scores.held_bytes() - half;
