@@ -149,9 +149,9 @@ TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   const int reference = s->view()->current->record->reference_keyframe;
   ASSERT_NE(debug(*s).other, nullptr);
   const auto keyframes = s->view()->keyframes;
-  const auto keyframe = std::find_if(keyframes.begin(), keyframes.end(),
+  const auto keyframe = std::find_if(keyframes->begin(), keyframes->end(),
                                      [reference](const SavedKeyframe& one) { return one.id == reference; });
-  ASSERT_NE(keyframe, keyframes.end());
+  ASSERT_NE(keyframe, keyframes->end());
   EXPECT_EQ(debug(*s).other->index, keyframe->frame_index);
   s->request(request::StandBeside{OtherFrame::kept});  // what was kept is kept
   EXPECT_EQ(debug(*s).other->index, 2);
