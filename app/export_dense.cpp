@@ -32,7 +32,7 @@ std::string stopped_text(const DenseExport& wanted, bool has_map, int images) {
 template <typename Visit>
 void visit_frames(const OpenedRun& run, int every, const std::string& what, Visit visit,
                   const std::function<std::string()>& left) {
-  const std::vector<FrameRecord>& records = run.recorded->run.records;
+  const FrameRecords& records = run.recorded->run.records;
   const int count = static_cast<int>(records.size());
   Progress progress(what, count);
   Prefetcher frames(*run.source, 0, count, 2);

@@ -36,7 +36,7 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
   const OpenedRun run = open_run_and_tell(run_folder, sequence);
   if (!layers.empty() && !run.no_images.empty()) throw InputError(run.no_images);
   McapFileName name(to, force);
-  const std::vector<FrameRecord>& records = run.recorded->run.records;
+  const FrameRecords& records = run.recorded->run.records;
   McapExport file(name.while_written(), run.source->camera());
   {
     Progress progress(run.source->name(), static_cast<int>(records.size()));

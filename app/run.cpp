@@ -45,7 +45,8 @@ std::optional<Condition> break_condition(const RunArguments& arguments) {
 /// Tells where a condition holds. @returns whether it does anywhere
 bool tell_frames(const Condition& condition, const RunResult& result, const RunReport& report) {
   const FrameFigures figures(
-      {result.records, report.evaluation ? &*report.evaluation : nullptr, &result.scores});
+      {result.records, report.evaluation ? &*report.evaluation : nullptr, &result.scores},
+      condition.figures());
   const auto frames = condition.frames(figures);
   fmt::print("  {}: ", condition.text());
   if (frames.empty()) {

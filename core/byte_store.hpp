@@ -16,6 +16,8 @@ class StoredBytes {
  public:
   StoredBytes() = default;
   [[nodiscard]] std::size_t size() const { return size_; }  ///< bytes
+  /// How many of them take memory: none, unless there was no room elsewhere.
+  [[nodiscard]] std::size_t bytes_in_memory() const { return here_ ? here_->capacity() : 0; }
   /// Copies all of them to `to`, from any thread.
   /// @throws InputError when the disk does not give them back
   void read(void* to) const;

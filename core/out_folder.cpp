@@ -83,10 +83,16 @@ void WholeFile::keep() {
 }
 
 void WholeFiles::add(const std::filesystem::path& path, std::string_view text, std::string_view ending) {
+  add(
+      path, [text](std::ostream& file) { file << text; }, ending);
+}
+
+void WholeFiles::add(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write,
+                     std::string_view ending) {
   const WholeFile& whole = files_.emplace_back(path, ending);
   errno = 0;
   std::ofstream file(whole.while_written(), std::ios::binary);
-  file << text;
+  write(file);
   file.close();  // a full disk may show only now
   if (!file)
     throw InputError(

@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +66,9 @@ class WholeFiles {
   /// @param ending as WholeFile has it
   /// @throws InputError when it cannot be written; none has taken its name then
   void add(const std::filesystem::path& path, std::string_view text, std::string_view ending = {});
+  /// One that is too long to be held in memory. @param write puts it into the file, piece by piece
+  void add(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write,
+           std::string_view ending = {});
   /// @throws InputError when one cannot take its name
   void keep();
 

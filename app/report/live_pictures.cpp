@@ -60,13 +60,13 @@ std::string layer_text(const Layer& layer, cv::Size size) {
   return base64(encode_jpeg(resized(image, size, cv::INTER_AREA), kLiveJpegQuality));
 }
 
-/// The frame's record among a run's; null where it has none.
-const FrameRecord* record_at(const ReportRun& run, int frame, std::size_t& row) {
-  const std::vector<FrameRecord>& records = run.result().records;
+/// Which of a run's records is the frame's; nothing where it has none.
+std::optional<std::size_t> row_at(const ReportRun& run, int frame) {
+  const FrameRecords& records = run.result().records;
   const auto at = std::lower_bound(records.begin(), records.end(), frame,
                                    [](const FrameRecord& record, int index) { return record.index < index; });
-  row = static_cast<std::size_t>(at - records.begin());
-  return at == records.end() || at->index != frame ? nullptr : &*at;
+  if (at == records.end() || at->index != frame) return std::nullopt;
+  return static_cast<std::size_t>(at - records.begin());
 }
 
 /// Makes one frame's pictures.
@@ -109,10 +109,9 @@ class FramePainter {
   Json of_run(std::size_t place, int index) {
     const ReportRun& run = group_.runs[place];
     Json picture = Json::object();
-    std::size_t row = 0;
-    const FrameRecord* record = record_at(run, index, row);
-    if (record == nullptr) return picture;
-    const FrameDetails::Detail detail = run.recorded().details->of(row);
+    const std::optional<std::size_t> row = row_at(run, index);
+    if (!row) return picture;
+    const FrameDetails::Detail detail = run.recorded().details->of(*row);
     if (const cv::Mat mask = unpack_mask(detail.mask); !mask.empty() && cv::countNonZero(mask) > 0)
       picture["mask"] = mask_picture(resized(mask, size_, cv::INTER_NEAREST), okabe_ito::kVermillion);
     if (!detail.features.empty()) picture["features"] = feature_text(detail.features);

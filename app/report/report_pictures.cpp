@@ -42,7 +42,7 @@ std::vector<Curve> error_curves(const ReportGroup& group, RelativePoseError Traj
 AxisRange time_of(const ReportGroup& group) {
   AxisRange range{0.0, 1e-3};
   for (const ReportRun& run : group.runs) {
-    const std::vector<FrameRecord>& records = run.result().records;
+    const FrameRecords& records = run.result().records;
     range.high = std::max(range.high, records.back().timestamp - records.front().timestamp);
   }
   return range;
@@ -104,7 +104,8 @@ RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme) {
   const bool ours = run.recorded().outside.empty();
   if (ours && method_named(run.report.method).baseline)
     return {role_colour(Role::kBaseline, theme), SeriesStyle::kDashed};
-  if (ours && run.report.method == kDefaultMethod) return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
+  if (ours && run.report.method == kDefaultMethod)
+    return {role_colour(Role::kEstimate, theme), SeriesStyle::kLine};
   return ghost_look(place, theme);
 }
 

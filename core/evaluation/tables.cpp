@@ -102,22 +102,23 @@ std::string to_markdown(const Table& table) {
   return text;
 }
 
-std::string to_csv(const Table& table) {
+std::string csv_line(const std::vector<std::string>& cells) {
   std::string text;
-  const auto line = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      std::string cell = cells[i];
-      if (cell.find_first_of(",\"\r\n") != std::string::npos) {
-        for (auto at = cell.find('"'); at != std::string::npos; at = cell.find('"', at + 2))
-          cell.insert(at, 1, '"');
-        cell = "\"" + cell + "\"";
-      }
-      text += (i == 0 ? "" : ",") + cell;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::string cell = cells[i];
+    if (cell.find_first_of(",\"\r\n") != std::string::npos) {
+      for (auto at = cell.find('"'); at != std::string::npos; at = cell.find('"', at + 2))
+        cell.insert(at, 1, '"');
+      cell = "\"" + cell + "\"";
     }
-    text += "\n";
-  };
-  line(table.header);
-  for (const auto& row : table.rows) line(row);
+    text += (i == 0 ? "" : ",") + cell;
+  }
+  return text + "\n";
+}
+
+std::string to_csv(const Table& table) {
+  std::string text = csv_line(table.header);
+  for (const auto& row : table.rows) text += csv_line(row);
   return text;
 }
 

@@ -23,6 +23,9 @@ struct Table {
 /// left, the others right.
 [[nodiscard]] std::string to_markdown(const Table& table);
 
+/// One line of what to_csv() writes, its end included.
+[[nodiscard]] std::string csv_line(const std::vector<std::string>& cells);
+
 /// CSV after RFC 4180 with LF line ends.
 [[nodiscard]] std::string to_csv(const Table& table);
 

@@ -291,16 +291,17 @@ void McapExport::add(const Frame& frame, const FrameRecord& record, const cv::Ma
 
 void McapExport::finish(const RunResult& run, const Trajectory& ground_truth) {
   const TrajectoryEvaluation evaluation = evaluate_trajectory(ground_truth, run.trajectory);
-  const FrameFigures figures({run.records, &evaluation, &run.scores});
   const std::vector<FigureInfo>& infos = frame_figure_infos();
-  for (int row = 0; row < figures.rows() && row < static_cast<int>(times_.size()); ++row) {
-    nlohmann::ordered_json json;
-    json["frame"] = figures.frame(row);
-    for (int column = 0; column < static_cast<int>(infos.size()); ++column)
-      if (const double value = figures.value(row, column); std::isfinite(value))
-        json[column_head(infos[static_cast<std::size_t>(column)])] = value;
-    channels_->write_json("/figures", times_[static_cast<std::size_t>(row)], json);
-  }
+  auto at = times_.begin();
+  walk_figures({run.records, &evaluation, &run.scores},
+               [&](const FrameRecord& record, const std::vector<double>& figures) {
+                 if (at == times_.end()) return;
+                 nlohmann::ordered_json json;
+                 json["frame"] = record.index;
+                 for (std::size_t i = 0; i < infos.size(); ++i)
+                   if (std::isfinite(figures[i])) json[column_head(infos[i])] = figures[i];
+                 channels_->write_json("/figures", *at++, json);
+               });
   if (!times_.empty()) {
     const std::uint64_t begin = times_.front(), end = times_.back();
     channels_->path("/estimate", begin, run.trajectory);

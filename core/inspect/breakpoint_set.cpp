@@ -21,6 +21,13 @@ void BreakpointSet::set(const std::vector<Breakpoint>& all) {
   }
 }
 
+std::set<int> BreakpointSet::figures() const {
+  std::set<int> all;
+  for (const std::optional<Condition>& condition : conditions_)
+    if (condition) all.insert(condition->figures().begin(), condition->figures().end());
+  return all;
+}
+
 void BreakpointSet::update(const FrameFigures& figures) {
   for (std::size_t i = 0; i < views_.size(); ++i)
     if (conditions_[i]) {

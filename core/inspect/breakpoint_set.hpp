@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "core/inspect/marks.hpp"
@@ -16,6 +17,8 @@ class BreakpointSet {
 
   /// Finds the frames at which each holds, those switched off too.
   void update(const FrameFigures& figures);
+  /// What their conditions are made of, indices into frame_figure_infos(): all that update() asks for.
+  [[nodiscard]] std::set<int> figures() const;
 
   /// The first that is switched on and holds at a frame, as far as update() has seen it.
   [[nodiscard]] std::optional<int> stopping_at(int frame) const;

@@ -61,6 +61,13 @@ std::optional<Standing> standing_of(const MeasuredFrames& frames, int figure, st
   return standing;
 }
 
+/// A frame's masks against the true ones; nothing where these are not known.
+std::optional<FrameScores> scores_of(const RunView& run, std::size_t row) {
+  if (row >= run.scores.size()) return std::nullopt;
+  const FrameScores scores = run.scores[row];
+  return scores.known ? std::optional(scores) : std::nullopt;
+}
+
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
 /// A step that is far off may be the way back from poses that were: says since when. Empty where it is not,
@@ -80,7 +87,8 @@ std::string way_back_of(const RunView& run, std::size_t row, int figure, double 
 /// What was recorded that explains a bad pose, likeliest first.
 std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
   const FrameRecord& record = run.records[row];
-  const FrameScores* scores = row < run.scores.size() && run.scores[row].known ? &run.scores[row] : nullptr;
+  const std::optional<FrameScores> known = scores_of(run, row);
+  const FrameScores* scores = known ? &*known : nullptr;
   if (scores != nullptr && record.inliers > 0 &&
       scores->dynamic_inliers > kManyOnDynamic * static_cast<double>(record.inliers)) {
     const std::optional<double> recall = scores->mask.recall();
@@ -129,7 +137,8 @@ FrameVerdict frame_verdict(const RunView& run, std::size_t row, const std::vecto
     return without_pose(record);
   FrameVerdict verdict;
   const bool removal_hurt = std::binary_search(hurt.begin(), hurt.end(), record.index);
-  const FrameScores* scores = row < run.scores.size() && run.scores[row].known ? &run.scores[row] : nullptr;
+  const std::optional<FrameScores> known = scores_of(run, row);
+  const FrameScores* scores = known ? &*known : nullptr;
 
   const int figure = usual_figure(run.measured());
   const auto standing = standing_of(run.measured(), figure, row);

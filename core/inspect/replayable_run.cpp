@@ -75,8 +75,10 @@ MotionReplay ReplayableRun::motion_before(int index, const ReadFrame& read) cons
     return {source_->camera(), config(), MotionStage(source_->camera(), config()), index, index, read};
   const auto& [first, state] = *std::prev(after);
   MotionReplay replay(source_->camera(), config(), state, first, index, read);
-  for (int i = first; i < index; ++i)
-    (void)replay.repeat(read(i), &records_[static_cast<std::size_t>(i)], true_mask_used(config(), i));
+  for (int i = first; i < index; ++i) {
+    const FrameRecord record = records_[static_cast<std::size_t>(i)];
+    (void)replay.repeat(read(i), &record, true_mask_used(config(), i));
+  }
   return replay;
 }
 
@@ -191,11 +193,11 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
   other.odometry_ = std::move(*odometry);
   other.begins_at_ = from;
   other.seen_ = from;
-  other.records_.assign(records_.begin(), records_.begin() + from);
+  other.records_ = records_.first(static_cast<std::size_t>(from));
   other.features_.assign(features_.begin(), features_.begin() + from);
   other.recorded_features_ = recorded_features_;
   other.recorded_frames_ = std::min(recorded_frames_, from);
-  other.scores_.assign(scores_.begin(), scores_.begin() + from);
+  other.scores_ = scores_.first(static_cast<std::size_t>(from));
   for (const FrameRecord& record : other.records_) other.hash_.add(record);
   return other;
 }

@@ -94,9 +94,9 @@ class ReplayableRun {
   [[nodiscard]] int processed() const { return static_cast<int>(records_.size()); }
   [[nodiscard]] int begins_at() const { return begins_at_; }  ///< first frame that is its own
   /// All records, without their features: those are most of a record's size.
-  [[nodiscard]] const std::vector<FrameRecord>& records() const { return records_; }
+  [[nodiscard]] const FrameRecords& records() const { return records_; }
   /// One a record: its mask against the true one, where that is known and was to be scored.
-  [[nodiscard]] const std::vector<FrameScores>& scores() const { return scores_; }
+  [[nodiscard]] const ScoreList& scores() const { return scores_; }
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
   [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
@@ -135,12 +135,12 @@ class ReplayableRun {
   Odometry odometry_;
   int seen_ = 0;  // frames odometry_ has processed
   int begins_at_ = 0;
-  std::vector<FrameRecord> records_;  // without features
+  FrameRecords records_;  // without features
   std::shared_ptr<ByteStore> store_ = ByteStore::make();
   std::vector<StoredBytes> features_;  // … which are here; empty where they are not kept, …
   std::shared_ptr<const FrameDetails> recorded_features_;  // … or here, of the first …
   int recorded_frames_ = 0;                                // … records
-  std::vector<FrameScores> scores_;                        // one a record
+  ScoreList scores_;                                       // one a record
   std::map<int, Odometry> checkpoints_;                    // by the frame they process next
   std::map<int, MotionStage> motion_states_;               // without images, by the frame they judge next
   int motion_state_every_;  // frames between them; doubled when there are too many

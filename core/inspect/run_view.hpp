@@ -1,24 +1,22 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_records.hpp"
 
 namespace stillpoint {
 
-struct FrameScores;
 struct MeasuredFrames;
 
 /// A run as far as it has come.
 struct RunView {
-  std::string name;                  ///< its method's, or what a ghost is called
-  std::vector<FrameRecord> records;  ///< as far as processed, in order of frames
-  std::vector<FrameScores> scores;   ///< one a record: masks against the true ones, where these are known
-  Trajectory trajectory;             ///< estimated poses so far
-  TrajectoryEvaluation evaluation;   ///< against ground truth, without matches where there is none
+  std::string name;       ///< its method's, or what a ghost is called
+  FrameRecords records;   ///< as far as processed, in order of frames; shared with those before and after
+  ScoreList scores;       ///< one a record: masks against the true ones, where these are known; likewise
+  Trajectory trajectory;  ///< estimated poses so far
+  TrajectoryEvaluation evaluation;  ///< against ground truth, without matches where there is none
 
   /// Its frames, as frame figures are asked of them; refers to this run.
   [[nodiscard]] MeasuredFrames measured() const;

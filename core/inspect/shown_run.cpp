@@ -69,6 +69,11 @@ void ShownRun::process(const Frame& frame) {
   keep({frame.index, std::move(result.motion), std::move(result.mask), std::move(result.engine)});
 }
 
+std::optional<FrameRecord> ShownRun::record_without_features(int index) const {
+  if (index >= track_.processed()) return std::nullopt;
+  return track_.records()[static_cast<std::size_t>(index)];
+}
+
 void ShownRun::keep(Extras extras) {
   extras_.push_front(std::move(extras));
   if (extras_.size() > kExtrasKept) extras_.pop_back();
@@ -88,10 +93,9 @@ ShownRun::Extras ShownRun::extras_of(int index) {
   const bool again_whole = engine_of(track_.config()).has_stages && is_own(index) && index < track_.seen();
   if (!again_whole && track_.can_repeat_motion(index)) {
     MotionReplay motion = motion_before(index);
-    const bool processed = index < track_.processed();
-    MotionAgain again = motion.repeat(
-        frames_->read(index), processed ? &track_.records()[static_cast<std::size_t>(index)] : nullptr,
-        track_.true_mask_used(track_.config(), index));
+    const std::optional<FrameRecord> record = record_without_features(index);
+    MotionAgain again = motion.repeat(frames_->read(index), record ? &*record : nullptr,
+                                      track_.true_mask_used(track_.config(), index));
     extras.motion = std::move(again.motion);
     extras.mask = std::move(again.mask);
   } else if (!is_own(index)) {
@@ -158,10 +162,10 @@ std::optional<MotionAgain> ShownRun::motion_again(int index, const Config& confi
   const MotionNeeds& needs = method_of(config).needs;
   if (needs.matches || (needs.first_pose && !is_own(index))) return std::nullopt;
   if (needs.keeps_state && !track_.outside().empty()) return std::nullopt;
-  const bool processed = index < track_.processed();
-  const FrameRecord* record = processed ? &track_.records()[static_cast<std::size_t>(index)] : nullptr;
+  const std::optional<FrameRecord> record = record_without_features(index);
   const auto repeat = [&](MotionReplay motion) {
-    return motion.repeat(frames_->read(index), record, track_.true_mask_used(config, index));
+    return motion.repeat(frames_->read(index), record ? &*record : nullptr,
+                         track_.true_mask_used(config, index));
   };
   if (!needs.keeps_state && !needs.first_pose)
     return repeat(

@@ -83,6 +83,8 @@ class ShownRun {
   [[nodiscard]] bool is_own(int index) const {
     return index >= track_.begins_at() && index < track_.processed();
   }
+  /// Nothing where the frame has not been processed.
+  [[nodiscard]] std::optional<FrameRecord> record_without_features(int index) const;
   [[nodiscard]] const MotionReplay& motion_before(int index);
   [[nodiscard]] std::optional<MotionAgain> motion_again(int index, const Config& config);
   [[nodiscard]] std::shared_ptr<const FrameView> with_history(FrameView view,

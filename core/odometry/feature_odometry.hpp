@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,9 +33,7 @@ class FeatureOdometry final : public OdometryEngine {
   void restore_images(int next, const std::function<Frame(int)>& read) override;
 
   [[nodiscard]] const LocalMap& map() const override { return mapper_.map(); }
-  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const override {
-    return smoother_.revised();
-  }
+  [[nodiscard]] const RevisedPoses& revised_poses() const override { return smoother_.revised(); }
   [[nodiscard]] const Config& config() const override { return config_; }
   [[nodiscard]] const MotionStage& motion() const override { return motion_; }
 

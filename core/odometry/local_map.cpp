@@ -198,8 +198,9 @@ Pose LocalMap::pose_of(int keyframe) const {
   while (true) {
     if (const auto it = keyframes_.find(keyframe); it != keyframes_.end())
       return camera_from_ancestor * it->second.camera_from_world;
-    const auto it = std::find_if(retired_.begin(), retired_.end(),
-                                 [&](const RetiredKeyframe& r) { return r.id == keyframe; });
+    // Those that left last are asked for most.
+    auto it = std::prev(retired_.end());
+    while (it->id != keyframe) --it;
     camera_from_ancestor = camera_from_ancestor * it->camera_from_anchor;
     if (it->anchor == kNone) return camera_from_ancestor;
     keyframe = it->anchor;

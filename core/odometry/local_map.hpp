@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/chunked_list.hpp"
 #include "core/config.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/odometry/feature_set.hpp"
@@ -91,7 +92,7 @@ class LocalMap {
   void update_point(int point, double scale_factor, int levels);
 
   [[nodiscard]] const std::map<int, Keyframe>& keyframes() const { return keyframes_; }
-  [[nodiscard]] const std::vector<RetiredKeyframe>& retired() const { return retired_; }
+  [[nodiscard]] const ChunkedList<RetiredKeyframe>& retired() const { return retired_; }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
   [[nodiscard]] bool has_point(int id) const { return points_.contains(id); }
   [[nodiscard]] const MapPoint& point(int id) const { return points_.at(id); }
@@ -115,7 +116,7 @@ class LocalMap {
  private:
   std::map<int, Keyframe> keyframes_;
   std::unordered_map<int, MapPoint> points_;  // never iterated where order matters
-  std::vector<RetiredKeyframe> retired_;
+  ChunkedList<RetiredKeyframe> retired_;      // grows with a run, and copies share it
   std::vector<MovedPoint> moved_;
   int next_keyframe_ = 0, next_point_ = 0;
 };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -113,7 +112,7 @@ class MaskedEngine final : public OdometryEngine {
   void restore_images(int next, const std::function<Frame(int)>& read) override;
 
   [[nodiscard]] const LocalMap& map() const override { return tracker_->map(); }
-  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const override { return revised_; }
+  [[nodiscard]] const RevisedPoses& revised_poses() const override { return revised_; }
   [[nodiscard]] const Config& config() const override { return config_; }
   [[nodiscard]] const MotionStage& motion() const override { return motion_; }
 
@@ -144,7 +143,7 @@ class MaskedEngine final : public OdometryEngine {
   std::unique_ptr<FrameTracker> tracker_;
   CameraPath path_;
   std::unordered_map<int, float> point_weight_;  // of the frame at hand, by the method
-  std::map<int, KeyframeRelativePose> revised_;  // none: no pose is solved once more
+  RevisedPoses revised_;                         // none: no pose is solved once more
 };
 
 }  // namespace stillpoint

@@ -63,10 +63,8 @@ class Odometry {
   }
 
   [[nodiscard]] const LocalMap& map() const { return engine_->map(); }
-  /// By frame index: the poses of earlier frames that were solved once more, by the map as it was later.
-  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised_poses() const {
-    return engine_->revised_poses();
-  }
+  /// The poses of earlier frames that were solved once more, by the map as it was later.
+  [[nodiscard]] const RevisedPoses& revised_poses() const { return engine_->revised_poses(); }
   [[nodiscard]] const Config& config() const { return engine_->config(); }
   /// The motion method's state, as the next frame will find it.
   [[nodiscard]] const MotionStage& motion() const { return engine_->motion(); }

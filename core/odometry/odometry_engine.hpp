@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -41,7 +40,7 @@ class OdometryEngine {
   virtual void restore_images(int next, const std::function<Frame(int)>& read) = 0;
 
   [[nodiscard]] virtual const LocalMap& map() const = 0;
-  [[nodiscard]] virtual const std::map<int, KeyframeRelativePose>& revised_poses() const = 0;
+  [[nodiscard]] virtual const RevisedPoses& revised_poses() const = 0;
   [[nodiscard]] virtual const Config& config() const = 0;
   [[nodiscard]] virtual const MotionStage& motion() const = 0;
 

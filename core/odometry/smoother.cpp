@@ -4,6 +4,23 @@
 
 namespace stillpoint {
 
+void RevisedPoses::add(int frame, const KeyframeRelativePose& pose) {
+  Entry entry{frame, pose.reference_keyframe, {}};
+  Eigen::Map<Eigen::Matrix<double, 3, 4>>(entry.camera_from_reference.data()) =
+      pose.camera_from_reference.matrix().topRows<3>();
+  all_.push_back(entry);
+}
+
+std::optional<KeyframeRelativePose> RevisedPoses::of(int frame) const {
+  const auto at = std::lower_bound(all_.begin(), all_.end(), frame,
+                                   [](const Entry& entry, int index) { return entry.frame < index; });
+  if (at == all_.end() || at->frame != frame) return std::nullopt;
+  KeyframeRelativePose pose{at->reference_keyframe, Pose::Identity()};
+  pose.camera_from_reference.matrix().topRows<3>() =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4>>(at->camera_from_reference.data());
+  return pose;
+}
+
 void FixedLagSmoother::remember(int frame_index, const KeyframeRelativePose& pose,
                                 std::vector<InlierMatch> matches) {
   past_.push_back(std::make_shared<const Past>(Past{frame_index, pose, std::move(matches)}));
@@ -26,8 +43,8 @@ void FixedLagSmoother::advance(int last, const LocalMap& map, const Camera& came
         refine_pose(camera, left, past.pose.camera_from_reference * reference, config);
     const int needed = std::max(config.min_inliers, static_cast<int>(past.matches.size()) / kLeastShare);
     if (refined.inliers >= needed)
-      revised_[past.frame_index] = {past.pose.reference_keyframe,
-                                    refined.camera_from_world * reference.inverse()};
+      revised_.add(past.frame_index,
+                   {past.pose.reference_keyframe, refined.camera_from_world * reference.inverse()});
   }
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <deque>
-#include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "core/chunked_list.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/pose_solver.hpp"
 #include "core/odometry/tracked_frame.hpp"
@@ -15,6 +17,27 @@ namespace stillpoint {
 struct KeyframeRelativePose {
   int reference_keyframe = kNone;
   Pose camera_from_reference = Pose::Identity();
+};
+
+/// Poses of earlier frames that were solved once more, in order of frames. What a long run holds of each of
+/// its frames is one of these, and copies of it share them.
+class RevisedPoses {
+ public:
+  /// @param frame index, above those before it
+  void add(int frame, const KeyframeRelativePose& pose);
+  /// Of a frame; nothing where it was not solved once more.
+  [[nodiscard]] std::optional<KeyframeRelativePose> of(int frame) const;
+  [[nodiscard]] std::size_t size() const { return all_.size(); }
+  [[nodiscard]] bool empty() const { return all_.empty(); }
+  /// Bytes of memory, those shared with copies included.
+  [[nodiscard]] std::size_t held_bytes() const { return all_.held_bytes(); }
+
+ private:
+  struct Entry {
+    int frame = 0, reference_keyframe = kNone;
+    std::array<double, 12> camera_from_reference{};  // column by column, without the last row
+  };
+  ChunkedList<Entry> all_;
 };
 
 /// Looks back at poses. When a frame is new, little is known of what it shows: its map points are as one
@@ -38,9 +61,9 @@ class FixedLagSmoother {
   /// Solves anew the poses of all frames up to `last`, each once.
   void advance(int last, const LocalMap& map, const Camera& camera, const TrackingConfig& config);
 
-  /// By frame index: the poses that were solved anew. Where too few of the matches were left, or agreed, the
-  /// pose stays as it was.
-  [[nodiscard]] const std::map<int, KeyframeRelativePose>& revised() const { return revised_; }
+  /// The poses that were solved anew. Where too few of the matches were left, or agreed, the pose stays as it
+  /// was.
+  [[nodiscard]] const RevisedPoses& revised() const { return revised_; }
 
   /// How many frames are not yet looked back at.
   [[nodiscard]] std::size_t pending() const { return past_.size(); }
@@ -54,7 +77,7 @@ class FixedLagSmoother {
     std::vector<InlierMatch> matches;
   };
   std::deque<std::shared_ptr<const Past>> past_;  // oldest first
-  std::map<int, KeyframeRelativePose> revised_;
+  RevisedPoses revised_;
 };
 
 /// The matches that a tracked frame's pose agreed with. @param scales standard deviation of each octave's

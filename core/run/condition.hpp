@@ -48,6 +48,8 @@ class Condition {
   /// How near the figures in it come over these frames, for a condition that holds at none of them:
   /// "rpe from 0.8 mm (frame 5) to 7.2 mm (frame 2); lost at none; none has mask_iou".
   [[nodiscard]] std::string reach(const FrameFigures& figures, const std::vector<int>& among) const;
+  /// What it is made of, indices into frame_figure_infos(): all it asks of FrameFigures.
+  [[nodiscard]] const std::set<int>& figures() const { return columns_; }
   /// The text it was read from.
   [[nodiscard]] const std::string& text() const { return text_; }
 

@@ -36,11 +36,14 @@ FigurePairs figure_pairs(const MeasuredFrames& measured, int x, int y) {
   const std::vector<double> all_x = frame_figure_values(measured, x),
                             all_y = frame_figure_values(measured, y);
   FigurePairs known, pairs;
-  for (std::size_t i = 0; i < measured.records.size(); ++i) {
-    if (!std::isfinite(all_x[i]) || !std::isfinite(all_y[i])) continue;
-    known.x.push_back(all_x[i]);
-    known.y.push_back(all_y[i]);
-    known.frames.push_back(measured.records[i].index);
+  std::size_t row = 0;
+  for (const FrameRecord& record : measured.records) {
+    const double of_x = all_x[row], of_y = all_y[row];
+    ++row;
+    if (!std::isfinite(of_x) || !std::isfinite(of_y)) continue;
+    known.x.push_back(of_x);
+    known.y.push_back(of_y);
+    known.frames.push_back(record.index);
   }
   for (const std::size_t i : sorted_places(known.x)) {
     pairs.x.push_back(known.x[i]);

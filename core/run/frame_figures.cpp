@@ -31,21 +31,19 @@ RemovalErrors removal_of(const MeasuredFrames& frames) {
   return errors;
 }
 
-MeasuredFrame row_of(const MeasuredFrames& frames, std::size_t row, const RemovalErrors& removal) {
+template <typename Take>
+void walk(const MeasuredFrames& frames, const RemovalErrors& removal, const Take& take) {
   static const FrameScores none;
-  const FrameRecord& record = frames.records[row];
-  const auto checked = removal.find(record.index);
-  return {record, frames.scores != nullptr && row < frames.scores->size() ? (*frames.scores)[row] : none,
-          frames.evaluation, checked == removal.end() ? nullptr : &checked->second};
-}
-
-std::vector<double> values_of(const MeasuredFrames& frames, const FrameFigure& figure,
-                              const RemovalErrors& removal) {
-  std::vector<double> values;
-  values.reserve(frames.records.size());
-  for (std::size_t row = 0; row < frames.records.size(); ++row)
-    values.push_back(value_of(figure, row_of(frames, row, removal)));
-  return values;
+  static const ScoreList no_scores;
+  const ScoreList& scores = frames.scores != nullptr ? *frames.scores : no_scores;
+  auto score = scores.begin();
+  for (const FrameRecord& record : frames.records) {
+    const bool scored = score != scores.end();
+    const auto checked = removal.find(record.index);
+    take(MeasuredFrame{record, scored ? *score : none, frames.evaluation,
+                       checked == removal.end() ? nullptr : &checked->second});
+    if (scored) ++score;
+  }
 }
 
 }  // namespace
@@ -131,22 +129,60 @@ int frame_figure(std::string_view name) {
 
 std::vector<double> frame_figure_values(const MeasuredFrames& frames, int figure) {
   const FrameFigure& wanted = figure_table().at(static_cast<std::size_t>(figure));
-  return values_of(frames, wanted, wanted.of_removal ? removal_of(frames) : RemovalErrors{});
-}
-
-std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t row) {
   std::vector<double> values;
-  values.reserve(figure_table().size());
-  for (const FrameFigure& figure : figure_table())
-    values.push_back(value_of(figure, row_of(frames, row, {})));
+  values.reserve(frames.records.size());
+  walk(frames, wanted.of_removal ? removal_of(frames) : RemovalErrors{},
+       [&](const MeasuredFrame& row) { values.push_back(value_of(wanted, row)); });
   return values;
 }
 
-FrameFigures::FrameFigures(const MeasuredFrames& frames) {
-  for (const FrameRecord& record : frames.records) frames_.push_back(record.index);
-  const RemovalErrors removal = removal_of(frames);
-  columns_.reserve(figure_table().size());
-  for (const FrameFigure& figure : figure_table()) columns_.push_back(values_of(frames, figure, removal));
+std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t row) {
+  const FrameRecord record = frames.records[row];
+  const FrameScores scores =
+      frames.scores != nullptr && row < frames.scores->size() ? (*frames.scores)[row] : FrameScores{};
+  std::vector<double> values;
+  values.reserve(figure_table().size());
+  for (const FrameFigure& figure : figure_table())
+    values.push_back(value_of(figure, {record, scores, frames.evaluation, nullptr}));
+  return values;
+}
+
+void walk_figures(const MeasuredFrames& frames,
+                  const std::function<void(const FrameRecord&, const std::vector<double>&)>& take) {
+  std::vector<double> values(figure_table().size());
+  walk(frames, removal_of(frames), [&](const MeasuredFrame& row) {
+    std::transform(figure_table().begin(), figure_table().end(), values.begin(),
+                   [&row](const FrameFigure& figure) { return value_of(figure, row); });
+    take(row.record, values);
+  });
+}
+
+namespace {
+
+std::set<int> all_figure_indices() {
+  std::set<int> all;
+  for (int i = 0; i < static_cast<int>(figure_table().size()); ++i) all.insert(i);
+  return all;
+}
+
+}  // namespace
+
+FrameFigures::FrameFigures(const MeasuredFrames& frames) : FrameFigures(frames, all_figure_indices()) {}
+
+FrameFigures::FrameFigures(const MeasuredFrames& frames, const std::set<int>& figures)
+    : columns_(figure_table().size()) {
+  frames_.reserve(frames.records.size());
+  for (const int figure : figures)
+    columns_.at(static_cast<std::size_t>(figure)).reserve(frames.records.size());
+  const bool any_of_removal = std::any_of(figures.begin(), figures.end(), [](int figure) {
+    return figure_table()[static_cast<std::size_t>(figure)].of_removal;
+  });
+  walk(frames, any_of_removal ? removal_of(frames) : RemovalErrors{}, [&](const MeasuredFrame& row) {
+    frames_.push_back(row.record.index);
+    for (const int figure : figures)
+      columns_[static_cast<std::size_t>(figure)].push_back(
+          value_of(figure_table()[static_cast<std::size_t>(figure)], row));
+  });
 }
 
 }  // namespace stillpoint

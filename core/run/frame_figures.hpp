@@ -1,16 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/motion/figure_info.hpp"
+#include "core/run/frame_records.hpp"
 
 namespace stillpoint {
 
-struct FrameRecord;
-struct FrameScores;
 struct TrajectoryEvaluation;
 
 // What is known of a frame in numbers: one table, from which conditions, the timeline's lanes, "worst", the
@@ -44,9 +45,9 @@ struct ShownUnit {
 
 /// Records and what was measured of them. Refers to all three.
 struct MeasuredFrames {
-  const std::vector<FrameRecord>& records;
+  const FrameRecords& records;
   const TrajectoryEvaluation* evaluation = nullptr;  ///< null, or of these records' poses
-  const std::vector<FrameScores>* scores = nullptr;  ///< null, or one a record
+  const ScoreList* scores = nullptr;                 ///< null, or one a record
 };
 
 /// One figure of each record; NaN where it is not known.
@@ -57,16 +58,23 @@ struct MeasuredFrames {
 /// removal check are not: they are judged over a run.
 [[nodiscard]] std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t row);
 
+/// Goes from frame to frame and tells all figures of each, in the order of frame_figure_infos(): what needs
+/// no more of a long run than one frame at a time.
+void walk_figures(const MeasuredFrames& frames,
+                  const std::function<void(const FrameRecord&, const std::vector<double>&)>& take);
+
 /// The figures of a run's frames as one table: a row a record, a column a figure; NaN where it is not known.
 class FrameFigures {
  public:
   explicit FrameFigures(const MeasuredFrames& frames);
+  /// Some figures alone, indices into frame_figure_infos(): no other may be asked for.
+  FrameFigures(const MeasuredFrames& frames, const std::set<int>& figures);
 
   [[nodiscard]] int rows() const { return static_cast<int>(frames_.size()); }
   [[nodiscard]] int frame(int row) const { return frames_[static_cast<std::size_t>(row)]; }
   /// @param column index into frame_figure_infos()
   [[nodiscard]] double value(int row, int column) const {
-    return columns_[static_cast<std::size_t>(column)][static_cast<std::size_t>(row)];
+    return columns_[static_cast<std::size_t>(column)].at(static_cast<std::size_t>(row));
   }
 
  private:

@@ -283,16 +283,16 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
   run.frames_in_sequence = source.size();
   run.trajectory = read_poses(source, frames, files, path, warnings);
   leave_out_beyond(frames, path, run.trajectory, warnings);
-  run.records = lay_onto_frames(run.trajectory, frames);
-  for (const FrameRecord& record : run.records)
+  std::vector<FrameRecord> records = lay_onto_frames(run.trajectory, frames);
+  for (const FrameRecord& record : records)
     if (record.estimated) run.live.push_back({record.timestamp, record.world_from_camera});
-  run.scores.resize(run.records.size());
-  std::vector<FrameDetails::Detail> details(run.records.size());
+  std::vector<FrameScores> scores(records.size());
+  std::vector<FrameDetails::Detail> details(records.size());
   bool has_features = false;
   std::optional<MaskFiles> masks;
   if (folder) {
     if (const std::string table = fs::path(files.where) / kFeaturesName; is_file(table)) {
-      const FeatureTable features(table, frames, run.records);
+      const FeatureTable features(table, frames, records);
       features.tell(warnings);
       has_features = true;
     }
@@ -302,10 +302,10 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
     }
   }
   const bool scored = source.has_masks() && (has_features || masks);
-  for (FrameRecord& record : run.records) tell_parts_of_outside(record, false);
-  for (std::size_t i = 0; (masks || has_features) && i < run.records.size(); ++i) {
+  for (FrameRecord& record : records) tell_parts_of_outside(record, false);
+  for (std::size_t i = 0; (masks || has_features) && i < records.size(); ++i) {
     FrameResult result;
-    result.record = std::move(run.records[i]);
+    result.record = std::move(records[i]);
     count_features(result.record);
     if (masks) {
       FoundMask found = masks->read(source.read(static_cast<int>(i)));
@@ -317,12 +317,14 @@ RecordedRun read_outside_run(const FrameSource& source, const SequenceOrigin& or
       details[i].mask = pack_mask(result.mask);
     }
     if (scored && (!masks || !result.mask.empty()))
-      run.scores[i] = score_frame(result, source.truth(static_cast<int>(i)).moving, !masks);
+      scores[i] = score_frame(result, source.truth(static_cast<int>(i)).moving, !masks);
     tell_parts_of_outside(result.record, !result.mask.empty());
     details[i].features = std::exchange(result.record.features, {});
-    run.records[i] = std::move(result.record);
-    if (between) between(run.records[i]);
+    records[i] = std::move(result.record);
+    if (between) between(records[i]);
   }
+  run.records = FrameRecords(std::move(records));
+  run.scores = ScoreList(std::move(scores));
   recorded.details = details_at_hand(std::move(details));
   recorded.hash = run_hash(run.records);
   return recorded;

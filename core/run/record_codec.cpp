@@ -161,10 +161,10 @@ void transfer_point(Archive& archive, SavedPointType& point) {
 // Bytes each, at least: more features than the bytes left can hold are damage.
 constexpr std::size_t kFeatureBytes = 26;
 
-template <typename Thing, typename Transfer>
-void write_all(ByteStreamWriter& to, const std::vector<Thing>& things, const Transfer& transfer) {
+template <typename Things, typename Transfer>
+void write_all(ByteStreamWriter& to, const Things& things, const Transfer& transfer) {
   to(static_cast<std::uint32_t>(things.size()));
-  for (const Thing& thing : things) transfer(to, thing);
+  for (const auto& thing : things) transfer(to, thing);
 }
 
 template <typename Thing, typename Transfer>
@@ -292,15 +292,15 @@ FrameRecord read_record(ByteStreamReader& from) {
   return record;
 }
 
-void write_end(ByteStreamWriter& to, const RunEnd& end) {
-  write_all(to, end.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
-  write_all(to, end.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
-  for (const auto* points : {&end.points, &end.moved})
+void write_end(ByteStreamWriter& to, const RunResult& run, const Trajectory& ground_truth) {
+  write_all(to, run.scores, [](auto& a, auto& s) { transfer_scores(a, s); });
+  write_all(to, run.keyframes, [](auto& a, auto& k) { transfer_keyframe(a, k); });
+  for (const auto* points : {&run.points, &run.moved})
     write_all(to, *points, [](auto& a, auto& p) { transfer_point(a, p); });
-  write_all(to, end.trajectory, [](auto& a, auto& p) { transfer_stamped(a, p); });
-  write_all(to, end.ground_truth, [](auto& a, auto& p) { transfer_stamped(a, p); });
-  to(end.orb_unit_ms);
-  to(end.interrupted);
+  write_all(to, run.trajectory, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  write_all(to, ground_truth, [](auto& a, auto& p) { transfer_stamped(a, p); });
+  to(run.orb_unit_ms);
+  to(run.interrupted);
 }
 
 RunEnd read_end(ByteStreamReader& from) {

@@ -49,7 +49,8 @@ struct RunEnd {
   bool interrupted = false;
 };
 
-void write_end(ByteStreamWriter& to, const RunEnd& end);
+/// @param ground_truth the sequence's
+void write_end(ByteStreamWriter& to, const RunResult& run, const Trajectory& ground_truth);
 /// @throws ByteStreamReader::Exhausted
 [[nodiscard]] RunEnd read_end(ByteStreamReader& from);
 

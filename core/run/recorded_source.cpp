@@ -14,7 +14,9 @@ class RecordedSource final : public FrameSource {
   [[nodiscard]] const std::string& name() const override { return recorded_->origin.name; }
   [[nodiscard]] const Camera& camera() const override { return recorded_->origin.camera; }
   [[nodiscard]] int size() const override { return static_cast<int>(recorded_->run.records.size()); }
-  [[nodiscard]] double timestamp(int index) const override { return record(index).timestamp; }
+  [[nodiscard]] double timestamp(int index) const override {
+    return recorded_->run.records.at(static_cast<std::size_t>(index)).timestamp;
+  }
   [[nodiscard]] const Trajectory& ground_truth() const override { return recorded_->ground_truth; }
   [[nodiscard]] bool has_depth() const override { return recorded_->origin.has_depth; }
   [[nodiscard]] bool has_masks() const override { return false; }
@@ -30,10 +32,6 @@ class RecordedSource final : public FrameSource {
   }
 
  private:
-  [[nodiscard]] const FrameRecord& record(int index) const {
-    return recorded_->run.records.at(static_cast<std::size_t>(index));
-  }
-
   std::shared_ptr<const RecordedRun> recorded_;
   std::string why_;
   std::vector<std::string> warnings_;

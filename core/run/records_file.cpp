@@ -46,8 +46,7 @@ void RecordsWriter::add(const FrameResult& frame) {
 void RecordsWriter::finish(const RunResult& run, const Trajectory& ground_truth) {
   const std::uint64_t tables = end_;
   put_tables(run.records);
-  write_end(content_, {run.scores, run.keyframes, run.points, run.moved, run.trajectory, ground_truth,
-                       run.orb_unit_ms, run.interrupted});
+  write_end(content_, run, ground_truth);
   content_(run_hash(run.records));
   put_chunk(ChunkKind::end);
   put(records_foot(tables));
@@ -69,13 +68,14 @@ void RecordsWriter::discard() {
   beside_.reset();
 }
 
-void RecordsWriter::put_tables(const std::vector<FrameRecord>& records) {
+void RecordsWriter::put_tables(const FrameRecords& records) {
   constexpr std::size_t kFramesATable = 1024;  // what is unpacked at once
+  auto record = records.begin();
   for (std::size_t first = 0; first < records.size(); first += kFramesATable) {
     const std::size_t last = std::min(first + kFramesATable, records.size());
     content_(static_cast<std::uint32_t>(last - first));
     for (std::size_t i = first; i < last; ++i) content_(frames_.at(i));
-    for (std::size_t i = first; i < last; ++i) write_record_figures(content_, records[i]);
+    for (std::size_t i = first; i < last; ++i, ++record) write_record_figures(content_, *record);
     put_chunk(ChunkKind::table);
   }
 }

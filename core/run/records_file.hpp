@@ -65,7 +65,7 @@ class RecordsWriter {
  private:
   void put_chunk(ChunkKind kind);
   void put(const std::vector<std::uint8_t>& bytes);
-  void put_tables(const std::vector<FrameRecord>& records);
+  void put_tables(const FrameRecords& records);
 
   std::filesystem::path path_;
   std::optional<WholeFile> beside_;

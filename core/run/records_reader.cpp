@@ -92,14 +92,13 @@ struct RecordsReading {
   std::shared_ptr<const ChunkFile> file;
   RecordedRun recorded{};
   std::vector<std::uint64_t> places{};  // of the frames' chunks
+  std::int64_t first = 0;               // index of the first of them
 
   void add(FrameRecord record, std::uint64_t place) {
-    std::vector<FrameRecord>& records = recorded.run.records;
-    records.push_back(std::move(record));
+    if (places.empty()) first = record.index;
+    if (first < 0 || record.index != first + static_cast<std::int64_t>(places.size())) throw ChunkDamaged();
+    recorded.run.records.push_back(std::move(record));
     places.push_back(place);
-    const auto first = static_cast<std::int64_t>(records.front().index);
-    if (first < 0 || records.back().index != first + static_cast<std::int64_t>(records.size()) - 1)
-      throw ChunkDamaged();
   }
   void add(RecordTable table) {
     for (std::size_t i = 0; i < table.records.size(); ++i) add(std::move(table.records[i]), table.places[i]);
@@ -112,7 +111,7 @@ void read_tail(const Chunk& chunk, RecordedRun& recorded) {
   RunEnd end = read_end(from);
   from(recorded.hash);
   RunResult& run = recorded.run;
-  run.scores = std::move(end.scores);
+  run.scores = ScoreList(std::move(end.scores));
   run.keyframes = std::move(end.keyframes);
   run.points = std::move(end.points);
   run.moved = std::move(end.moved);
@@ -168,15 +167,19 @@ bool read_frames(std::uint64_t at, RecordsReading& reading) {
 
 /// What the records tell of: what their engine does, or what another program left.
 void tell_parts(RecordedRun& recorded, const std::optional<bool>& masks) {
-  std::vector<FrameRecord>& records = recorded.run.records;
+  FrameRecords& records = recorded.run.records;
   if (recorded.outside.empty()) {
-    for (FrameRecord& record : records) record.measured = engine_of(recorded.run.config).measures;
+    const RecordParts measured = engine_of(recorded.run.config).measures;
+    for (std::size_t i = 0; i < records.size(); ++i) records.edit(i).measured = measured;
     return;
   }
   const bool any = masks.value_or(std::any_of(records.begin(), records.end(), [](const FrameRecord& record) {
     return record.mask_share > 0.0 || !record.mask_problem.empty();
   }));
-  for (FrameRecord& record : records) tell_parts_of_outside(record, any && record.mask_problem.empty());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    FrameRecord& record = records.edit(i);
+    tell_parts_of_outside(record, any && record.mask_problem.empty());
+  }
 }
 
 /// The run as far as its frames tell: poses are those of the moment, and nothing was scored.
@@ -214,7 +217,7 @@ void read_all_of(RecordsReading& reading, const std::function<void(const Sequenc
     throw ChunkDamaged();
   if (!recorded.run.records.empty())
     recorded.details = std::make_shared<DetailsInFile>(reading.file, std::move(reading.places),
-                                                       recorded.run.records.front().index);
+                                                       static_cast<int>(reading.first));
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/normal_equations.hpp"
 #include "core/median.hpp"
-#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 namespace {
@@ -45,13 +45,22 @@ void judge(std::vector<RemovalError>& errors) {
 
 }  // namespace
 
-std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records,
+std::vector<RemovalError> removal_errors(const FrameRecords& records,
                                          const TrajectoryEvaluation& evaluation) {
   std::unordered_map<double, const Pose*> truth;
   for (const MatchedPose& matched : evaluation.matched) truth.emplace(matched.timestamp, &matched.truth);
   std::vector<RemovalError> errors;
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const FrameRecord &before = records[i - 1], &now = records[i];
+  struct Before {
+    double timestamp = 0.0;
+    bool estimated = false;
+    Pose world_from_camera = Pose::Identity();
+  };
+  std::optional<Before> last;
+  for (const FrameRecord& now : records) {
+    const std::optional<Before> here = Before{now.timestamp, now.estimated, now.world_from_camera};
+    const std::optional<Before> kept = std::exchange(last, here);
+    if (!kept) continue;
+    const Before& before = *kept;
     const bool checked = now.removal_check.nothing_removed || now.removal_check.truth_removed;
     const auto true_before = truth.find(before.timestamp), true_now = truth.find(now.timestamp);
     if (!checked || !before.estimated || true_before == truth.end() || true_now == truth.end()) continue;

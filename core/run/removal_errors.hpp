@@ -2,9 +2,10 @@
 
 #include <vector>
 
+#include "core/run/frame_records.hpp"
+
 namespace stillpoint {
 
-struct FrameRecord;
 struct TrajectoryEvaluation;
 
 /// Errors of one frame's step from the pose before, against the truth: translational, m. Solved with three
@@ -24,7 +25,7 @@ struct RemovalError {
 /// are known from the truth; by frame. Removal hurt where the step is worse with it than without by more than
 /// 1 mm and by more than 3 standard deviations (robust) of that difference over the run; it helped where the
 /// step is better by as much.
-[[nodiscard]] std::vector<RemovalError> removal_errors(const std::vector<FrameRecord>& records,
+[[nodiscard]] std::vector<RemovalError> removal_errors(const FrameRecords& records,
                                                        const TrajectoryEvaluation& evaluation);
 
 }  // namespace stillpoint

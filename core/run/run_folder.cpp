@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "core/evaluation/tables.hpp"
 #include "core/motion/methods.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 /// What describes a frame in words, then every figure there is of any run or of this one's method and engine,
 /// then the note.
-std::string frames_csv(const RunResult& run, const RunReport& report) {
+void write_frames_csv(const RunResult& run, const RunReport& report, std::ostream& file) {
   const auto& infos = frame_figure_infos();
   std::vector<FigureInfo> own = method_of(run.config).figures;
   const std::vector<FigureInfo>& of_engine = engine_of(run.config).figures;
@@ -31,27 +32,23 @@ std::string frames_csv(const RunResult& run, const RunReport& report) {
         std::any_of(own.begin(), own.end(), [&](const FigureInfo& one) { return one.name == info.name; }))
       columns.push_back(i);
   }
-  Table table;
-  table.header = {"timestamp_s", "status", "pose_start"};
-  for (const int column : columns)
-    table.header.push_back(column_head(infos[static_cast<std::size_t>(column)]));
-  table.header.emplace_back("note");
-  const FrameFigures figures({run.records, report.evaluation ? &*report.evaluation : nullptr, &run.scores});
-  for (int row = 0; row < figures.rows(); ++row) {
-    const FrameRecord& record = run.records[static_cast<std::size_t>(row)];
-    std::vector<std::string> cells{fmt::format("{:.6f}", record.timestamp),
-                                   std::string(to_string(record.status)),
-                                   record.measured.solving ? std::string(to_string(record.pose_start)) : ""};
-    for (const int column : columns) {
-      const double value = figures.value(row, column);
-      cells.push_back(std::isnan(value)
-                          ? std::string()
-                          : fmt::format("{:.{}f}", value, infos[static_cast<std::size_t>(column)].digits));
-    }
-    cells.push_back(remarks_on(record));
-    table.rows.push_back(std::move(cells));
-  }
-  return to_csv(table);
+  std::vector<std::string> cells = {"timestamp_s", "status", "pose_start"};
+  for (const int column : columns) cells.push_back(column_head(infos[static_cast<std::size_t>(column)]));
+  cells.emplace_back("note");
+  file << csv_line(cells);
+  walk_figures({run.records, report.evaluation ? &*report.evaluation : nullptr, &run.scores},
+               [&](const FrameRecord& record, const std::vector<double>& figures) {
+                 cells = {fmt::format("{:.6f}", record.timestamp), std::string(to_string(record.status)),
+                          record.measured.solving ? std::string(to_string(record.pose_start)) : ""};
+                 for (const int column : columns) {
+                   const auto at = static_cast<std::size_t>(column);
+                   cells.push_back(std::isnan(figures[at])
+                                       ? std::string()
+                                       : fmt::format("{:.{}f}", figures[at], infos[at].digits));
+                 }
+                 cells.push_back(remarks_on(record));
+                 file << csv_line(cells);
+               });
 }
 
 }  // namespace
@@ -68,7 +65,7 @@ void write_run(const std::filesystem::path& folder, const RunResult& run, const 
   files.add(folder / "trajectory.txt", tum_text(run.trajectory));
   files.add(folder / "trajectory_live.txt", tum_text(run.live));
   files.add(folder / "keyframes.txt", tum_text(keyframes));
-  files.add(folder / "frames.csv", frames_csv(run, report));
+  files.add(folder / "frames.csv", [&](std::ostream& file) { write_frames_csv(run, report, file); });
   files.add(folder / "config.toml", to_toml(run.config));
   files.add(folder / "map.ply", map_ply(run.points, {}, run.keyframes));
   files.add(folder / "keyframes.ply", keyframes_ply(run.keyframes, source.camera()));

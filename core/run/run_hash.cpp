@@ -21,12 +21,12 @@ bool computed_alike(const FrameRecord& a, const FrameRecord& b) {
   return first.hex() == second.hex();
 }
 
-bool part_ways(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b, std::size_t frame) {
+bool part_ways(const FrameRecords& a, const FrameRecords& b, std::size_t frame) {
   constexpr double kMostApart = 0.02;           // m a frame
   constexpr double kMostTurned = M_PI / 180.0;  // rad a frame
   if (a[frame].estimated != b[frame].estimated) return true;
   if (frame == 0 || !a[frame].estimated || !a[frame - 1].estimated || !b[frame - 1].estimated) return false;
-  const auto motion = [frame](const std::vector<FrameRecord>& run) -> Pose {
+  const auto motion = [frame](const FrameRecords& run) -> Pose {
     return run[frame - 1].world_from_camera.inverse() * run[frame].world_from_camera;
   };
   const Pose off = motion(a).inverse() * motion(b);

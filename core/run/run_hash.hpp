@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "core/hash.hpp"
-#include "core/odometry/frame_record.hpp"
+#include "core/run/frame_records.hpp"
 
 namespace stillpoint {
 
@@ -23,7 +22,6 @@ class RunHash {
 
 /// Whether two runs of different programs part at a frame: one has its pose and the other has not, or the
 /// camera's motion since the frame before differs by more than 2 cm or 1 degree. Worlds need not be aligned.
-[[nodiscard]] bool part_ways(const std::vector<FrameRecord>& a, const std::vector<FrameRecord>& b,
-                             std::size_t frame);
+[[nodiscard]] bool part_ways(const FrameRecords& a, const FrameRecords& b, std::size_t frame);
 
 }  // namespace stillpoint

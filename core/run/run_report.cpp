@@ -66,7 +66,7 @@ RecordParts parts_of(const RunResult& run) {
     any.matches = any.matches || record.measured.matches;
   }
   // The rest is the engine's, and so the same for all frames.
-  RecordParts parts = run.records.front().measured;
+  RecordParts parts = run.records.begin()->measured;
   parts.mask = any.mask, parts.features = any.features, parts.matches = any.matches;
   return parts;
 }
@@ -87,23 +87,32 @@ nlohmann::ordered_json speed_json(const SpeedFigures& speed) {
 
 /// "12-15, 40": the frames of a status, neighbours joined.
 template <typename Predicate>
-std::string ranges(const std::vector<FrameRecord>& records, Predicate is) {
+std::string ranges(const FrameRecords& records, Predicate is) {
   std::string text;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!is(records[i])) continue;
-    std::size_t last = i;
-    while (last + 1 < records.size() && is(records[last + 1])) ++last;
-    text += fmt::format("{}{}", text.empty() ? "" : ", ", records[i].index);
-    if (last > i) text += fmt::format("-{}", records[last].index);
-    i = last;
+  int first = 0;
+  std::optional<int> last;  // of those that are, while the stretch goes on
+  const auto end = [&] {
+    if (!last) return;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", first);
+    if (*last > first) text += fmt::format("-{}", *last);
+    last.reset();
+  };
+  for (const FrameRecord& record : records) {
+    if (!is(record)) {
+      end();
+      continue;
+    }
+    if (!last) first = record.index;
+    last = record.index;
   }
+  end();
   return text;
 }
 
 /// A frame that lacks something, and why.
 struct Lacking {
   int index = 0;
-  const std::string* why = nullptr;
+  std::string why;
 };
 
 /// "8 of 40 frames: 2, 11 (no depth image within 0.02 s); 10 (rgb/7.png holds 8 bits)": reasons that differ
@@ -117,7 +126,7 @@ std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking)
   };
   std::vector<std::pair<std::string, std::vector<Lacking>>> kinds;
   for (const Lacking& one : lacking) {
-    const std::string kind = kind_of(*one.why);
+    const std::string kind = kind_of(one.why);
     auto at = std::find_if(kinds.begin(), kinds.end(), [&kind](const auto& k) { return k.first == kind; });
     if (at == kinds.end()) at = kinds.insert(kinds.end(), {kind, {}});
     at->second.push_back(one);
@@ -125,13 +134,14 @@ std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking)
   std::string text = fmt::format("{} of {} frames: ", lacking.size(), run.records.size());
   for (std::size_t k = 0; k < std::min(kinds.size(), kMostReasons); ++k) {
     const std::vector<Lacking>& of_kind = kinds[k].second;
-    const auto holds = [&of_kind](const FrameRecord& r) {
-      return std::any_of(of_kind.begin(), of_kind.end(),
-                         [&r](const Lacking& one) { return one.index == r.index; });
+    // In order of frames, as they were found.
+    const auto holds = [at = of_kind.begin(), end = of_kind.end()](const FrameRecord& r) mutable {
+      while (at != end && at->index < r.index) ++at;
+      return at != end && at->index == r.index;
     };
     const bool others = std::any_of(of_kind.begin(), of_kind.end(),
-                                    [&](const Lacking& one) { return *one.why != *of_kind.front().why; });
-    text += fmt::format("{}{} ({}{})", k > 0 ? "; " : "", ranges(run.records, holds), *of_kind.front().why,
+                                    [&](const Lacking& one) { return one.why != of_kind.front().why; });
+    text += fmt::format("{}{} ({}{})", k > 0 ? "; " : "", ranges(run.records, holds), of_kind.front().why,
                         others ? ", …" : "");
   }
   if (kinds.size() > kMostReasons) text += fmt::format("; and {} more reasons", kinds.size() - kMostReasons);
@@ -141,7 +151,7 @@ std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking)
 /// Which frames lacked depth, and why.
 std::string depth_gaps(const RunResult& run) {
   std::vector<Lacking> lacking;
-  for (const DepthGap& gap : run.without_depth) lacking.push_back({gap.index, &gap.why});
+  for (const DepthGap& gap : run.without_depth) lacking.push_back({gap.index, gap.why});
   return gaps_text(run, lacking);
 }
 
@@ -149,7 +159,7 @@ std::string depth_gaps(const RunResult& run) {
 std::string image_gaps(const RunResult& run) {
   std::vector<Lacking> lacking;
   for (const FrameRecord& record : run.records)
-    if (record.status == FrameStatus::unreadable) lacking.push_back({record.index, &record.note});
+    if (record.status == FrameStatus::unreadable) lacking.push_back({record.index, record.note});
   return gaps_text(run, lacking);
 }
 
@@ -167,7 +177,7 @@ std::string pose_gaps(const RunResult& run) {
 std::string mask_gaps(const RunResult& run) {
   std::vector<Lacking> lacking;
   for (const FrameRecord& record : run.records)
-    if (!record.mask_problem.empty()) lacking.push_back({record.index, &record.mask_problem});
+    if (!record.mask_problem.empty()) lacking.push_back({record.index, record.mask_problem});
   return gaps_text(run, lacking);
 }
 
@@ -223,7 +233,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   return report;
 }
 
-std::string run_hash(const std::vector<FrameRecord>& records) {
+std::string run_hash(const FrameRecords& records) {
   RunHash hash;
   for (const FrameRecord& record : records) hash.add(record);
   return hash.hex();

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
-#include "core/odometry/frame_record.hpp"
-#include "core/run/frame_scores.hpp"
+#include "core/run/frame_records.hpp"
 
 namespace stillpoint {
 
@@ -46,7 +45,7 @@ struct RunReport {
 [[nodiscard]] RunReport report_on(const RunResult& run, const FrameSource& source);
 
 /// A fingerprint of all that a run computed, 16 hex digits: equal for equal results, timings left out.
-[[nodiscard]] std::string run_hash(const std::vector<FrameRecord>& records);
+[[nodiscard]] std::string run_hash(const FrameRecords& records);
 
 /// The report as `summary.json` holds it.
 [[nodiscard]] nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,

@@ -167,16 +167,16 @@ std::vector<SavedPoint> moved_points(const LocalMap& map) {
   return points;
 }
 
-Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records) {
+Trajectory trajectory_so_far(const Odometry& odometry, const FrameRecords& records) {
   Trajectory trajectory;
+  trajectory.reserve(records.size());
   KeyframePoses poses(odometry.map());
   for (const FrameRecord& record : records) {
     if (!record.estimated) continue;
-    const auto revised = odometry.revised_poses().find(record.index);
     const KeyframeRelativePose pose =
-        revised != odometry.revised_poses().end()
-            ? revised->second
-            : KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference};
+        odometry.revised_poses()
+            .of(record.index)
+            .value_or(KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference});
     const Pose camera_from_world = pose.camera_from_reference * poses.of(pose.reference_keyframe);
     trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
   }
@@ -191,13 +191,14 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
   const bool told = method_of(config).needs.true_mask || config.run.check_removal;
 
   const ReadAhead reader(source, options, end, config.run.threads);
-  Odometry odometry(source.camera(), config);
+  auto odometry = std::make_unique<Odometry>(source.camera(), config);
   FramePreparer preparer(source.camera(), config);
   const auto begin = [&](int index) {
     return PreparedNext(reader.read(index), preparer, config.run.threads);
   };
-  result.records.reserve(static_cast<std::size_t>(std::max(0, end - options.first)));
-  result.scores.reserve(result.records.capacity());
+  const std::shared_ptr<ByteStore> store = ByteStore::make();
+  result.records = records_put_by(store);
+  result.scores = scores_put_by(store);
   std::vector<double> units;
   PointColours colours;
   std::optional<PreparedNext> next;
@@ -219,7 +220,7 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
     if (source.has_depth() && frame.readable() && !frame.has_depth())
       result.without_depth.push_back({index, frame.problem});
     if (index + 1 < end) next.emplace(begin(index + 1));
-    FrameResult processed = odometry.process_prepared(frame, std::move(prepared), known);
+    FrameResult processed = odometry->process_prepared(frame, std::move(prepared), known);
     processed.record.ms.total += waited_ms;
     result.scores.push_back(
         score_frame(processed, told ? known : truth.get(), method_of(config).judges_features));
@@ -228,21 +229,24 @@ RunResult run_sequence(const FrameSource& source, const Config& config, const Ru
       units.push_back(orb_unit_ms(frame.gray));
     }
     colours.see(frame, processed.record.features);
-    colours.forget(odometry.map());
+    colours.forget(odometry->map());
     if (options.on_frame) options.on_frame(processed);
     // Assigning nothing would keep the memory.
     if (!options.keep_features) processed.record.features = std::vector<FeatureRecord>();
     result.records.push_back(std::move(processed.record));
   }
   result.orb_unit_ms = median_of(units);
-  odometry.finish();
+  odometry->finish();
+  result.trajectory = trajectory_so_far(*odometry, result.records);
+  result.keyframes = saved_keyframes(odometry->map());
+  result.points = saved_points(odometry->map());
+  colours.give(result.points);
+  result.moved = moved_points(odometry->map());
+  // What is made of all frames from here on has the room that the map had.
+  odometry.reset();
+  result.live.reserve(result.trajectory.size());
   for (const FrameRecord& record : result.records)
     if (record.estimated) result.live.push_back({record.timestamp, record.world_from_camera});
-  result.trajectory = trajectory_so_far(odometry, result.records);
-  result.keyframes = saved_keyframes(odometry.map());
-  result.points = saved_points(odometry.map());
-  colours.give(result.points);
-  result.moved = moved_points(odometry.map());
   return result;
 }
 

@@ -6,8 +6,7 @@
 
 #include "core/config.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/odometry/frame_record.hpp"
-#include "core/run/frame_scores.hpp"
+#include "core/run/frame_records.hpp"
 #include "core/run/saved_map.hpp"
 
 namespace stillpoint {
@@ -17,7 +16,7 @@ class Odometry;
 
 /// The estimated poses among `records`, revised where odometry has looked back at them, hung on their
 /// reference keyframes as these stand in the map now.
-[[nodiscard]] Trajectory trajectory_so_far(const Odometry& odometry, const std::vector<FrameRecord>& records);
+[[nodiscard]] Trajectory trajectory_so_far(const Odometry& odometry, const FrameRecords& records);
 
 /// A frame that could be read but came without depth, in a sequence that has it.
 struct DepthGap {
@@ -28,9 +27,9 @@ struct DepthGap {
 /// A whole sequence by one method.
 struct RunResult {
   Config config;
-  std::vector<FrameRecord> records;  ///< one a frame processed, in order
-  std::vector<FrameScores> scores;   ///< one a record; without figures where no mask is known
-  Trajectory live;                   ///< poses as estimated when each frame was tracked; estimated ones only
+  FrameRecords records;   ///< one a frame processed, in order
+  ScoreList scores;       ///< one a record; without figures where no mask is known
+  Trajectory live;        ///< poses as estimated when each frame was tracked; estimated ones only
   Trajectory trajectory;  ///< the same frames, hung on their reference keyframes as these stand at the end
   std::vector<SavedKeyframe> keyframes;  ///< in order of time, those culled meanwhile included
   std::vector<SavedPoint> points;
@@ -54,7 +53,8 @@ struct RunOptions {
   std::function<void(const FrameResult&)> on_frame{};  ///< called after each frame, from the calling thread
 };
 
-/// Runs the configured method over a sequence; frames are read ahead on other threads.
+/// Runs the configured method over a sequence; frames are read ahead on other threads. However long it is, it
+/// holds a pose a frame and the map: records and scores are put by, and read back by who asks for them.
 [[nodiscard]] RunResult run_sequence(const FrameSource& source, const Config& config,
                                      const RunOptions& options = {});
 

@@ -30,13 +30,16 @@ int usual_figure(const MeasuredFrames& frames) {
 }
 
 std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, int apart, std::size_t most) {
-  const std::vector<FrameRecord>& records = frames.records;
   const FigureInfo& info = frame_figure_infos().at(static_cast<std::size_t>(figure));
   std::vector<WorstFrame> worst;
-  for (std::size_t i = 0; i < records.size() && worst.size() < most; ++i)
-    if (has_no_pose(records[i]) && (i == 0 || !has_no_pose(records[i - 1])))
-      worst.push_back({records[i].index, fmt::format("{}{}{}", to_string(records[i].status),
-                                                     records[i].note.empty() ? "" : ": ", records[i].note)});
+  bool posed = true;  // the frame before
+  for (const FrameRecord& record : frames.records) {
+    if (worst.size() >= most) break;
+    if (has_no_pose(record) && posed)
+      worst.push_back({record.index, fmt::format("{}{}{}", to_string(record.status),
+                                                 record.note.empty() ? "" : ": ", record.note)});
+    posed = !has_no_pose(record);
+  }
   struct Ranked {
     double badness;  // negated, so that ties stand in order of time
     int index;
@@ -45,10 +48,13 @@ std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, i
   std::vector<Ranked> ranked;
   const std::vector<double> values = frame_figure_values(frames, figure);
   const double sign = info.worse == WorseWhen::low ? 1.0 : -1.0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (std::isfinite(values[i]) && !has_no_pose(records[i]) &&
-        (records[i].status != FrameStatus::initialised || info.worse != WorseWhen::low))
-      ranked.push_back({sign * values[i], records[i].index, values[i]});
+  auto value = values.begin();
+  for (const FrameRecord& record : frames.records) {
+    const double known = *value++;
+    if (std::isfinite(known) && !has_no_pose(record) &&
+        (record.status != FrameStatus::initialised || info.worse != WorseWhen::low))
+      ranked.push_back({sign * known, record.index, known});
+  }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Ranked& a, const Ranked& b) { return a.badness < b.badness; });
   ranked.resize((ranked.size() + 1) / 2);

@@ -42,7 +42,7 @@ RunFigures run_over(const RenderedSequence& sequence, const std::string& method)
     figures.masked += record.mask_share / static_cast<double>(run.records.size());
     figures.masked_frames += record.mask_share > 0 ? 1 : 0;
   }
-  figures.first_hash = run_hash({run.records.begin(), run.records.begin() + kHashedFrames});
+  figures.first_hash = run_hash(run.records.first(kHashedFrames));
   return figures;
 }
 

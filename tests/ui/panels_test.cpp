@@ -46,10 +46,10 @@ SessionView without_truth() {
   auto run = std::make_shared<RunView>(*view.run), baseline = std::make_shared<RunView>(*view.baseline);
   run->evaluation = baseline->evaluation = {};
   // The record belongs to the run shown.
-  current->record = &run->records.back();
+  current->record = &run->records.edit(run->records.size() - 1);
   view.run = run;
   view.baseline = baseline;
-  view.ground_truth.clear();
+  view.ground_truth = {};
   view.alignment = {};
   return view;
 }
@@ -62,8 +62,8 @@ SessionView not_processed() {
   view.current = current;
   view.run = std::make_shared<RunView>();
   view.baseline = nullptr;
-  view.keyframes.clear();
-  view.map_points.clear();
+  view.keyframes = {};
+  view.map_points = {};
   view.alignment = {};
   view.processed = 0;
   return view;
@@ -189,7 +189,7 @@ TEST(Panels, TimingsHaveTheGhostsBesideTheRun) {
   SessionView session = generated_example();
   const cv::Mat alone = stage.render(session);
   auto run = std::make_shared<RunView>(*session.run);
-  for (FrameRecord& record : run->records) record.ms.total *= 2.0;
+  for (std::size_t i = 0; i < run->records.size(); ++i) run->records.edit(i).ms.total *= 2.0;
   GhostView ghost;
   ghost.name = "ghost";
   ghost.from = 4;
@@ -291,7 +291,9 @@ TEST(Panels, PointsThatLeftTheMapBecauseTheyMovedAreRemovedOnes) {
                          [](const ScenePoint& point) { return point.removed; });
   };
   const auto before = removed();
-  session.map_points.push_back({.id = 9000, .position = {0.1, 0.2, 0.3}, .observations = 0, .moved = true});
+  std::vector<SavedPoint> points = *session.map_points;
+  points.push_back({.id = 9000, .position = {0.1, 0.2, 0.3}, .observations = 0, .moved = true});
+  session.map_points = std::move(points);
   EXPECT_EQ(removed(), before + 1);
 }
 

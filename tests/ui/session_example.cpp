@@ -76,7 +76,7 @@ SessionExample run_example(std::unique_ptr<FrameSource> source, int frames, doub
       MotionStage(source->camera(), run.config).describe(current->frame, motion));
   current->motion_beside = stages_beside(*source, "paper", frames - 1);
   current->truth = source->truth(frames - 1);
-  current->record = &view.run->records.back();
+  current->record = &*std::prev(view.run->records.end());
   view.title = source->name();
   view.camera = source->camera();
   view.config = run.config;
@@ -300,7 +300,7 @@ SessionView handmade_example() {
   current->mask = own.judged.mask;
   current->truth.moving = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(current->truth.moving, {196, 120}, 45, 255, cv::FILLED);
-  current->record = &run->records[24];
+  current->record = &run->records.edit(24);
   view.title = "by hand";
   view.camera.width = 320;
   view.camera.height = 240;
@@ -311,15 +311,20 @@ SessionView handmade_example() {
   view.frame_count = 60;
   view.processed = 40;
   view.current = current;
-  for (int i = 0; i < 60; ++i) view.ground_truth.push_back({i / 30.0, handmade_pose(i, 0.0)});
-  for (int i = 0; i < 40; i += 9) view.keyframes.push_back({i / 9, i, {i / 30.0, handmade_pose(i, 0.01)}});
+  Trajectory truth;
+  for (int i = 0; i < 60; ++i) truth.push_back({i / 30.0, handmade_pose(i, 0.0)});
+  view.ground_truth = std::move(truth);
+  std::vector<SavedKeyframe> keyframes;
+  for (int i = 0; i < 40; i += 9) keyframes.push_back({i / 9, i, {i / 30.0, handmade_pose(i, 0.01)}});
+  view.keyframes = std::move(keyframes);
+  std::vector<SavedPoint> points;
   for (int i = 0; i < 400; ++i)
-    view.map_points.push_back(
-        {i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+    points.push_back({i, {0.05 * (i % 20) - 0.5, 0.05 * (i / 20 % 20) - 0.5, i % 3 == 0 ? 0.0 : 0.8}, 3});
+  view.map_points = std::move(points);
   auto other = std::make_shared<FrameView>();
   other->index = 22;
   other->frame = handmade_frame(22);
-  other->record = &run->records[22];
+  other->record = &run->records.edit(22);
   view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
   view.debug.other = std::move(other);
   SweepView sweep{.range = {"paper.border_px", 1, 9, 5},
@@ -349,7 +354,8 @@ GhostView handmade_ghost(const SessionView& session, const std::string& name, in
   ghost.config.of<PaperConfig>().border_px = 7;
   auto run = handmade_run("stillpoint", millimetres);
   run->records = session.run->records;
-  for (FrameRecord& record : run->records) {
+  for (std::size_t i = 0; i < run->records.size(); ++i) {
+    FrameRecord& record = run->records.edit(i);
     if (record.index < parts) continue;
     record.world_from_camera.translation().z() += 0.002 * (record.index - parts + 1);
     record.inliers -= 40;
@@ -358,7 +364,7 @@ GhostView handmade_ghost(const SessionView& session, const std::string& name, in
   auto current = std::make_shared<FrameView>(*session.current);
   current->mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(0));
   cv::circle(current->mask, {220, 120}, 40, 255, cv::FILLED);
-  current->record = &run->records[static_cast<std::size_t>(current->index)];
+  current->record = &run->records.edit(static_cast<std::size_t>(current->index));
   ghost.current = current;
   ghost.diverged = parts;
   ghost.run = run;
@@ -415,7 +421,7 @@ SessionView long_example(int frames, int worst) {
     run->records.push_back(record);
   }
   auto current = std::make_shared<FrameView>(*view.current);
-  current->record = &run->records[24];
+  current->record = &run->records.edit(24);
   view.current = current;
   view.run = run;
   view.baseline = nullptr;

@@ -103,7 +103,8 @@ TEST(MotionMethods, AMinimalOneRunsAndIsInspectedAsAnyOther) {
   EXPECT_EQ(stages_of(*view).front().id, "mask");
   // Its state is had again from a checkpoint: the same mask to the bit.
   MotionReplay replay = later.track().motion_before(5, [&](int i) { return source->read(i); });
-  const MotionAgain again = replay.repeat(source->read(5), &run.records[5]);
+  const FrameRecord record = run.records[5];
+  const MotionAgain again = replay.repeat(source->read(5), &record);
   EXPECT_EQ(cv::norm(again.mask, view->mask, cv::NORM_INF), 0.0);
 }
 

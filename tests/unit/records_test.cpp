@@ -93,7 +93,7 @@ TEST_F(Records, GiveBackEverythingToTheLastBit) {
   EXPECT_EQ(recorded.hash, run_hash(run_.records));
   ASSERT_EQ(recorded.run.records.size(), run_.records.size());
   for (std::size_t i = 0; i < run_.records.size(); ++i) {
-    const FrameRecord back = recorded.record(i), &record = run_.records[i];
+    const FrameRecord back = recorded.record(i), record = run_.records[i];
     EXPECT_TRUE(recorded.run.records[i].features.empty());
     EXPECT_EQ(back.timestamp, record.timestamp);
     EXPECT_EQ(back.note, record.note);
@@ -189,13 +189,13 @@ TEST_F(Records, OfFramesThatDoNotFollowEachOtherAreRefused) {
 TEST_F(Records, ARunSaysWhereItsSequenceWentAway) {
   RunResult run;
   run.records.resize(3);
-  for (int i = 0; i < 3; ++i) run.records[static_cast<std::size_t>(i)].index = i;
-  run.records[0].status = FrameStatus::tracked;
-  run.records[1].status = run.records[2].status = FrameStatus::unreadable;
+  for (int i = 0; i < 3; ++i) run.records.edit(static_cast<std::size_t>(i)).index = i;
+  run.records.edit(0).status = FrameStatus::tracked;
+  run.records.edit(1).status = run.records.edit(2).status = FrameStatus::unreadable;
   EXPECT_EQ(why_gone(sequence_.path(), run), "");
   EXPECT_EQ(why_gone("generated:room", run), "");
   EXPECT_THAT(why_gone(out_.path("gone"), run), HasSubstr("2 of 3 frames could not be read"));
-  run.records[1].status = run.records[2].status = FrameStatus::tracked;
+  run.records.edit(1).status = run.records.edit(2).status = FrameStatus::tracked;
   EXPECT_EQ(why_gone(out_.path("gone"), run), "");
 }
 

@@ -51,7 +51,7 @@ class LookingBack : public ::testing::Test {
 
   /// The frame's pose as it is after looking back, against the truth; m.
   [[nodiscard]] double error() const {
-    return moved_between(smoother_.revised().at(kFrame).camera_from_reference, camera_from_world_);
+    return moved_between(smoother_.revised().of(kFrame).value().camera_from_reference, camera_from_world_);
   }
 
   LocalMap map_;
@@ -68,7 +68,7 @@ TEST_F(LookingBack, WhatWasFoundToMoveHasNoPartInThePose) {
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
   smoother_.advance(kFrame, map_, kSmootherCamera, {});
   EXPECT_LT(error(), 1e-5);
-  EXPECT_EQ(smoother_.revised().at(kFrame).reference_keyframe, first_.reference_keyframe);
+  EXPECT_EQ(smoother_.revised().of(kFrame).value().reference_keyframe, first_.reference_keyframe);
 }
 
 TEST_F(LookingBack, PosesFollowThePointsTheyWereSolvedBy) {
@@ -83,11 +83,11 @@ TEST_F(LookingBack, IsDoneOnceAndNotBeforeItsTime) {
   EXPECT_TRUE(smoother_.revised().empty());
   EXPECT_EQ(smoother_.pending(), 1U);
   smoother_.advance(kFrame, map_, kSmootherCamera, {});
-  const Pose once = smoother_.revised().at(kFrame).camera_from_reference;
+  const Pose once = smoother_.revised().of(kFrame).value().camera_from_reference;
   EXPECT_EQ(smoother_.pending(), 0U);
   for (int i = kRoom; i < kRoom + kMover; ++i) map_.remove_moving_point(points_[static_cast<std::size_t>(i)]);
   smoother_.advance(kFrame + 100, map_, kSmootherCamera, {});
-  EXPECT_EQ(smoother_.revised().at(kFrame).camera_from_reference.matrix(), once.matrix());
+  EXPECT_EQ(smoother_.revised().of(kFrame).value().camera_from_reference.matrix(), once.matrix());
 }
 
 TEST_F(LookingBack, WithTooFewPointsLeftThePoseStaysAsItWas) {

@@ -82,8 +82,11 @@ class ComparePanel final : public NamedPanel {
                             .current = session.debug.preview,
                             .diverged = {}};
     difference_ = {};
-    if (session.current->record != nullptr && preview.current->record != nullptr)
-      difference_ = difference_of({{*session.current->record}}, 0, {{*preview.current->record}}, 0);
+    if (session.current->record != nullptr && preview.current->record != nullptr) {
+      const FrameRecords run(std::vector{*session.current->record}),
+          previewed(std::vector{*preview.current->record});
+      difference_ = difference_of({run}, 0, {previewed}, 0);
+    }
     draw_frame_shown(frame, session, preview, actions);
   }
 

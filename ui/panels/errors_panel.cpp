@@ -23,7 +23,7 @@ class ErrorsPanel final : public NamedPanel {
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
     if (session.run->evaluation.matched.empty()) {
-      draw_absent(frame, session.ground_truth.empty()
+      draw_absent(frame, session.ground_truth->empty()
                              ? "This sequence has no ground truth to measure errors against."
                              : "No frame with a pose lies near a ground-truth pose yet.");
       return;

@@ -129,7 +129,7 @@ class FeaturePanel final : public FramePanel {
     const bool same = !told_.owner_before(session.current) && !session.current.owner_before(told_);
     if (same && explanation_.index == index) return;
     const FrameView& view = *session.current;
-    explanation_ = explain_feature(view, *session.run, session.camera, session.map_points, index);
+    explanation_ = explain_feature(view, *session.run, session.camera, *session.map_points, index);
     told_ = session.current;
     const cv::Size size = view.frame.gray.size();
     view_.zoom = std::max(1.0, size.width / kShownPx);

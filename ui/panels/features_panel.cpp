@@ -112,7 +112,7 @@ class FeaturesPanel final : public FramePanel {
     if (!index) return;
     if (hovered_ != *index || !same_view(session.current)) {
       explanation_ =
-          explain_feature(*session.current, *session.run, session.camera, session.map_points, *index);
+          explain_feature(*session.current, *session.run, session.camera, *session.map_points, *index);
       hovered_ = *index;
       hovered_in_ = session.current;
     }

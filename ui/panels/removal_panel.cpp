@@ -50,7 +50,7 @@ class RemovalPanel final : public NamedPanel {
 
   /// Why there is nothing to see, and the way to it where there is one.
   static void draw_unchecked(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
-    if (session.ground_truth.empty()) {
+    if (session.ground_truth->empty()) {
       draw_absent(frame, "Without ground truth nobody can tell whether removal helped.");
     } else if (session.config.run.check_removal != 0) {
       draw_absent(frame, "No frame has been solved with and without removal yet.");

@@ -19,7 +19,7 @@ constexpr const char* kDash = "–";  // as shown_value has it
 FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const MeasuredFrames& ghost,
                               std::size_t ghost_row) {
   constexpr double kDegrees = 180.0 / 3.14159265358979;  // degrees a radian
-  const FrameRecord &here = run.records[row], &there = ghost.records[ghost_row];
+  const FrameRecord here = run.records[row], there = ghost.records[ghost_row];
   FrameDifference difference;
   const Pose run_from_ghost = here.world_from_camera.inverse() * there.world_from_camera;
   difference.translation_m = run_from_ghost.translation().norm();

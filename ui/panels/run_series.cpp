@@ -49,16 +49,17 @@ std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
   const auto& records = session.run->records;
   const double start = series_start(session);
   std::vector<PlotBand> bands;
-  for (std::size_t i = 0; i < records.size();) {
-    if (!is_lost(records[i])) {
-      ++i;
-      continue;
+  std::optional<double> from;
+  for (const FrameRecord& record : records) {
+    const double here = record.timestamp - start;
+    if (is_lost(record)) {
+      if (!from) from = here;
+    } else if (from) {
+      bands.push_back({{*from, here}, colour});
+      from.reset();
     }
-    const double from = records[i].timestamp - start;
-    while (i < records.size() && is_lost(records[i])) ++i;
-    const double to = (i < records.size() ? records[i] : records.back()).timestamp - start;
-    bands.push_back({{from, to}, colour});
   }
+  if (from) bands.push_back({{*from, records.back().timestamp - start}, colour});
   return bands;
 }
 

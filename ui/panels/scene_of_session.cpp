@@ -34,7 +34,7 @@ ScenePath truth_path(const SessionView& session) {
   if (session.run->records.empty()) return path;
   const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
   double before = -1.0;
-  for (const StampedPose& pose : session.ground_truth) {
+  for (const StampedPose& pose : *session.ground_truth) {
     if (pose.timestamp < from - 0.05 || pose.timestamp > to + 0.05) continue;
     if (before >= 0.0 && pose.timestamp - before > kTruthBreak) path.positions.push_back(broken());
     path.positions.push_back(pose.world_from_camera.translation().cast<float>());
@@ -50,16 +50,16 @@ void add_run(const SessionView& session, const RunView& run, const Pose& world_f
   const double start = series_start(session);
   std::size_t error = 0;
   const auto& errors = run.evaluation.ate.errors;
-  const FrameRecord* before = nullptr;
+  std::optional<PathFrame> before;
   for (const FrameRecord& record : run.records) {
     if (!record.estimated) continue;
-    if (before != nullptr && record.index != before->index + 1) {
+    if (before && record.index != before->index + 1) {
       path.positions.push_back(broken());
-      frames.push_back({before->index, before->timestamp - start, {}});
+      frames.push_back(*before);
     }
-    before = &record;
+    before = PathFrame{record.index, record.timestamp - start, {}};
     path.positions.push_back((world_from_estimate * record.world_from_camera.translation()).cast<float>());
-    PathFrame frame{record.index, record.timestamp - start, {}};
+    PathFrame frame = *before;
     while (error < errors.size() && errors[error].timestamp < record.timestamp - 1e-6) ++error;
     if (error < errors.size() && std::abs(errors[error].timestamp - record.timestamp) < 1e-6)
       frame.error_m = errors[error].translation_m;
@@ -198,10 +198,10 @@ SessionScene scene_of_session(const SessionView& session, const SceneLayers& lay
           scene);
   if (layers.errors && aligned) add_errors(run.evaluation, world, data);
   if (layers.keyframes)
-    for (const SavedKeyframe& keyframe : session.keyframes)
+    for (const SavedKeyframe& keyframe : *session.keyframes)
       data.keyframes.push_back(world * keyframe.pose.world_from_camera);
   if (layers.points)
-    for (const SavedPoint& point : session.map_points)
+    for (const SavedPoint& point : *session.map_points)
       data.points.push_back({(world * point.position).cast<float>(), point.moved});
   const FrameRecord* record = session.current->record;
   if (record != nullptr && record->estimated) {

@@ -57,7 +57,7 @@ struct GhostTimes {
   std::vector<double> index, total;
   std::array<Figures, kStages.size()> figures;
   Figures whole;
-  std::vector<FrameRecord>::size_type records = 0;
+  std::size_t records = 0;
   const RunView* run = nullptr;
 };
 

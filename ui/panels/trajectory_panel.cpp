@@ -236,7 +236,7 @@ class TrajectoryPanel final : public NamedPanel {
     const auto& evaluation = session.run->evaluation;
     if (evaluation.matched.empty()) {
       return fmt::format("{} pose{} in the world of the first camera{}.", poses, poses == 1 ? "" : "s",
-                         session.ground_truth.empty() ? "; there is no ground truth" : "");
+                         session.ground_truth->empty() ? "; there is no ground truth" : "");
     }
     const double degrees =
         rotation_angle(session.alignment.truth_from_estimate.linear()) * 180.0 / 3.14159265358979;

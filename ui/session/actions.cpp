@@ -20,9 +20,10 @@ bool is_function_key(Key key) { return key >= Key::kF1 && key <= Key::kF12; }
 template <typename Wanted>
 std::optional<int> next_frame(const SessionView& session, Wanted wanted) {
   const auto& records = session.run->records;
-  for (auto i = static_cast<std::size_t>(session.current->index) + 1; i < records.size(); ++i)
-    if (wanted(records[i])) return static_cast<int>(i);
-  return std::nullopt;
+  const auto last = std::min(static_cast<std::ptrdiff_t>(session.current->index) + 1,
+                             static_cast<std::ptrdiff_t>(records.size()));
+  const auto found = std::find_if(records.begin() + last, records.end(), wanted);
+  return found == records.end() ? std::nullopt : std::optional(static_cast<int>(found - records.begin()));
 }
 
 }  // namespace
@@ -114,8 +115,10 @@ std::optional<int> next_keyframe(const SessionView& session) {
 
 std::optional<int> previous_keyframe(const SessionView& session) {
   const auto& records = session.run->records;
-  for (int i = std::min(session.current->index, static_cast<int>(records.size())) - 1; i >= 0; --i)
-    if (records[static_cast<std::size_t>(i)].keyframe) return i;
+  auto at = records.begin() + std::min(static_cast<std::ptrdiff_t>(session.current->index),
+                                       static_cast<std::ptrdiff_t>(records.size()));
+  while (at != records.begin())
+    if ((--at)->keyframe) return static_cast<int>(at - records.begin());
   return std::nullopt;
 }
 

@@ -240,7 +240,7 @@ void Session::publish() {
   view->baseline = baseline_view_;
   if (baseline_) view->baseline_config = baseline_->track().config();
   view->baseline_frame = baseline_frame_;
-  view->ground_truth = source_->ground_truth();
+  view->ground_truth = std::shared_ptr<const Trajectory>(source_, &source_->ground_truth());
   view->alignment = run_view_->evaluation.ate.alignment;
   view->debug = debug_view();
   view->revision = revision_;

@@ -8,15 +8,14 @@
 #include "core/evaluation/alignment.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/trajectory.hpp"
+#include "core/run/saved_map.hpp"
+#include "core/shared_value.hpp"
 #include "ui/session/debug_view.hpp"
 
 namespace stillpoint {
 
-struct SavedKeyframe;
-struct SavedPoint;
-
 /// What panels draw: a snapshot of the session, plain data, made by the session once a frame of the interface
-/// at most.
+/// at most. What grows with a sequence is shared by the snapshots, not copied.
 struct SessionView {
   std::string title;  ///< the sequence's name
   Camera camera;
@@ -32,12 +31,12 @@ struct SessionView {
   std::shared_ptr<const RunView> baseline;   ///< null where none is run
   Config baseline_config;                    ///< … what it is run with
   BesideFrame baseline_frame;                ///< … and its frame, where its pictures are wanted
-  Trajectory ground_truth;                   ///< empty where there is none
+  SharedValue<Trajectory> ground_truth;      ///< empty where there is none
   Alignment alignment;  ///< truth_from_estimate over the poses so far, stated in the trajectory panel
-  std::vector<SavedKeyframe> keyframes;
-  std::vector<SavedPoint> map_points;  ///< and after them those that left the map because they moved
-  DebugView debug;                     ///< bookmarks, breakpoints, ghost runs, …
-  std::uint64_t revision = 0;          ///< grows when run, keyframes or points change: what caches go by
+  SharedValue<std::vector<SavedKeyframe>> keyframes;
+  SharedValue<std::vector<SavedPoint>> map_points;  ///< then those that left the map because they moved
+  DebugView debug;                                  ///< bookmarks, breakpoints, ghost runs, …
+  std::uint64_t revision = 0;  ///< grows when run, keyframes or points change: what caches go by
 };
 
 /// Whether the sliders' config, not the run's, made the motion stages that are shown.

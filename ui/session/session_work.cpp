@@ -170,7 +170,7 @@ void Session::preview_step() {
 void Session::update_breakpoints() {
   if (!breakpoints_due_ || breakpoints_.empty()) return;
   const auto run = run_->run_view();
-  breakpoints_.update(FrameFigures(run->measured()));
+  breakpoints_.update(FrameFigures(run->measured(), breakpoints_.figures()));
   breakpoints_due_ = false;
 }
 

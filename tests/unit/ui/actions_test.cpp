@@ -94,8 +94,8 @@ SessionView session_at(int index, const std::vector<int>& keyframes, const std::
     record.status = FrameStatus::tracked;
     run->records.push_back(record);
   }
-  for (const int i : keyframes) run->records[static_cast<std::size_t>(i)].keyframe = true;
-  for (const int i : lost) run->records[static_cast<std::size_t>(i)].status = FrameStatus::lost;
+  for (const int i : keyframes) run->records.edit(static_cast<std::size_t>(i)).keyframe = true;
+  for (const int i : lost) run->records.edit(static_cast<std::size_t>(i)).status = FrameStatus::lost;
   auto current = std::make_shared<FrameView>();
   current->index = index;
   SessionView session;

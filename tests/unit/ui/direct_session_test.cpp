@@ -31,7 +31,7 @@ TEST_F(DirectSession, EqualsABatchRunWhicheverWayOneGoes) {
     const int wanted = static_cast<int>(random() % static_cast<unsigned>(source_->size()));
     session.go_to(wanted);
     ASSERT_NE(session.view()->current->record, nullptr);
-    EXPECT_EQ(run_hash({*session.view()->current->record}), run_hash({session.record(wanted)}));
+    EXPECT_TRUE(computed_alike(*session.view()->current->record, session.record(wanted)));
   }
   session.go_to(source_->size() - 1);
   std::vector<FrameRecord> records;

@@ -50,7 +50,7 @@ struct InspectScene {
   InspectScene(const InspectScene&) = delete;
   InspectScene& operator=(const InspectScene&) = delete;
 
-  FrameRecord& record() { return run.records.back(); }
+  FrameRecord& record() { return run.records.edit(run.records.size() - 1); }
 
   int add_feature(cv::Point2f pixel, FeatureFate fate, int map_point = kNone, float residual_px = 0.0F) {
     record().features.push_back(
@@ -82,7 +82,7 @@ struct InspectScene {
     session.processed = 6;
     session.run = std::make_shared<RunView>(run);
     auto current = std::make_shared<FrameView>(view);
-    current->record = &session.run->records.back();
+    current->record = &*std::prev(session.run->records.end());
     session.current = current;
     return session;
   }

@@ -62,7 +62,7 @@ TEST_P(RecordedSession, HasPicturesOfItsBaselineAsFarAsThatWent) {
     live.go_to(index);
     const auto shown = session.view()->baseline_frame.current;
     ASSERT_NE(shown, nullptr);
-    EXPECT_EQ(run_hash({*shown->record}), run_hash({*live.view()->current->record}));
+    EXPECT_EQ(run_hash(std::vector{*shown->record}), run_hash(std::vector{*live.view()->current->record}));
     EXPECT_FALSE(shown->record->features.empty());
   }
   EXPECT_EQ(session.view()->baseline_config.run.method, "none");
@@ -82,7 +82,7 @@ TEST_P(RecordedSession, ShowsEveryFrameAtOnceAsItWas) {
     live.go_to(index);
     const FrameView &opened = *session.view()->current, &ran = *live.view()->current;
     ASSERT_NE(opened.record, nullptr);
-    EXPECT_EQ(run_hash({*opened.record}), run_hash({*ran.record}));
+    EXPECT_EQ(run_hash(std::vector{*opened.record}), run_hash(std::vector{*ran.record}));
     EXPECT_EQ(opened.record->features.size(), ran.record->features.size());
     ASSERT_EQ(opened.mask.size(), ran.mask.size()) << index;
     if (!ran.mask.empty()) {
@@ -90,8 +90,8 @@ TEST_P(RecordedSession, ShowsEveryFrameAtOnceAsItWas) {
     }
   }
   const auto view = session.view(), expected = live.view();
-  EXPECT_EQ(view->keyframes.size(), expected->keyframes.size());
-  EXPECT_EQ(view->map_points.size(), expected->map_points.size());
+  EXPECT_EQ(view->keyframes->size(), expected->keyframes->size());
+  EXPECT_EQ(view->map_points->size(), expected->map_points->size());
   ASSERT_EQ(view->run->trajectory.size(), expected->run->trajectory.size());
   EXPECT_EQ(view->run->evaluation.ate.translation_m.rmse, expected->run->evaluation.ate.translation_m.rmse);
 }

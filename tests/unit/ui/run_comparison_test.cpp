@@ -61,7 +61,7 @@ TEST(RunDifference, PosesAndFiguresAreCompared) {
   run.world_from_camera.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
   ghost.world_from_camera.translation() = Eigen::Vector3d(1.0, 2.03, 3.04);
   ghost.world_from_camera.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const FrameDifference difference = difference_of({{run}}, 0, {{ghost}}, 0);
+  const FrameDifference difference = difference_of({std::vector{run}}, 0, {std::vector{ghost}}, 0);
   EXPECT_NEAR(difference.translation_m, 0.05, 1e-12);
   EXPECT_NEAR(difference.rotation_deg, 0.1 * 180.0 / 3.14159265358979, 1e-9);
   for (const FigurePair& pair : difference.figures)
@@ -74,7 +74,7 @@ TEST(RunDifference, ADashStandsForWhatOnlyOneOfThemKnows) {
   ghost.measured = poses_alone();
   ghost.status = FrameStatus::tracked;
   const auto shown = [&](const FrameRecord& a, const FrameRecord& b, const std::string& name) {
-    for (const FigurePair& pair : difference_of({{a}}, 0, {{b}}, 0).figures)
+    for (const FigurePair& pair : difference_of({std::vector{a}}, 0, {std::vector{b}}, 0).figures)
       if (pair.name == name) return pair.run + " " + pair.ghost;
     return std::string("is not told");
   };
@@ -82,7 +82,7 @@ TEST(RunDifference, ADashStandsForWhatOnlyOneOfThemKnows) {
   EXPECT_EQ(shown(run, ghost, "Mask"), "0.00 % –");
   EXPECT_EQ(shown(run, ghost, "Keyframe"), "yes –");
   EXPECT_EQ(shown(run, ghost, "Map points"), "0 –");
-  for (const FigurePair& pair : difference_of({{run}}, 0, {{ghost}}, 0).figures)
+  for (const FigurePair& pair : difference_of({std::vector{run}}, 0, {std::vector{ghost}}, 0).figures)
     EXPECT_EQ(pair.differs, pair.name == "Status") << pair.name;
   // What neither knows is no row.
   for (const char* name : {"Inliers", "Mask", "Keyframe", "Map points"})

@@ -135,7 +135,7 @@ TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   ASSERT_NE(debug(*s).other, nullptr);
   EXPECT_EQ(debug(*s).other->index, 4);
   ASSERT_NE(debug(*s).other->record, nullptr);
-  EXPECT_EQ(run_hash({*debug(*s).other->record}), run_hash({s->record(4)}));
+  EXPECT_EQ(run_hash(std::vector{*debug(*s).other->record}), run_hash(std::vector{s->record(4)}));
   EXPECT_TRUE(debug(*s).other->frame.readable());
   s->request(request::StandBeside{OtherFrame::kept, 2});
   ASSERT_NE(debug(*s).other, nullptr);
@@ -149,9 +149,9 @@ TEST_F(SessionDebug, AnotherFrameStandsBesideTheOneShown) {
   const int reference = s->view()->current->record->reference_keyframe;
   ASSERT_NE(debug(*s).other, nullptr);
   const auto keyframes = s->view()->keyframes;
-  const auto keyframe = std::find_if(keyframes.begin(), keyframes.end(),
+  const auto keyframe = std::find_if(keyframes->begin(), keyframes->end(),
                                      [reference](const SavedKeyframe& one) { return one.id == reference; });
-  ASSERT_NE(keyframe, keyframes.end());
+  ASSERT_NE(keyframe, keyframes->end());
   EXPECT_EQ(debug(*s).other->index, keyframe->frame_index);
   s->request(request::StandBeside{OtherFrame::kept});  // what was kept is kept
   EXPECT_EQ(debug(*s).other->index, 2);
@@ -173,8 +173,8 @@ TEST_F(SessionDebug, EveryRunHasItsOwnSecondFrame) {
       ASSERT_NE(other, nullptr);
       EXPECT_EQ(other->index, frame);
     }
-    EXPECT_NE(run_hash({*others()[0]->record}), run_hash({*others()[1]->record}));
-    EXPECT_EQ(run_hash({*others()[1]->record}), run_hash({*others()[2]->record}));
+    EXPECT_NE(run_hash(std::vector{*others()[0]->record}), run_hash(std::vector{*others()[1]->record}));
+    EXPECT_EQ(run_hash(std::vector{*others()[1]->record}), run_hash(std::vector{*others()[2]->record}));
   };
   expect_all_at(8);
   s->request(request::StandBeside{OtherFrame::kept, 4});

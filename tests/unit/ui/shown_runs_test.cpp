@@ -84,9 +84,8 @@ TEST(ShownRuns, AnOutsideRunMayLackPicturesOfAFrameAlone) {
   SessionView view = session_of_runs();
   auto run = std::make_shared<RunView>();
   run->records.resize(4);
-  run->records[2].measured.mask = true;
-  for (FrameRecord& record : run->records) record.measured = poses_alone();
-  run->records[2].measured.mask = true;
+  for (std::size_t i = 0; i < 4; ++i) run->records.edit(i).measured = poses_alone();
+  run->records.edit(2).measured.mask = true;
   view.debug.ghosts[2].run = run;
   const ListedRun listed = listed_runs(view)[4];
   EXPECT_EQ(listed.no_pictures, "orb3 left neither mask nor features of frame 3.");
