@@ -165,11 +165,10 @@ std::string image_gaps(const RunResult& run) {
 
 /// Which frames were read and have no pose, and why.
 std::string pose_gaps(const RunResult& run) {
-  static const std::string untold = "lost";
   std::vector<Lacking> lacking;
   for (const FrameRecord& record : run.records)
     if (!record.estimated && record.status != FrameStatus::unreadable)
-      lacking.push_back({record.index, record.note.empty() ? &untold : &record.note});
+      lacking.push_back({record.index, record.note.empty() ? "lost" : record.note});
   return gaps_text(run, lacking);
 }
 
