@@ -151,7 +151,7 @@ class ChunkedList {
       return (*chunk_)[at_ % kChunk];
     }
     pointer operator->() const { return &**this; }
-    reference operator[](difference_type by) const { return *(*this + by); }
+    value_type operator[](difference_type by) const { return *(*this + by); }
     const_iterator& operator+=(difference_type by) {
       at_ = static_cast<std::size_t>(static_cast<difference_type>(at_) + by);
       return *this;
