@@ -1,63 +1,38 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "core/byte_store.hpp"
-
 namespace stillpoint {
 
-/// Puts the chunks of a ChunkedList by, so that they take no memory, and has them again: those asked for last
-/// are at hand.
+class StoredBytes;
+
+/// Puts the chunks of a ChunkedList by, so that they take no memory, and has them again.
 template <typename T>
 class ChunkKeeper {
  public:
   using Chunk = std::vector<T>;
   /// A chunk that is put by.
   struct Kept {
-    StoredBytes bytes;
-    std::weak_ptr<const Chunk> lately{};  // guarded by the keeper's mutex
+    std::shared_ptr<const StoredBytes> bytes{};
+    std::weak_ptr<const Chunk> lately{};  // the keeper's own, from one thread at a time
   };
 
-  explicit ChunkKeeper(std::shared_ptr<ByteStore> store) : store_(std::move(store)) {}
+  ChunkKeeper() = default;
   ChunkKeeper(const ChunkKeeper&) = delete;
   ChunkKeeper& operator=(const ChunkKeeper&) = delete;
   virtual ~ChunkKeeper() = default;
 
-  [[nodiscard]] Kept put(const Chunk& chunk) {
-    const std::vector<std::uint8_t> bytes = pack(chunk);
-    return {store_->put(bytes.data(), bytes.size())};
-  }
+  [[nodiscard]] virtual Kept put(const Chunk& chunk) = 0;
   /// From any thread. @throws InputError when the disk does not give it back
-  [[nodiscard]] std::shared_ptr<const Chunk> get(Kept& kept) {
-    const std::lock_guard lock(mutex_);
-    if (std::shared_ptr<const Chunk> there = kept.lately.lock()) return there;
-    std::vector<std::uint8_t> bytes(kept.bytes.size());
-    kept.bytes.read(bytes.data());
-    auto chunk = std::make_shared<const Chunk>(unpack(bytes));
-    kept.lately = chunk;
-    at_hand_[next_] = chunk;
-    next_ = (next_ + 1) % at_hand_.size();
-    return chunk;
-  }
-
- private:
-  [[nodiscard]] virtual std::vector<std::uint8_t> pack(const Chunk& chunk) const = 0;
-  [[nodiscard]] virtual Chunk unpack(const std::vector<std::uint8_t>& bytes) const = 0;
-
-  std::shared_ptr<ByteStore> store_;
-  std::mutex mutex_;  // guards what follows
-  std::array<std::shared_ptr<const Chunk>, 4>
-      at_hand_;  // one that is walked, its neighbour, and another walk's
-  std::size_t next_ = 0;
+  [[nodiscard]] virtual std::shared_ptr<const Chunk> get(Kept& kept) = 0;
+  /// What it takes after all, where there was no room elsewhere.
+  [[nodiscard]] virtual std::size_t bytes_in_memory(const Kept& kept) const = 0;
 };
 
 /// A list that grows at its end, in chunks that do not change once they are full, so that copies share them:
@@ -185,7 +160,8 @@ class ChunkedList {
   [[nodiscard]] std::size_t held_bytes() const {
     std::size_t bytes = sizeof(*this) + full_.capacity() * sizeof(full_[0]) + last_.capacity() * sizeof(T);
     for (const auto& full : full_) {
-      bytes += sizeof(Full) + full->kept.bytes.bytes_in_memory();
+      bytes += sizeof(Full);
+      if (full->kept.bytes) bytes += keeper_->bytes_in_memory(full->kept);
       if (full->here) bytes += sizeof(Chunk) + full->here->capacity() * sizeof(T);
     }
     return bytes;

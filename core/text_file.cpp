@@ -155,7 +155,7 @@ std::optional<double> parse_comma_number(std::string_view text) {
 }
 
 bool is_stamp(double number) {
-  constexpr double kMost = 1e19;
+  constexpr double kMost = 1e19;    // ns as well stay below it until the year 2286
   return std::abs(number) < kMost;  // and so no NaN
 }
 

@@ -27,7 +27,7 @@ cv::Mat described_by_opencv(const cv::Mat& level, std::vector<cv::KeyPoint> corn
 
 #if defined(__x86_64__)
 
-constexpr std::size_t kTests = 256;
+constexpr std::size_t kTests = 256;  // bits of a descriptor, one a test (Rublee et al. 2011)
 
 /// The two pixels each test of a descriptor compares, px from the corner: its bit is 1 where the first is
 /// darker than the second.
@@ -51,6 +51,7 @@ constexpr int kBlurReach = 3;  // px from where it is that a line is seen
 /// @param bright on black; otherwise dark on white. Either way the line is the stronger, the further right or
 /// down, so that a test whose pixels lie side by side along the line tells them apart.
 std::array<Span, kTests> lines_seen(bool upright, bool bright) {
+  // px: what any test may see of a line, and room for a corner on either side of it
   constexpr int kFar = kOrbPatchRadius + kBlurReach, kMiddle = kFar + kOrbBorder, kSide = 2 * kMiddle + 1;
   constexpr int kWhite = 250, kFaintest = 20, kByPixel = 5;  // grey levels that survive blurring
   cv::Mat image(kSide, kSide, CV_8UC1, cv::Scalar(bright ? 0 : kWhite));
@@ -114,7 +115,7 @@ STILLPOINT_AVX2 inline void turn_eight(const OrbTests::Pixels& pixels, std::size
 
 STILLPOINT_AVX2 Descriptor describe(const std::uint8_t* corner, int step, const Turn& turn,
                                     const OrbTests& tests) {
-  constexpr std::size_t kWord = 64, kGroup = 8;
+  constexpr std::size_t kWord = 64, kGroup = 8;  // tests: bits of a word of Descriptor, floats of a register
   alignas(32) std::array<int, kWord> first, second;
   Descriptor descriptor{};
   for (std::size_t word = 0; word < descriptor.size(); ++word) {

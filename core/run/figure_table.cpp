@@ -5,6 +5,7 @@
 
 #include "core/geometry/normal_equations.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
 namespace {

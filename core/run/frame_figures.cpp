@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/run/figure_table.hpp"
+#include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
 namespace {

@@ -1,8 +1,12 @@
 #include "core/run/frame_records.hpp"
 
+#include <array>
 #include <cstring>
+#include <mutex>
 #include <type_traits>
 
+#include "core/byte_store.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/record_codec.hpp"
 
 namespace stillpoint {
@@ -22,9 +26,48 @@ void transfer_the_rest(Archive& archive, Record& r) {
     for (int column = 0; column < row; ++column) archive(r.pose_covariance(row, column));
 }
 
-class RecordKeeper final : public ChunkKeeper<FrameRecord> {
+/// Chunks in a store: those asked for last are at hand.
+template <typename T>
+class StoredChunks : public ChunkKeeper<T> {
  public:
-  using ChunkKeeper::ChunkKeeper;
+  using Chunk = typename ChunkKeeper<T>::Chunk;
+  using Kept = typename ChunkKeeper<T>::Kept;
+
+  explicit StoredChunks(std::shared_ptr<ByteStore> store) : store_(std::move(store)) {}
+
+  [[nodiscard]] Kept put(const Chunk& chunk) override {
+    const std::vector<std::uint8_t> bytes = pack(chunk);
+    return {std::make_shared<const StoredBytes>(store_->put(bytes.data(), bytes.size()))};
+  }
+  [[nodiscard]] std::shared_ptr<const Chunk> get(Kept& kept) override {
+    const std::lock_guard lock(mutex_);
+    if (std::shared_ptr<const Chunk> there = kept.lately.lock()) return there;
+    std::vector<std::uint8_t> bytes(kept.bytes->size());
+    kept.bytes->read(bytes.data());
+    auto chunk = std::make_shared<const Chunk>(unpack(bytes));
+    kept.lately = chunk;
+    at_hand_[next_] = chunk;
+    next_ = (next_ + 1) % at_hand_.size();
+    return chunk;
+  }
+  [[nodiscard]] std::size_t bytes_in_memory(const Kept& kept) const override {
+    return sizeof(StoredBytes) + kept.bytes->bytes_in_memory();
+  }
+
+ private:
+  [[nodiscard]] virtual std::vector<std::uint8_t> pack(const Chunk& chunk) const = 0;
+  [[nodiscard]] virtual Chunk unpack(const std::vector<std::uint8_t>& bytes) const = 0;
+
+  std::shared_ptr<ByteStore> store_;
+  std::mutex mutex_;  // guards what follows
+  // One that is walked, its neighbour, and another walk's.
+  std::array<std::shared_ptr<const Chunk>, 4> at_hand_;
+  std::size_t next_ = 0;
+};
+
+class RecordKeeper final : public StoredChunks<FrameRecord> {
+ public:
+  using StoredChunks::StoredChunks;
 
  private:
   [[nodiscard]] std::vector<std::uint8_t> pack(const Chunk& chunk) const override {
@@ -44,9 +87,9 @@ class RecordKeeper final : public ChunkKeeper<FrameRecord> {
   }
 };
 
-class ScoreKeeper final : public ChunkKeeper<FrameScores> {
+class ScoreKeeper final : public StoredChunks<FrameScores> {
  public:
-  using ChunkKeeper::ChunkKeeper;
+  using StoredChunks::StoredChunks;
 
  private:
   static_assert(std::is_trivially_copyable_v<FrameScores>);

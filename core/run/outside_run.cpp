@@ -15,6 +15,7 @@
 #include "core/motion/methods.hpp"
 #include "core/odometry/frame_result.hpp"
 #include "core/run/estimate_file.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
 #include "core/sequence/association.hpp"

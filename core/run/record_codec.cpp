@@ -4,6 +4,8 @@
 #include <cstring>
 #include <span>
 
+#include "core/run/frame_scores.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -15,6 +15,8 @@
 
 namespace stillpoint {
 
+struct FrameResult;
+
 // `records.bin`: what each frame of a run left behind, features and mask included, so that the run can be
 // looked at again without being run again.
 //

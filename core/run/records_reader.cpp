@@ -6,6 +6,7 @@
 
 #include "core/json_text.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/outside_run.hpp"
 #include "core/run/records_file.hpp"
 #include "core/run/run_report.hpp"

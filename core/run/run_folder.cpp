@@ -12,6 +12,7 @@
 #include "core/odometry/engines.hpp"
 #include "core/out_folder.hpp"
 #include "core/run/frame_figures.hpp"
+#include "core/run/frame_scores.hpp"
 #include "core/run/map_ply.hpp"
 
 namespace stillpoint {

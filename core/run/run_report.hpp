@@ -7,6 +7,7 @@
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/run/frame_records.hpp"
+#include "core/run/frame_scores.hpp"
 
 namespace stillpoint {
 

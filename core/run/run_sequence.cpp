@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/byte_store.hpp"
 #include "core/median.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/frame_result.hpp"

@@ -8,6 +8,7 @@
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"

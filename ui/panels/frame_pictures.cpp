@@ -9,6 +9,7 @@
 
 #include "core/inspect/frame_view.hpp"
 #include "core/motion/methods.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/shown_runs.hpp"

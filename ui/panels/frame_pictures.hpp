@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "core/geometry/pixel_conventions.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/frame_marks.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint {
+
+class Texture;
+enum class OneChannel;
+enum class Sampling;
 
 struct Frame;
 struct FrameView;

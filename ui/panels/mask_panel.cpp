@@ -11,6 +11,7 @@
 #include "core/motion/regions.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/sequence/frame.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 

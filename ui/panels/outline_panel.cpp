@@ -8,6 +8,7 @@
 #include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/outline_drawing.hpp"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/motion/stage_log.hpp"
+#include "ui/gl/texture.hpp"
 #include "ui/panels/frame_pictures.hpp"
 
 namespace stillpoint {

@@ -8,11 +8,13 @@
 #include "core/evaluation/alignment.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/run/saved_map.hpp"
 #include "core/shared_value.hpp"
 #include "ui/session/debug_view.hpp"
 
 namespace stillpoint {
+
+struct SavedKeyframe;
+struct SavedPoint;
 
 /// What panels draw: a snapshot of the session, plain data, made by the session once a frame of the interface
 /// at most. What grows with a sequence is shared by the snapshots, not copied.

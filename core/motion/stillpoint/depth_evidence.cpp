@@ -142,7 +142,7 @@ int compare_eight(const RgbdView&, float, int, const ComparedRow&) { return 0; }
 /// First pass: depth residuals, and plain brightness differences where the surface is the same.
 cv::Mat compare_depth(const RgbdView& current, const ReferenceView& reference, const StillpointConfig& config,
                       bool wide, ReferenceEvidence& evidence) {
-  constexpr int kAtOnce = 8;
+  constexpr int kAtOnce = 8;  // px: floats of a register
   const cv::Size size = current.depth.size();
   evidence.depth_residual = cv::Mat(size, CV_32FC1);
   evidence.log_odds = cv::Mat::zeros(size, CV_32FC1);
@@ -207,7 +207,7 @@ struct BrightnessRow {
 /// judge_brightness() of eight pixels at a time, as far as there are eight; returns the first that is left.
 STILLPOINT_AVX2 int judge_brightness_by_avx2(const BrightnessRow& row, int width, float* residuals,
                                              float* log_odds) {
-  constexpr int kAtOnce = 8;
+  constexpr int kAtOnce = 8;  // px: floats of a register
   const __m256 zero = _mm256_setzero_ps(), limit = _mm256_set1_ps(row.limit),
                sigma = _mm256_set1_ps(row.sigma);
   int x = 0;

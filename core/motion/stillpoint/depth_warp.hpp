@@ -119,7 +119,7 @@ class DepthWarp {
   }
 
  private:
-  static constexpr int kLanes = cv::v_float32x4::nlanes, kWideLanes = 8;
+  static constexpr int kLanes = cv::v_float32x4::nlanes, kWideLanes = 8;  // floats of a register
   static constexpr float kNearest = 0.1F;  // m: nearer, nothing is measured, and pixels run off to infinity
 
   /// What the pixels of a row share: rotation's part of where they lie, by row.

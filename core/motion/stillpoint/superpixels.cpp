@@ -43,7 +43,7 @@ std::vector<Superpixel> seeds(const RgbdView& view, int side) {
   return superpixels;
 }
 
-constexpr int kLanes = cv::v_float32x4::nlanes, kWideLanes = 8;
+constexpr int kLanes = cv::v_float32x4::nlanes, kWideLanes = 8;  // floats of a register
 
 /// The nine superpixels that may have the pixels of one row of cells: a superpixel never wanders far from its
 /// seed. What a superpixel's distance needs stands at every column, so that several pixels are compared at
