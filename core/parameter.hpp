@@ -19,6 +19,14 @@ struct Parameter {
   std::string help;                  ///< one line
 };
 
+/// A numeric parameter and the values it is given.
+struct SweepRange {
+  std::string parameter;  ///< `section.name`
+  double low = 0.0, high = 0.0;
+  int steps = 7;  ///< values from low to high, both among them
+  bool operator==(const SweepRange&) const = default;
+};
+
 /// What a section of constants lists itself into, a row a constant: its name, its place, its default, its
 /// range, its unit and what it means, each written down once.
 class ParameterTable {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/geometry/rotation_fit.hpp"
+#include "core/sequence/association.hpp"
 
 namespace stillpoint {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/evaluation/alignment.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/sequence/association.hpp"
 
 namespace stillpoint {
 

@@ -8,6 +8,10 @@
 
 namespace stillpoint {
 
+/// Images and poses belong together when they are strictly closer in time than this; the TUM benchmark's
+/// figure.
+inline constexpr double kAssociationTolerance = 0.02;  // s
+
 /// A pose and when it was: seconds since any epoch.
 struct StampedPose {
   double timestamp = 0.0;  ///< s

@@ -4,17 +4,19 @@
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 
+struct FrameScores;
 struct MeasuredFrames;
 
 /// A run as far as it has come.
 struct RunView {
-  std::string name;       ///< its method's, or what a ghost is called
-  FrameRecords records;   ///< as far as processed, in order of frames; shared with those before and after
-  ScoreList scores;       ///< one a record: masks against the true ones, where these are known; likewise
+  std::string name;      ///< its method's, or what a ghost is called
+  FrameRecords records;  ///< as far as processed, in order of frames; shared with those before and after
+  ChunkedList<FrameScores>
+      scores;             ///< one a record: masks against the true ones, where these are known; likewise
   Trajectory trajectory;  ///< estimated poses so far
   TrajectoryEvaluation evaluation;  ///< against ground truth, without matches where there is none
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/chunked_list.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/odometry/map_id.hpp"
 
@@ -192,5 +193,9 @@ struct FrameRecord {
 
 /// What there is to say of the frame: its note, and why a mask was missing.
 [[nodiscard]] std::string remarks_on(const FrameRecord& record);
+
+/// The records of a run's frames, in order: those of a run that goes on are walked over, and shared with who
+/// shows them; those of a run without a window are put by, and read back at its end.
+using FrameRecords = ChunkedList<FrameRecord>;
 
 }  // namespace stillpoint

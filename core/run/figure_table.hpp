@@ -5,7 +5,7 @@
 
 #include "core/evaluation/trajectory_metrics.hpp"
 #include "core/motion/methods.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/removal_errors.hpp"
 
 namespace stillpoint {

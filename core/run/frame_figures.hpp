@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "core/motion/figure_info.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 
+struct FrameScores;
 struct TrajectoryEvaluation;
 
 // What is known of a frame in numbers: one table, from which conditions, the timeline's lanes, "worst", the
@@ -47,7 +48,7 @@ struct ShownUnit {
 struct MeasuredFrames {
   const FrameRecords& records;
   const TrajectoryEvaluation* evaluation = nullptr;  ///< null, or of these records' poses
-  const ScoreList* scores = nullptr;                 ///< null, or one a record
+  const ChunkedList<FrameScores>* scores = nullptr;  ///< null, or one a record
 };
 
 /// One figure of each record; NaN where it is not known.

@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "core/chunked_list.hpp"
 #include "core/evaluation/mask_scores.hpp"
 
 namespace stillpoint {
@@ -18,6 +19,9 @@ struct FrameScores {
 
   FrameScores& operator+=(const FrameScores& other);
 };
+
+/// One a record.
+using ScoreList = ChunkedList<FrameScores>;
 
 /// Scores a frame just processed.
 /// @param moving CV_8UC1, 255 = moving; empty = not known

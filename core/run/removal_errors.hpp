@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/hash.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 
 namespace stillpoint {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/evaluation/trajectory_metrics.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/frame_scores.hpp"
 
 namespace stillpoint {

@@ -14,6 +14,7 @@
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/odometry.hpp"
 #include "core/odometry/smoother.hpp"
+#include "core/run/frame_records.hpp"
 #include "core/sequence/prefetch.hpp"
 #include "core/stopwatch.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "core/config.hpp"
 #include "core/geometry/trajectory.hpp"
-#include "core/run/frame_records.hpp"
+#include "core/odometry/frame_record.hpp"
 #include "core/run/frame_scores.hpp"
 #include "core/run/saved_map.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/parameter.hpp"
 #include "core/run/ablation.hpp"
-#include "core/run/sweep_range.hpp"
 
 namespace stillpoint {
 

@@ -3,11 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace stillpoint {
+#include "core/geometry/trajectory.hpp"
 
-/// Images and poses belong together when they are strictly closer in time than this; the TUM benchmark's
-/// figure.
-inline constexpr double kAssociationTolerance = 0.02;  // s
+namespace stillpoint {
 
 /// A frame's true pose is interpolated between poses that are no farther apart than this.
 inline constexpr double kTruthMaxGap = 0.05;  // s

@@ -12,6 +12,7 @@
 #include "ui/panels/panel.hpp"
 #include "ui/session/session.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/workbench/workbench.hpp"
 
 namespace stillpoint::testing {

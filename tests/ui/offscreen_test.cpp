@@ -13,6 +13,7 @@
 #include "tests/support/resident_memory.hpp"
 #include "tests/ui/gallery.hpp"
 #include "ui/gl/imgui_renderer.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint::testing {
 namespace {

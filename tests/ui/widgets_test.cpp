@@ -9,6 +9,7 @@
 #include "tests/ui/gallery.hpp"
 #include "ui/gl/texture.hpp"
 #include "ui/shell/offscreen.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/rounded.hpp"
 #include "ui/theme/text.hpp"
 

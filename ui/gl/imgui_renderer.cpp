@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "ui/theme/fonts.hpp"
+
 namespace stillpoint {
 namespace {
 

@@ -14,6 +14,7 @@
 #include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/theme.hpp"
 

@@ -16,6 +16,7 @@
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/session/shown_runs.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/geometry/pixel_conventions.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/view/image_widget.hpp"
 
 namespace stillpoint {

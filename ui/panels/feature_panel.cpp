@@ -13,6 +13,7 @@
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/panels_shared.hpp"
 #include "ui/plot/right_click.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

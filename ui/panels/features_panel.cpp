@@ -8,7 +8,6 @@
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/feature_card.hpp"
 #include "ui/panels/frame_pictures.hpp"
@@ -189,7 +188,7 @@ class FeaturesPanel final : public FramePanel {
   int hovered_ = -1;
   std::weak_ptr<const FrameView> hovered_in_;
   FeatureExplanation explanation_;
-  FrameTexture ground_, tint_{OneChannel::kCover};
+  FrameTexture ground_, tint_ = FrameTexture::cover();
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "core/inspect/frame_view.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

@@ -16,6 +16,7 @@
 #include "ui/session/debug_view.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/palette.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/view/image_view.hpp"

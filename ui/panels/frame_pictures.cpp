@@ -13,6 +13,7 @@
 #include "ui/panels/panels_shared.hpp"
 #include "ui/panels/run_series.hpp"
 #include "ui/session/shown_runs.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/text.hpp"
 
 namespace stillpoint {
@@ -39,8 +40,11 @@ cv::Rect part_not_transparent(const cv::Mat& image) {
 
 FrameTexture::FrameTexture() : FrameTexture(Sampling::kPixels) {}
 FrameTexture::FrameTexture(Sampling sampling) : sampling_(sampling), one_channel_(OneChannel::kGrey) {}
-FrameTexture::FrameTexture(OneChannel one_channel)
-    : sampling_(Sampling::kPixels), one_channel_(one_channel) {}
+FrameTexture FrameTexture::cover() {
+  FrameTexture texture;
+  texture.one_channel_ = OneChannel::kCover;
+  return texture;
+}
 FrameTexture::~FrameTexture() = default;
 FrameTexture::FrameTexture(FrameTexture&&) noexcept = default;
 FrameTexture& FrameTexture::operator=(FrameTexture&&) noexcept = default;

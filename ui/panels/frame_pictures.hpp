@@ -27,7 +27,8 @@ class FrameTexture {
  public:
   FrameTexture();  ///< sharp when enlarged, smooth when reduced
   explicit FrameTexture(Sampling sampling);
-  explicit FrameTexture(OneChannel one_channel);
+  /// Of images of one channel, which cover what lies below where they are bright (OneChannel::kCover).
+  [[nodiscard]] static FrameTexture cover();
   ~FrameTexture();
   FrameTexture(FrameTexture&&) noexcept;
   FrameTexture& operator=(FrameTexture&&) noexcept;

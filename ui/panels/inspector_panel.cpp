@@ -18,6 +18,7 @@
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/shell/input.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -11,9 +11,9 @@
 #include "core/motion/regions.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/sequence/frame.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {
@@ -214,7 +214,7 @@ class MaskPanel final : public FramePanel {
   int stage_ = kCleaned, look_ = kOverlay, round_ = -1;
   float opacity_ = 0.45F;
   std::optional<bool> beside_;
-  FrameTexture ground_, alone_, compared_, truth_ground_, tint_{OneChannel::kCover};
+  FrameTexture ground_, alone_, compared_, truth_ground_, tint_ = FrameTexture::cover();
   // Of what is being drawn.
   const StageLog* log_ = nullptr;
   cv::Mat mask_, in_target_;

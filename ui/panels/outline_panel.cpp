@@ -8,7 +8,6 @@
 #include "core/inspect/drawn_truth.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/run/condition.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/panels/outline_drawing.hpp"
@@ -369,7 +368,7 @@ class OutlinePanel final : public FramePanel {
   std::vector<Outline> held_;                  // while a corner of them is dragged
   std::optional<CornerOf> grabbed_;            // that corner
   std::optional<std::vector<Outline>> asked_;  // until the session has them
-  FrameTexture picture_, truth_{OneChannel::kCover};
+  FrameTexture picture_, truth_ = FrameTexture::cover();
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ui/plot/plot_axis.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/text.hpp"
 #include "ui/view/picture_strips.hpp"
 

@@ -11,7 +11,6 @@
 
 #include "ui/panels/panel.hpp"
 #include "ui/shell/ui_frame.hpp"
-#include "ui/theme/fonts.hpp"
 #include "ui/theme/theme.hpp"
 
 namespace stillpoint {

@@ -14,6 +14,7 @@
 #include "ui/plot/plot.hpp"
 #include "ui/session/data_sources.hpp"
 #include "ui/shell/ui_frame.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/motion/stage_log.hpp"
-#include "ui/gl/texture.hpp"
 #include "ui/panels/frame_pictures.hpp"
 
 namespace stillpoint {
@@ -17,7 +16,7 @@ class StagePainter {
             const FramePlace& place, ImVec2 size);
 
  private:
-  FrameTexture ground_, over_{OneChannel::kCover};
+  FrameTexture ground_, over_ = FrameTexture::cover();
 };
 
 /// What the signs and colours of a picture mean; empty for one that needs no words.

@@ -14,6 +14,7 @@
 #include "ui/panels/stage_drawing.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/shell/input.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/view/picture_strips.hpp"
 

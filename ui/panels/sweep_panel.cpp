@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/parameter.hpp"
 #include "core/run/ablation.hpp"
 #include "core/run/sweep.hpp"
-#include "core/run/sweep_range.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_kit.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ui/panels/run_look.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

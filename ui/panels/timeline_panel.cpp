@@ -15,6 +15,7 @@
 #include "ui/panels/timeline_rows.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/session/data_sources.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

@@ -16,6 +16,7 @@
 #include "ui/panels/run_series.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/shell/ui_pace.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

@@ -14,6 +14,7 @@
 #include "ui/plot/path_plot.hpp"
 #include "ui/plot/right_click.hpp"
 #include "ui/scene/scene_widget.hpp"
+#include "ui/theme/fonts.hpp"
 
 namespace stillpoint {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
-#include "core/run/sweep_range.hpp"
+#include "core/parameter.hpp"
 
 namespace stillpoint {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ui/shell/canvas.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/text.hpp"
 
 namespace stillpoint {

@@ -10,6 +10,7 @@
 
 #include "core/inspect/frame_view.hpp"
 #include "ui/shell/event_log.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"

@@ -13,6 +13,7 @@
 #include "core/run/records_file.hpp"
 #include "ui/panels/frame_pictures.hpp"
 #include "ui/session/opened_source.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 
 namespace stillpoint {

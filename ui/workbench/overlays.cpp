@@ -5,6 +5,7 @@
 
 #include "ui/panels/panel_kit.hpp"
 #include "ui/shell/event_log.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 

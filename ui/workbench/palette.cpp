@@ -10,6 +10,7 @@
 
 #include "core/motion/methods.hpp"
 #include "ui/panels/parameter_rows.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "ui/shell/event_log.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/theme.hpp"
 #include "ui/workbench/workbench.hpp"

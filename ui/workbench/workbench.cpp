@@ -13,6 +13,7 @@
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/run_pictures.hpp"
 #include "ui/shell/event_log.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/theme/rounded.hpp"
 #include "ui/theme/text.hpp"

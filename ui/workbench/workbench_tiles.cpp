@@ -4,6 +4,7 @@
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_pictures.hpp"
+#include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
 #include "ui/workbench/workbench.hpp"
 
