@@ -29,6 +29,7 @@ class WindowBytes {
                corner.x * static_cast<std::ptrdiff_t>(image.elemSize())),
         step_(static_cast<std::ptrdiff_t>(image.step)) {
     if (first_ + kWindow * step_ + bytes <= image.datalimit) return;
+    copy_.fill(0);  // what lies beyond the window counts for nothing, but is read
     for (int y = 0; y <= kWindow; ++y)
       std::memcpy(copy_.data() + y * kCopyStep, row(y), (kWindow + 1) * image.elemSize());
     first_ = copy_.data();
