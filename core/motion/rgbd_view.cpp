@@ -7,12 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/avx2.hpp"
 #include "core/geometry/pixel_conventions.hpp"
-
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define STILLPOINT_AVX2 __attribute__((target("avx2")))
-#endif
 
 namespace stillpoint {
 namespace {

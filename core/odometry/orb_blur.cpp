@@ -5,10 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define STILLPOINT_AVX2_FMA __attribute__((target("avx2,fma")))
-#endif
+#include "core/avx2.hpp"
 
 namespace stillpoint {
 

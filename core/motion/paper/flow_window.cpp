@@ -1,12 +1,10 @@
 #include "core/motion/paper/flow_window.hpp"
 
 #if defined(__x86_64__)
-#include <immintrin.h>
-
 #include <cmath>
 #include <cstring>
 
-#define STILLPOINT_AVX2 __attribute__((target("avx2")))
+#include "core/avx2.hpp"
 
 namespace stillpoint {
 namespace {

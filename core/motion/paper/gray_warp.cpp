@@ -6,10 +6,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define STILLPOINT_AVX2 __attribute__((target("avx2")))
-#endif
+#include "core/avx2.hpp"
 
 namespace stillpoint {
 namespace {

@@ -6,14 +6,10 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <vector>
 
+#include "core/avx2.hpp"
 #include "core/geometry/camera.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/wide_lanes.hpp"
-
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define STILLPOINT_AVX2 __attribute__((target("avx2")))
-#endif
 
 namespace stillpoint {
 

@@ -7,10 +7,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <span>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#define STILLPOINT_AVX2 __attribute__((target("avx2")))
-#endif
+#include "core/avx2.hpp"
 
 namespace stillpoint {
 namespace {
