@@ -4,15 +4,15 @@
 # One would swear: quat.getAngle(q, q) of a unit quaternion is 0, and of two that are nearly the
 #   same some small angle.
 # What happens: it is acos(2 dot^2 - 1), and a normalized quaternion of floats is seldom one of
-#   length 1 to the last bit: where dot^2 comes out above 1 the angle is NaN. That is so for half
-#   of all orientations with themselves, and for 2 in 5 pairs that are 0.02 degrees apart; the others are
-#   0.024 degrees from themselves in the median. From 0.1 degrees on it is right within about
+#   length 1 to the last bit: where dot^2 comes out above 1 the angle is NaN. That is so for half of
+#   all orientations with themselves, and for 2 in 5 pairs that are 0.02 degrees apart; the others
+#   are 0.024 degrees from themselves in the median. From 0.1 degrees on it is right within about
 #   0.01. With setMatrixArrayType(Array), in doubles, a quarter of equal orientations are still NaN
-#   apart. An arc tangent of the same floats (of conjugate(a) * b) is right within 1e-5 degrees,
-#   and three's angleTo, which clamps, is never NaN.
+#   apart. An arc tangent of the same floats (of conjugate(a) * b) is right within 1e-5 degrees, and
+#   three's angleTo, which clamps, is never NaN.
 # What follows: a plot of rotation errors or a check "has the camera moved" made with it loses
-#   just the best frames, and which ones is chance; a mean of them is NaN, Math.max too, and
-#   a test angle < limit fails for the perfect pose. The angle is 2 atan2(|vector|, |w|).
+#   just the best frames, and which ones is chance; a mean of them is NaN, Math.max too, and a test
+#   angle < limit fails for the perfect pose. The angle is 2 atan2(|vector|, |w|).
 set -u
 matrix=3.4.4 three=0.187.0
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT

@@ -5,14 +5,14 @@
 #   whole picture is right, as all it is asked for is one shift of all pixels.
 # What happens: PRESET_FAST and ULTRAFAST stop at a quarter of the resolution, MEDIUM at a half,
 #   and there every shift is pulled towards half a pixel of that grid. With FAST a picture that
-#   moves by 0.25 pixels is seen to move by 0.30, by 0.5 as 0.57, by 1 as 1.07; 2 and 4 are right,
-#   3 is 2.96. Half of the picture lies within 0.03, and another scene gives the
-#   same, so that no averaging helps. MEDIUM has it below 1 pixel, at half the size. With
-#   setFinestScale(0), and in Farneback's flow of the same pictures, it is 0.26, 0.50 and 1.00.
-#   (The pictures have a blur of one pixel, as cameras do; other sharpness has other numbers.)
-# What follows: flow that is summed over frames, or divided into speed, depth or scale, comes from a
-#   preset whose finest scale is 0 (setFinestScale(0)), or is refined by Lucas-Kanade. A walk
-#   that is some percent too long at 30 Hz, and right when every fourth frame is taken, is this.
+#   moves by 0.25 pixels is seen to move by 0.30, by 0.5 as 0.57, by 1 as 1.07; 2 and 4 are right, 3
+#   is 2.96. Half of the picture lies within 0.03, and another scene gives the same, so that no
+#   averaging helps. MEDIUM has it below 1 pixel, at half the size. With setFinestScale(0), and in
+#   Farneback's flow of the same pictures, it is 0.26, 0.50 and 1.00. (The pictures have a blur of
+#   one pixel, as cameras do; other sharpness has other numbers.)
+# What follows: flow that is summed over frames, or divided into speed, depth or scale, comes from
+#   a preset whose finest scale is 0 (setFinestScale(0)), or is refined by Lucas-Kanade. A walk that
+#   is some percent too long at 30 Hz, and right when every fourth frame is taken, is this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -3,17 +3,17 @@
 #
 # One would swear: "5x5 weighted centroid around the peak to achieve subpixel accuracy" is good to
 #   some hundredths of a pixel, and if not, then at least a larger shift gives a larger number.
-# What happens: the peak of a fractional shift is a sinc, with side lobes below zero, and what
-#   its centroid over five pixels says is nearly the whole pixel: in a sharp picture 0.1, 0.25 and
-#   0.4 come out as 0.01, 0.04 and 0.12, and half a pixel as 0.2 or 0.8. Blurred by one and
-#   a half pixels, when the finer frequencies hold nothing but rounding, it errs the other way,
-#   0.4 is 0.66 and 0.6 is 0.34: the camera goes on and the number goes back. The response says 0.98
-#   in the one case and 1.03 in the other. Whole pixels are right to 0.01. skimage's
-#   phase_cross_correlation, on the same pictures, is right to 0.03 throughout.
-# What follows: the function is for the whole pixel. For more (stabilising, residual flow,
-#   testing a tracker or a registration of depth with colour) fit the phases, upsample as
-#   skimage does, or let Lucas-Kanade go on from there. An error curve over the shift with a
-#   period of one pixel is this.
+# What happens: the peak of a fractional shift is a sinc, with side lobes below zero, and what its
+#   centroid over five pixels says is nearly the whole pixel: in a sharp picture 0.1, 0.25 and 0.4
+#   come out as 0.01, 0.04 and 0.12, and half a pixel as 0.2 or 0.8. Blurred by one and a half
+#   pixels, when the finer frequencies hold nothing but rounding, it errs the other way, 0.4 is 0.66
+#   and 0.6 is 0.34: the camera goes on and the number goes back. The response says 0.98 in the one
+#   case and 1.03 in the other. Whole pixels are right to 0.01. skimage's phase_cross_correlation,
+#   on the same pictures, is right to 0.03 throughout.
+# What follows: the function is for the whole pixel. For more (stabilising, residual flow, testing
+#   a tracker or a registration of depth with colour) fit the phases, upsample as skimage does, or
+#   let Lucas-Kanade go on from there. An error curve over the shift with a period of one pixel is
+#   this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -3,16 +3,16 @@
 #
 # One would swear: Quatd::createFromRotMat(R).toRotVec() is what cv::Rodrigues gives; half the
 #   power of it is half the rotation; the rotation vector of no rotation is 0.
-# What happens: wherever the trace is positive, so for all rotations below 120 degrees, w comes out
-#   as -cos of half the angle, and for some above. As a rotation it is the same, but
-#   getAngle, toRotVec, log and power take it at its word: 10 degrees are 350 the other way,
-#   and half of them is a half turn too much. Near no rotation w is -1 to the last bit, and
-#   toRotVec divides by the sine of 180 degrees: 1e-8 rad become 250 million. Made otherwise
-#   (createFromAngleAxis) small angles are right down to 1e-7, and below they are NaN, 0 included.
-#   A DualQuat made of a pose has the same sign: half of a 1 m step ends metres away. slerp,
-#   spline and sclerp mind signs; squad, with its interPoint, does not and leaves the path.
-# What follows: w is to be made positive after createFromRotMat (if (q.w < 0) q = -q), and rotation
-#   vectors are to come from cv::Rodrigues or atan2. An error of rotation near 360 degrees,
+# What happens: wherever the trace is positive, so for all rotations below 120 degrees, w comes
+#   out as -cos of half the angle, and for some above. As a rotation it is the same, but getAngle,
+#   toRotVec, log and power take it at its word: 10 degrees are 350 the other way, and half of them
+#   is a half turn too much. Near no rotation w is -1 to the last bit, and toRotVec divides by the
+#   sine of 180 degrees: 1e-8 rad become 250 million. Made otherwise (createFromAngleAxis) small
+#   angles are right down to 1e-7, and below they are NaN, 0 included. A DualQuat made of a pose has
+#   the same sign: half of a 1 m step ends metres away. slerp, spline and sclerp mind signs; squad,
+#   with its interPoint, does not and leaves the path.
+# What follows: w is to be made positive after createFromRotMat (if (q.w < 0) q = -q), and
+#   rotation vectors are to come from cv::Rodrigues or atan2. An error of rotation near 360 degrees,
 #   or one in the millions, for frames that hardly moved, is this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT

@@ -2,18 +2,18 @@
 # Three of OpenCV's RANSACs end with the few points that they drew: more matches do not help
 #
 # One would swear: after the draw the model is fitted to all inliers, as findHomography's page
-#   says of it and as estimateAffine2D does: with sixteen times the matches the error falls to
-#   about a quarter. "Optimal" is the word for estimateAffine3D.
+#   says of it and as estimateAffine2D does: with sixteen times the matches the error falls to about
+#   a quarter. "Optimal" is the word for estimateAffine3D.
 # What happens: findEssentialMat, findFundamentalMat and estimateAffine3D return the model of the
-#   best draw, of 5, 7 and 4 points, as it stood. At half a pixel of noise and no outlier at all
-#   the direction of motion is 4 to 5 degrees wrong with 100 matches and with 1600; epipolar
-#   lines miss by 0.3 pixels instead of 0.03; points that were measured to 1 cm end 1.5 cm off,
-#   worse than each as measured, where a fit to those same inliers is at 0.5 mm. Sorting out
-#   outliers works; that is what makes it look right.
+#   best draw, of 5, 7 and 4 points, as it stood. At half a pixel of noise and no outlier at all the
+#   direction of motion is 4 to 5 degrees wrong with 100 matches and with 1600; epipolar lines miss
+#   by 0.3 pixels instead of 0.03; points that were measured to 1 cm end 1.5 cm off, worse than each
+#   as measured, where a fit to those same inliers is at 0.5 mm. Sorting out outliers works; that is
+#   what makes it look right.
 # What follows: what these three return is a mask. The pose is to be refined on it (FM_8POINT or
 #   bundle adjustment for E and F, least squares for affine), or USAC_DEFAULT is to be asked for,
-#   which fits E and F again and gains by more matches. A plot of error over number of matches that stays level says
-#   nothing about the matches.
+#   which fits E and F again and gains by more matches. A plot of error over number of matches that
+#   stays level says nothing about the matches.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -2,17 +2,17 @@
 # PCL's FastBilateralFilter smooths z alone: the points leave their pixels
 #
 # One would swear: a filter "for smoothing depth information in organized point clouds" moves a
-#   point along the ray of its pixel, so that the cloud is still a picture: point (u, v)
-#   projects to pixel (u, v), and it is what one gets from filtering the depth first.
-# What happens: only z is written; x and y stay those of the depth that was measured. Of a wall
-#   at 2 m with 1 cm of noise, points project half a pixel from where they were taken in the
-#   median, 2 pixels for one in twenty, most at the margins, where x and y are large. And a
-#   part of the noise stays: 1.6 mm for that wall, which is slanted, where the same depths laid
-#   on their rays leave 0.9. FastBilateralFilterOMP is the same, and MedianFilter does likewise.
+#   point along the ray of its pixel, so that the cloud is still a picture: point (u, v) projects to
+#   pixel (u, v), and it is what one gets from filtering the depth first.
+# What happens: only z is written; x and y stay those of the depth that was measured. Of a wall at
+#   2 m with 1 cm of noise, points project half a pixel from where they were taken in the median, 2
+#   pixels for one in twenty, most at the margins, where x and y are large. And a part of the noise
+#   stays: 1.6 mm for that wall, which is slanted, where the same depths laid on their rays leave
+#   0.9. FastBilateralFilterOMP is the same, and MedianFilter does likewise.
 # What follows: after this filter x and y are to be computed anew from u, v and z, or depth is to
 #   be filtered as a picture before the cloud is made. Projective association (KinectFusion's, and
-#   OrganizedNeighbor's) and colours looked up by projection are off by pixels otherwise, and
-#   an evaluation of reprojection sees an error that no camera made.
+#   OrganizedNeighbor's) and colours looked up by projection are off by pixels otherwise, and an
+#   evaluation of reprojection sees an error that no camera made.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

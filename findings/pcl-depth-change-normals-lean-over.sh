@@ -4,16 +4,16 @@
 # One would swear: of a plane without noise every method of IntegralImageNormalEstimation gives
 #   the plane's normal; the four differ in how they smooth noise and treat edges.
 # What happens: the other three are within 0.1 degrees. AVERAGE_DEPTH_CHANGE takes as the points
-#   above and below a pixel those some rows up and down, and a column to the left and right, where
-#   a row was meant (beside the pixel, a column is right). A wall
-#   turned to one side so gets normals that lean down, at the usual size of 10 by half as much:
-#   8 degrees of error for a turn of 17, 20 for one of 45. And the difference of mean depths is
-#   not taken over the length that it is divided by: a floor is 10 degrees off in its tilt; at a
-#   size of 5 that wall's normals are off by 32 degrees, at 20 still by 8. A wall that is faced
-#   is right at all sizes, and at 10 so is one that falls off along the picture's diagonal.
+#   above and below a pixel those some rows up and down, and a column to the left and right, where a
+#   row was meant (beside the pixel, a column is right). A wall turned to one side so gets normals
+#   that lean down, at the usual size of 10 by half as much: 8 degrees of error for a turn of 17, 20
+#   for one of 45. And the difference of mean depths is not taken over the length that it is divided
+#   by: a floor is 10 degrees off in its tilt; at a size of 5 that wall's normals are off by 32
+#   degrees, at 20 still by 8. A wall that is faced is right at all sizes, and at 10 so is one that
+#   falls off along the picture's diagonal.
 # What follows: point-to-plane ICP, plane segmentation and shading of depth pictures use one of
-#   the others (AVERAGE_3D_GRADIENT needs no more time). A test of normals needs planes turned
-#   about each axis alone: the faced one and the diagonal one pass.
+#   the others (AVERAGE_3D_GRADIENT needs no more time). A test of normals needs planes turned about
+#   each axis alone: the faced one and the diagonal one pass.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -5,12 +5,12 @@
 #   texture that moves by a pixel or two is followed to some hundredths, and a point that is not
 #   followed has a status that says so.
 # What happens: the gradients are Scharr's, 3 10 3, and are not divided by their 32, so that every
-#   step is a 32nd of the right one, and one of less than 0.03 pixels counts as having arrived.
-#   Of 0.5 pixels 0.08 are found, of 2 pixels 0.3, of 8 some 3, at all points much alike; the
-#   status is 0 for all of them, and points that stand still are found to stand still. With 500
-#   iterations and an epsilon of 1e-9 still a quarter of a pixel is missing: a second test ends
-#   the search when a step takes back the last one to 0.01, and two tiny ones always do. (With
-#   the gradients divided by 32 in its header, 2 and 8 pixels are found to 0.003.)
+#   step is a 32nd of the right one, and one of less than 0.03 pixels counts as having arrived. Of
+#   0.5 pixels 0.08 are found, of 2 pixels 0.3, of 8 some 3, at all points much alike; the status is
+#   0 for all of them, and points that stand still are found to stand still. With 500 iterations and
+#   an epsilon of 1e-9 still a quarter of a pixel is missing: a second test ends the search when a
+#   step takes back the last one to 0.01, and two tiny ones always do. (With the gradients divided
+#   by 32 in its header, 2 and 8 pixels are found to 0.003.)
 # What follows: flow of organized clouds is to be computed on their intensity picture by other
 #   code. A tracker is to be tested with a motion that is known: one that loses no point, moves
 #   smoothly and is quiet when nothing moves may be one that hardly follows.

@@ -5,14 +5,14 @@
 #   goes by it; if it did not, it would say that there are more bytes than pixels.
 # What happens: Python lays height x width over the bytes from the first on and never looks at
 #   step. Of a picture of 638 pixels in rows of 640, as drivers with aligned buffers send it, row r
-#   begins 2r pixels too late: a vertical edge leans by 63 degrees, the padding
-#   runs through as a slanted seam, and the last rows are cut off. Colour pictures change their
-#   channels from row to row as well, where the padding is no multiple of three. There is no
-#   error. C++ (toCvCopy), on the same message, is right, and so are Python's pictures of bags
-#   that C++ nodes have written again, as these come without padding.
-# What follows: a reader of bags goes by step, and says so where step is more than width times
-#   the pixel's size. In Python: numpy.frombuffer(data).reshape(height, step)[:, :width * size].
-#   A sequence whose pictures lean is not to be put down to the camera or its rolling shutter.
+#   begins 2r pixels too late: a vertical edge leans by 63 degrees, the padding runs through as a
+#   slanted seam, and the last rows are cut off. Colour pictures change their channels from row to
+#   row as well, where the padding is no multiple of three. There is no error. C++ (toCvCopy), on
+#   the same message, is right, and so are Python's pictures of bags that C++ nodes have written
+#   again, as these come without padding.
+# What follows: a reader of bags goes by step, and says so where step is more than width times the
+#   pixel's size. In Python: numpy.frombuffer(data).reshape(height, step)[:, :width * size]. A
+#   sequence whose pictures lean is not to be put down to the camera or its rolling shutter.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

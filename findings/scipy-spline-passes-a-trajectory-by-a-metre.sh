@@ -4,15 +4,15 @@
 # One would swear: splprep is splrep for curves of several coordinates: without weights, and
 #   without s, it goes through the points, as splrep's page says of itself; and what a curve looks
 #   like does not depend on the unit.
-# What happens: splprep's s, when none is given (its page does not say what then), is m - sqrt(2 m)
-#   for m points, whatever the weights: squares that add up to one per point are allowed. In
-#   metres that is a metre. A handheld trajectory of 20 s within a metre, 600 poses, comes
-#   out as one cubic of 8 knots that misses it by 0.78 m (rms), 1.15 m at most; the same in
-#   millimetres passes it by 1 mm, 6 at most. splrep, of the same numbers, coordinate by
-#   coordinate, is through them all; UnivariateSpline does as splprep does. There is no warning.
+# What happens: splprep's s, when none is given (its page does not say what then), is m - sqrt(2
+#   m) for m points, whatever the weights: squares that add up to one per point are allowed. In
+#   metres that is a metre. A handheld trajectory of 20 s within a metre, 600 poses, comes out as
+#   one cubic of 8 knots that misses it by 0.78 m (rms), 1.15 m at most; the same in millimetres
+#   passes it by 1 mm, 6 at most. splrep, of the same numbers, coordinate by coordinate, is through
+#   them all; UnivariateSpline does as splprep does. There is no warning.
 # What follows: s=0 is to be written wherever a trajectory is resampled or filled up, or
-#   CubicSpline used. "Smoothed" truth that has lost its loops, and an error that grew by a
-#   factor when the unit changed, are this.
+#   CubicSpline used. "Smoothed" truth that has lost its loops, and an error that grew by a factor
+#   when the unit changed, are this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -5,14 +5,14 @@
 #   of a microsecond; KeyframeTrack takes an array of times and plays poses at them.
 # What happens: it copies times into floats. Unix seconds have steps of 128 there, so that all 300
 #   poses of ten seconds have one time; validate() is content, the clip plays, and the camera stands
-#   at its first pose throughout. optimize() drops all but two of them for being at the same
-#   time. Seconds of the GPS week have steps of a 16th on its last day: two poses each share a
-#   time, and a camera that moves evenly goes in jerks, up to half a frame off. From zero all is
-#   right. A Float64Array given to the constructor becomes floats as well; laid into
-#   track.times afterwards it is kept, and all is right.
+#   at its first pose throughout. optimize() drops all but two of them for being at the same time.
+#   Seconds of the GPS week have steps of a 16th on its last day: two poses each share a time, and a
+#   camera that moves evenly goes in jerks, up to half a frame off. From zero all is right. A
+#   Float64Array given to the constructor becomes floats as well; laid into track.times afterwards
+#   it is kept, and all is right.
 # What follows: a viewer takes the first stamp off in whole nanoseconds or doubles before anything
-#   reaches three (glTF's animations are floats by definition, so that exporting does it
-#   again), and a check of a replay asks for a pose in the middle, not whether it ran.
+#   reaches three (glTF's animations are floats by definition, so that exporting does it again), and
+#   a check of a replay asks for a pose in the middle, not whether it ran.
 set -u
 three=0.187.0
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
