@@ -40,7 +40,8 @@ function rotation() {
 
 const degrees = (a, b) => (Math.acos(Math.min(1, Math.abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]))) * 180) / Math.PI;
 const rising = (v) => v[0] <= v[1] && v[1] <= v[2];
-const count = { patches: 2000, asymmetric: 0, lost: 0, lostSymmetric: 0, lostPoints: 0, lostAssumed: 0, lostMean: 0, unequal: 0, wrong: 0 };
+const count = {
+  patches: 2000, asymmetric: 0, lost: 0, lostSymmetric: 0, lostPoints: 0, lostAssumed: 0, lostMean: 0, unequal: 0, wrong: 0 };
 for (let i = 0; i < count.patches; i++) {
   // A patch of 60 points, 2 x 1 wide and 0.1 thick, its covariance, and the same in the world's frame.
   const points = new Matrix(60, 3).apply(function (r, c) { this.set(r, c, [2, 1, 0.1][c] * random()); });
@@ -62,8 +63,8 @@ for (let i = 0; i < count.patches; i++) {
   if (degrees(normal, new EVD(mean).eigenvectorMatrix.getColumn(0)) > 0.01) count.lostMean++;
 }
 console.log(`seen: of ${count.patches} patches in their own frame ${count.lostPoints} have their values in another order than rising`);
-console.log(`seen: turned, ${count.asymmetric} are not symmetric to the bit (by ${count.unequal.toExponential(0)} at most); the first eigenvector `
-  + `of ${count.lost} is not the normal, ${count.lostSymmetric} of them symmetric; all are decompositions to ${count.wrong.toExponential(0)}`);
+console.log(`seen: turned, ${count.asymmetric} are not symmetric to the bit (by ${count.unequal.toExponential(0)} at most); `
+  + `the first eigenvector of ${count.lost} is not the normal, ${count.lostSymmetric} of them symmetric; all are decompositions to ${count.wrong.toExponential(0)}`);
 console.log(`seen: with assumeSymmetric ${count.lostAssumed}, of the mean with the transpose ${count.lostMean}`);
 process.exit(count.lostPoints === 0 && count.lost > 0.3 * count.asymmetric && count.asymmetric > 20 && count.lostSymmetric === 0
   && count.wrong < 1e-12 && count.unequal < 1e-14 && count.lostAssumed === 0 && count.lostMean === 0 ? 0 : 1);
