@@ -55,7 +55,8 @@ function look(apart) {
 }
 
 const say = (name, r) => console.log(`seen, ${name}: NaN for ${(100 * r.lost).toFixed(0)} in 100, `
-  + `else ${r.median.toPrecision(2)} in the median and off by up to ${r.most.toPrecision(2)}; by arc tangent off by ${r.tangent.toPrecision(1)} at most; three: NaN for ${r.three}`);
+  + `else ${r.median.toPrecision(2)} in the median and off by up to ${r.most.toPrecision(2)}; `
+  + `by arc tangent off by ${r.tangent.toPrecision(1)} at most; three: NaN for ${r.three}`);
 const at = {};
 for (const apart of [0, 0.005, 0.02, 0.1]) say(`${apart} degrees apart`, (at[apart] = look(apart)));
 glMatrix.setMatrixArrayType(Array);

@@ -64,7 +64,8 @@ for (let i = 0; i < count.patches; i++) {
 }
 console.log(`seen: of ${count.patches} patches in their own frame ${count.lostPoints} have their values in another order than rising`);
 console.log(`seen: turned, ${count.asymmetric} are not symmetric to the bit (by ${count.unequal.toExponential(0)} at most); `
-  + `the first eigenvector of ${count.lost} is not the normal, ${count.lostSymmetric} of them symmetric; all are decompositions to ${count.wrong.toExponential(0)}`);
+  + `the first eigenvector of ${count.lost} is not the normal, ${count.lostSymmetric} of them symmetric; `
+  + `all are decompositions to ${count.wrong.toExponential(0)}`);
 console.log(`seen: with assumeSymmetric ${count.lostAssumed}, of the mean with the transpose ${count.lostMean}`);
 process.exit(count.lostPoints === 0 && count.lost > 0.3 * count.asymmetric && count.asymmetric > 20 && count.lostSymmetric === 0
   && count.wrong < 1e-12 && count.unequal < 1e-14 && count.lostAssumed === 0 && count.lostMean === 0 ? 0 : 1);
