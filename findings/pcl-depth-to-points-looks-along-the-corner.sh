@@ -11,8 +11,8 @@
 #   though each wall at one depth by itself looks right. Depth is taken for millimetres and 0
 #   becomes NaN, as one would expect.
 # What follows: clouds of such pictures are to be made with cx and cy from the calibration, or
-#   taken apart again: subtract (cx, cy) z / f. ICP between two such clouds of a camera that turned
-#   fits badly at any pose, and is not to blame.
+#   mended: subtract (cx, cy) z / f. No pose fits two such clouds of a camera that turned, and ICP
+#   is not to blame.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }
