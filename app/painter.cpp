@@ -111,19 +111,33 @@ cv::Mat Painter::paint_panel(const SessionView& view, const std::string& name, s
       size);
 }
 
+Painter::Picture Painter::paint_picture(const std::string& name, const FrameFunction& draw,
+                                        std::pair<int, int> size) {
+  Picture picture{name, {}};
+  picture.image = paint_frame(
+      [&](UiFrame& frame) {
+        picture.offers.clear();  // it is drawn more than once, and the last time counts
+        if (options_.offers) frame.all_offers = &picture.offers;
+        draw(frame);
+      },
+      size);
+  return picture;
+}
+
 void Painter::paint(const SessionView& view, const std::function<void(const Picture&)>& done) {
   if (chosen_.workbench)
-    done({kWorkbench,
-          paint_frame([&](UiFrame& frame) { workbench_.draw(frame, &view); }, options_.workbench_size)});
+    done(paint_picture(
+        kWorkbench, [&](UiFrame& frame) { workbench_.draw(frame, &view); }, options_.workbench_size));
   for (const std::string& name : chosen_.panels) {
     Panel& chosen = panel(name);
     if (!chosen.is_for(view) && !chosen_.named.contains(name)) continue;
-    done({name, paint_frame(
-                    [&](UiFrame& frame) {
-                      frame.runs = &runs_;
-                      Workbench::draw_alone(frame, view, chosen, choices_[&chosen]);
-                    },
-                    options_.panel_size)});
+    done(paint_picture(
+        name,
+        [&](UiFrame& frame) {
+          frame.runs = &runs_;
+          Workbench::draw_alone(frame, view, chosen, choices_[&chosen]);
+        },
+        options_.panel_size));
   }
 }
 

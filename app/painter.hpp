@@ -30,6 +30,7 @@ struct PainterOptions {
   std::string method{};  ///< chooses the default layout
   bool stereo = false;   ///< … for stereo pairs
   RunsShown runs{};      ///< which runs pictures show, and how
+  bool offers = false;   ///< pictures come with the plots and tables they hold
 };
 
 /// Which pictures options ask for: known before anything is opened or drawn.
@@ -52,8 +53,9 @@ class Painter {
  public:
   /// A picture: what it shows, and how it is asked for.
   struct Picture {
-    std::string name;  ///< "workbench" or a panel's
-    cv::Mat image;     ///< CV_8UC3, BGR
+    std::string name;                 ///< "workbench" or a panel's
+    cv::Mat image;                    ///< CV_8UC3, BGR
+    std::vector<FileOffer> offers{};  ///< plots and tables in it, where options ask for them
   };
 
   /// @throws InputError as choose_pictures does
@@ -78,6 +80,9 @@ class Painter {
   [[nodiscard]] cv::Mat paint_frame(const FrameFunction& draw, std::pair<int, int> size);
 
  private:
+  /// paint_frame() of what `draw` draws, with its plots and tables.
+  [[nodiscard]] Picture paint_picture(const std::string& name, const FrameFunction& draw,
+                                      std::pair<int, int> size);
   void take_choices(const LayoutNode& layout);
   [[nodiscard]] Panel& panel(const std::string& name) const;
 
@@ -86,7 +91,7 @@ class Painter {
   std::vector<std::unique_ptr<Panel>> panels_;
   Workbench workbench_;
   PictureChoice chosen_;
-  RunsShown runs_;  // of panels drawn alone
+  RunsShown runs_;                                // of panels drawn alone
   std::map<const Panel*, PanelChoices> choices_;  // of panels drawn alone
 };
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -39,6 +40,7 @@ struct SnapshotArguments {
   std::vector<std::string> compare;  ///< methods and presets that run beside
   std::vector<std::string> wipe;     ///< lists of runs by name; empty = none
   std::string flip;                  ///< a run by name; empty = none
+  std::vector<std::string> plots;    ///< kinds of file for plots and tables; empty = none are written
   std::string beside;                ///< method whose stages are laid beside the run's; empty = none
   bool force = false, no_baseline = false, timings = false;
 };
@@ -62,6 +64,7 @@ PainterOptions painter_options(const SnapshotArguments& arguments) {
   if (!arguments.size.empty()) options.workbench_size = options.panel_size = parse_size(arguments.size);
   options.look = {parse_theme(arguments.theme), static_cast<float>(arguments.scale)};
   options.layout = arguments.layout;
+  options.offers = !arguments.plots.empty();
   if (!arguments.wipe.empty()) {
     options.runs.pictures = RunPictures::wiped;
     const std::vector<std::string> names = names_in(arguments.wipe, "--wipe");
@@ -143,7 +146,7 @@ class Pictures {
  public:
   /// @param size of a video's pictures @param step_s s between frames, mostly
   Pictures(const SnapshotArguments& arguments, std::pair<int, int> size, double step_s)
-      : folder_(arguments.out) {
+      : folder_(arguments.out), plot_kinds_(arguments.plots) {
     if (!arguments.video.empty())
       video_.emplace(arguments.video, cv::Size(size.first, size.second), arguments.fps, step_s,
                      arguments.force);
@@ -157,8 +160,10 @@ class Pictures {
     painter.paint(view, [&](const Painter::Picture& picture) {
       if (video_) video_->add(picture.image, view.current->frame.timestamp);
       if (folder_.empty()) return;
-      writer_.write(folder_ / fmt::format("{:06d}_{}.png", view.current->index, picture.name), picture.image);
+      const std::string frame = fmt::format("{:06d}_", view.current->index);
+      writer_.write(folder_ / (frame + picture.name + ".png"), picture.image);
       ++files_;
+      write_plots(frame, picture);
     });
     list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
                          to_string(view.current->record->status));
@@ -174,7 +179,10 @@ class Pictures {
     if (!folder_.empty()) {
       // What was drawn, and the sign that this folder is ours.
       write_text_file(folder_ / "snapshots.txt", "# frame, timestamp in s, status\n" + list_);
-      told = fmt::format("{} images of {} frames written to {}\n", files_, frames_, folder_.string());
+      const std::string plots =
+          plot_kinds_.empty() ? "" : fmt::format(", and {} files of plots and tables,", plot_files_);
+      told =
+          fmt::format("{} images{} of {} frames written to {}\n", files_, plots, frames_, folder_.string());
     }
     if (video_ && frames_ > 0) {
       video_->finish();
@@ -184,11 +192,27 @@ class Pictures {
   }
 
  private:
+  /// A picture's plots and tables by its name and their own, in those kinds of file that each can be.
+  void write_plots(const std::string& frame, const Painter::Picture& picture) {
+    std::map<std::string, int> taken;  // how often a name was met in this picture
+    for (const FileOffer& offer : picture.offers) {
+      std::string name = fs::path(offer.name).stem().string();
+      if ((name + '_').rfind(picture.name + '_', 0) != 0) name = picture.name + '_' + name;
+      if (const int before = taken[name]++; before > 0) name += fmt::format("_{}", before + 1);
+      for (const std::string& kind : plot_kinds_) {
+        if (offer.endings.find('.' + kind) == std::string::npos) continue;
+        offer.write((folder_ / fmt::format("{}{}.{}", frame, name, kind)).string());
+        ++plot_files_;
+      }
+    }
+  }
+
   fs::path folder_;
-  std::optional<NewFolders> made_;  // gone again where nothing comes to lie in them
+  std::vector<std::string> plot_kinds_;  // "svg"
+  std::optional<NewFolders> made_;       // gone again where nothing comes to lie in them
   std::optional<VideoFile> video_;
   std::string list_;
-  int files_ = 0, frames_ = 0;
+  int files_ = 0, plot_files_ = 0, frames_ = 0;
   ImageWriter writer_;
 };
 
@@ -260,6 +284,8 @@ PictureChoice asked_for(const SnapshotArguments& arguments, const PainterOptions
   PictureChoice chosen = choose_pictures(options);
   if (arguments.out.empty() && arguments.video.empty())
     throw InputError("--out or --video must say where the images go");
+  if (!arguments.plots.empty() && arguments.out.empty())
+    throw InputError("--plots: goes with --out, and is of no use here");
   if (arguments.fps > 0 && arguments.video.empty())
     throw InputError("--fps: goes with --video, and is of no use here");
   if (!arguments.video.empty() && chosen.count() != 1)
@@ -352,6 +378,14 @@ void add_snapshot_command(CLI::App& app) {
   command->add_option("--panels", arguments->panels,
                       "all (otherwise), workbench, or panels' names with commas between");
   command->add_option("--out", arguments->out, "Folder for the images, FRAME_PANEL.png; made if missing");
+  command
+      ->add_option(
+          "--plots", arguments->plots,
+          "Write what a right click saves in the window as well: plots as svg, pdf or csv, tables as "
+          "csv; FRAME_PANEL_NAME.svg; with commas between")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"svg", "pdf", "csv"}))
+      ->allow_extra_args(false);
   command->add_option("--video", arguments->video,
                       "A video of the frames, .mp4, .mkv or .avi: of the workbench, or of the panel named");
   command

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 #include <thread>
 
 #include "tests/cli/run_cli.hpp"
@@ -45,11 +46,42 @@ TEST_F(Snapshot, WritesPanelsAndTheWorkbench) {
   }
 }
 
+TEST_F(Snapshot, WritesItsPlotsAndTablesAsFiles) {
+  const CliResult result = snapshot(
+      {"--frames", "4", "--panels", "timeline,trajectory,mask", "--plots", "svg,csv", "--out", out()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto read = [&](const char* name) {
+    return sequence_.folder.read(std::string("out/000004_") + name);
+  };
+  for (const char* plot : {"timeline_inliers", "timeline_rpe", "trajectory"}) {
+    EXPECT_THAT(read((std::string(plot) + ".svg").c_str()), HasSubstr("</svg>")) << plot;
+    EXPECT_THAT(read((std::string(plot) + ".csv").c_str()), HasSubstr(",")) << plot;
+  }
+  std::istringstream poses(read("trajectory_poses.csv"));
+  int baseline = 0;
+  for (std::string line; std::getline(poses, line);)
+    baseline += line.rfind("none (baseline),", 0) == 0 ? 1 : 0;
+  EXPECT_EQ(baseline, 5) << "a row for each frame up to this one";
+  EXPECT_FALSE(fs::exists(out() + "/000004_trajectory_poses.svg")) << "a table is no plot";
+  int plots = 0;
+  for (const auto& entry : fs::directory_iterator(out()))
+    plots += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
+  EXPECT_THAT(result.out,
+              HasSubstr("3 images, and " + std::to_string(plots) + " files of plots and tables, of "));
+}
+
+TEST_F(Snapshot, SaysWherePlotsCannotBeWritten) {
+  EXPECT_EQ(snapshot({"--panels", "mask", "--plots", "png", "--out", out()}).exit_code, 2);
+  expect_one_sentence(
+      snapshot({"--panels", "timeline", "--plots", "svg", "--video", sequence_.path("v.mp4")}), "--plots");
+}
+
 TEST_F(Snapshot, GivesTheSameBytesEachTime) {
   for (const char* folder : {"a", "b"})
-    EXPECT_EQ(
-        snapshot({"--frames", "4", "--panels", "all,workbench", "--out", sequence_.path(folder)}).exit_code,
-        0);
+    EXPECT_EQ(snapshot({"--frames", "4", "--panels", "all,workbench", "--plots", "svg,pdf,csv", "--out",
+                        sequence_.path(folder)})
+                  .exit_code,
+              0);
   int compared = 0;
   for (const auto& entry : fs::directory_iterator(sequence_.path("a"))) {
     const std::string name = entry.path().filename().string();

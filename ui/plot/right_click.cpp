@@ -39,6 +39,8 @@ SaveOffer offer_of(const std::string& name, Table table) {
 
 void offer_by_right_click(const UiFrame& frame, const char* id, bool hovered,
                           const std::function<std::vector<SaveOffer>()>& make) {
+  if (frame.all_offers != nullptr)
+    for (SaveOffer& offer : make()) frame.all_offers->push_back(std::move(offer.file));
   if (frame.offer == nullptr) return;
   ImGui::PushID(id);
   if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&

@@ -25,9 +25,10 @@ struct SaveOffer {
 [[nodiscard]] SaveOffer offer_of(const std::string& name, const Plot& plot, const PlotView& view);
 [[nodiscard]] SaveOffer offer_of(const std::string& name, Table table);
 
-/// Opens a menu of offers where the right button was pressed and let go of in place.
+/// Opens a menu of offers where the right button was pressed and let go of in place, and gives them all to
+/// who asks the frame for them.
 /// @param hovered whether the mouse is on what is offered
-/// @param make told when the menu is drawn; what it gives is copied
+/// @param make told when they are asked for or the menu is drawn; what it gives is copied
 void offer_by_right_click(const UiFrame& frame, const char* id, bool hovered,
                           const std::function<std::vector<SaveOffer>()>& make);
 

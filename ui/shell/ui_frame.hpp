@@ -52,8 +52,9 @@ struct UiFrame {
   RunsShown* runs = nullptr;                  ///< which runs pictures show; null: the session's own
   PictureStrips* strips = nullptr;            ///< while pictures of several runs are drawn; null mostly
   std::optional<FileOffer>* offer = nullptr;  ///< where what is to be saved is put; null where nothing can be
-  bool busy = false;                          ///< work goes on beside the interface: its pace counts
-  Look wanted_look{};                         ///< from the next frame on
+  std::vector<FileOffer>* all_offers = nullptr;  ///< where all that could be is put; null where nobody asks
+  bool busy = false;                             ///< work goes on beside the interface: its pace counts
+  Look wanted_look{};                            ///< from the next frame on
   double redraw_after_s = std::numeric_limits<double>::infinity();  ///< draw again by then even without input
   bool quit = false;                                                ///< leave the shell's loop
   bool changed = true;  ///< the picture is another than that of the frame before; known once it is drawn
