@@ -107,9 +107,12 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
   for (int i = 1; i < count; ++i)
     keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
   if (std::all_of(keep.begin() + 1, keep.end(), [](std::uint8_t k) { return k != 0; })) return;
-  for (int y = 0; y < mask.rows; ++y)
+  for (int y = 0; y < mask.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    auto* out = mask.ptr<uchar>(y);
     for (int x = 0; x < mask.cols; ++x)
-      if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
+      out[x] = keep[static_cast<std::size_t>(label[x])] != 0 ? out[x] : uchar{0};
+  }
 }
 
 /// Whether a pixel without depth lies in a dynamic object: whether the nearest measured pixels to all four
@@ -134,10 +137,11 @@ bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y,
 void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
   const cv::Rect dynamic = cv::boundingRect(mask);
   std::vector<cv::Point> inside;
-  for (int y = dynamic.y; y < dynamic.br().y; ++y)
+  for (int y = dynamic.y; y < dynamic.br().y; ++y) {
+    const auto* z = depth.ptr<float>(y);
     for (int x = dynamic.x; x < dynamic.br().x; ++x)
-      if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
-        inside.emplace_back(x, y);
+      if (z[x] <= 0 && enclosed_by_motion(mask, depth, x, y, reach)) inside.emplace_back(x, y);
+  }
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
 }
 
@@ -229,7 +233,7 @@ void remember_judgement(StillpointTrace& trace, const StillpointConfig& config) 
       const float odds = log_odds[x];
       const bool agrees = superpixel.moving && odds > superpixel.log_odds;
       const float joined = agrees ? odds : 0.5F * (odds + superpixel.log_odds);
-      log_odds[x] = std::min(joined, std::max({odds, superpixel.evidence, limit}));
+      log_odds[x] = std::min(joined, std::max(std::max(odds, superpixel.evidence), limit));
     }
   }
 }

@@ -128,12 +128,14 @@ void offer(const Candidate& candidate, float y, float side, Row& row) {
   }
 }
 
-/// The nearest superpixel of each pixel of a row, by offer() of all candidates.
+/// The nearest superpixel of each pixel of a row, by offer() of all candidates; -1 where there is no depth.
 void find_nearest(const std::array<const Candidate*, 9>& candidates, float y, float side, Row& row) {
   for (std::size_t x = 0; x < row.depth.size(); ++x)
     row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
   std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
   for (const Candidate* candidate : candidates) offer(*candidate, y, side, row);
+  for (std::size_t x = 0; x < row.depth.size(); ++x)
+    if (!(row.depth[x] > 0)) row.label[x] = -1;
 }
 
 #if defined(__x86_64__)
@@ -163,7 +165,9 @@ STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<const Candidate*, 9>&
       best_label = _mm256_blendv_ps(
           best_label, _mm256_loadu_ps(reinterpret_cast<const float*>(&candidate->label[x])), nearer);
     }
-    _mm256_storeu_si256(label, _mm256_castps_si256(best_label));
+    const __m256 measured = _mm256_cmp_ps(depth, zero, _CMP_GT_OQ);
+    _mm256_storeu_si256(label, _mm256_castps_si256(_mm256_blendv_ps(
+                                   _mm256_castsi256_ps(_mm256_set1_epi32(-1)), best_label, measured)));
   }
 }
 #else
@@ -204,8 +208,7 @@ void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, in
     std::copy(depth, depth + width, row.depth.begin());
     (wide ? find_nearest_by_avx2 : find_nearest)(candidates.all(), static_cast<float>(y),
                                                  static_cast<float>(side), row);
-    auto* label = labels.ptr<int>(y);
-    for (int x = 0; x < width; ++x) label[x] = depth[x] > 0 ? row.label[static_cast<std::size_t>(x)] : -1;
+    std::copy_n(row.label.begin(), width, labels.ptr<int>(y));
   }
 }
 
