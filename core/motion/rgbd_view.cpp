@@ -81,11 +81,19 @@ cv::v_float32x4 same_surface(const cv::v_float32x4& a, const cv::v_float32x4& b)
   return cv::v_abs(a - b) < cv::v_setall_f32(0.02F) + cv::v_setall_f32(0.012F) * nearer * nearer;
 }
 
+/// An image whose outermost pixels are 0; all others are yet to be written.
+cv::Mat with_zero_rim(const cv::Size& size, int type) {
+  cv::Mat image(size, type);
+  image.row(0).setTo(0), image.row(size.height - 1).setTo(0);
+  image.col(0).setTo(0), image.col(size.width - 1).setTo(0);
+  return image;
+}
+
 /// RgbdView's `surface` and `depth_slope`.
 void describe_surface(RgbdView& view) {
   const cv::Mat &gray = view.gray, &depth = view.depth;
-  view.surface = cv::Mat::zeros(depth.size(), CV_32FC4);
-  view.depth_slope = cv::Mat::zeros(depth.size(), CV_32FC1);
+  view.surface = with_zero_rim(depth.size(), CV_32FC4);
+  view.depth_slope = with_zero_rim(depth.size(), CV_32FC1);
   if (depth.cols < 3) return;
   const cv::v_float32x4 zero = cv::v_setzero_f32(), quarter = cv::v_setall_f32(0.25F);
   const auto width = static_cast<std::size_t>(depth.cols);

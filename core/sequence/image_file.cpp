@@ -125,16 +125,14 @@ std::string read_bytes(const std::string& path, Bytes& bytes) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) return fmt::format("cannot be read: {}", std::strerror(errno));
-  // Bytes of the first read, whatever size is told; each further one is of as many as are there.
-  constexpr std::size_t kLeast = 64 << 10, kMost = 64 << 20;
+  // By parts that stay in the cache, until no more come: whatever its size was said to be, it may be growing.
+  constexpr std::size_t kPart = 64 << 10, kMostReserved = 64 << 20;  // bytes
   bytes.clear();
   const auto said = std::filesystem::file_size(path, error);
-  std::size_t more = std::clamp<std::size_t>(error ? 0 : said + 1, kLeast, kMost);
-  // Whatever its size was said to be: it may still be growing.
-  for (std::size_t had = 0; file; had = bytes.size(), more = std::max(kLeast, had)) {
-    bytes.resize(had + more);
-    file.read(reinterpret_cast<char*>(bytes.data() + had), static_cast<std::streamsize>(bytes.size() - had));
-    bytes.resize(had + static_cast<std::size_t>(file.gcount()));
+  bytes.reserve(std::min<std::size_t>(error ? kPart : said, kMostReserved));
+  for (std::vector<char> part(kPart); file;) {
+    file.read(part.data(), kPart);
+    bytes.insert(bytes.end(), part.begin(), part.begin() + file.gcount());
   }
   if (bytes.empty()) return "is empty (0 bytes)";
   return {};

@@ -86,8 +86,13 @@ TEST(StoredDepth, IsReadAsOpenCvConvertsIt) {
     cv::Mat expected;
     stored.convertTo(expected, CV_32F, 1.0 / units);
     expected.at<float>(255, 255) = 0.0F;
-    EXPECT_EQ(cv::norm(metres_of(stored, units), expected, cv::NORM_INF), 0.0) << units;
-    EXPECT_EQ(metres_of(stored.colRange(3, 8), units).at<float>(1, 0), expected.at<float>(1, 3));
+    for (const bool wide : {false, has_wide_lanes()}) {
+      EXPECT_EQ(cv::norm(metres_of(stored, units, wide), expected, cv::NORM_INF), 0.0) << units;
+      const cv::Range some(3, 14);  // a register's pixels and three more
+      EXPECT_EQ(
+          cv::norm(metres_of(stored.colRange(some), units, wide), expected.colRange(some), cv::NORM_INF),
+          0.0);
+    }
   }
 }
 

@@ -173,6 +173,15 @@ TEST(DepthEvidence, IsTheSameByWideLanes) {
         }
       }
       EXPECT_GT(inside, 0);
+
+      MotionPrior before{then, cv::Mat(then->depth.size(), CV_32FC1)};
+      random.fill(before.log_odds, cv::RNG::UNIFORM, -3.0, 4.0);
+      const WarpedPrior warped_plain = warp_prior(*now, before, then_from_now, {}, false),
+                        warped_wide = warp_prior(*now, before, then_from_now, {}, true);
+      EXPECT_TRUE(same_bits(warped_plain.log_odds, warped_wide.log_odds));
+      EXPECT_TRUE(same_bits(warped_plain.newly_observed, warped_wide.newly_observed));
+      EXPECT_GT(cv::countNonZero(warped_plain.log_odds), 0);
+      EXPECT_GT(cv::countNonZero(warped_plain.newly_observed), 0) << "the image's rim came into view";
     }
 }
 

@@ -286,8 +286,47 @@ ReferenceEvidence compare_with_reference(const RgbdView& current, const Referenc
   return evidence;
 }
 
+namespace {
+
+/// A row of the current view as its prior is warped.
+struct PriorRow {
+  DepthWarp::WarpedRow warped;
+  const float *depth, *tolerance;  // m
+  const float *then, *known;       // the frame before: m, and log-odds, whole images
+  float keep, firm;                // share of log-odds kept, and log-odds from which all are
+  float* log_odds;
+  uchar* newly_observed;
+};
+
+#if defined(__x86_64__)
+/// Warps the prior of eight pixels.
+/// @returns a bit for each that is inside and shows another surface than the frame before
+STILLPOINT_AVX2 int warp_eight(const PriorRow& row, int x) {
+  const __m256 zero = _mm256_setzero_ps(), depth = _mm256_loadu_ps(row.depth + x);
+  const __m256i nearest = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.warped.nearest + x));
+  const __m256 inside = _mm256_castsi256_ps(_mm256_cmpgt_epi32(nearest, _mm256_set1_epi32(-1)));
+  const __m256 beside = _mm256_andnot_ps(
+      _mm256_set1_ps(-0.0F), _mm256_sub_ps(_mm256_mask_i32gather_ps(zero, row.then, nearest, inside, 4),
+                                           _mm256_loadu_ps(row.warped.z + x)));
+  const __m256 same =
+      _mm256_and_ps(inside, _mm256_cmp_ps(beside, _mm256_loadu_ps(row.tolerance + x), _CMP_LT_OQ));
+  const __m256 odds = _mm256_mask_i32gather_ps(zero, row.known, nearest, same, 4);
+  _mm256_storeu_ps(row.log_odds + x,
+                   _mm256_blendv_ps(_mm256_mul_ps(_mm256_set1_ps(row.keep), odds), odds,
+                                    _mm256_cmp_ps(odds, _mm256_set1_ps(row.firm), _CMP_GT_OQ)));
+  const int is_new = _mm256_movemask_ps(_mm256_andnot_ps(inside, _mm256_cmp_ps(depth, zero, _CMP_GT_OQ)));
+  for (int k = 0; is_new != 0 && k < 8; ++k) row.newly_observed[x + k] = (is_new >> k & 1) != 0 ? 255 : 0;
+  return _mm256_movemask_ps(_mm256_andnot_ps(same, inside));
+}
+#else
+int warp_eight(const PriorRow&, int) { return 0; }
+#endif
+
+}  // namespace
+
 WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const Pose& previous_from_current,
-                       const StillpointConfig& config) {
+                       const StillpointConfig& config, bool wide) {
+  constexpr int kAtOnce = 8;            // px: floats of a register
   constexpr int kReach = 3;             // downsampled px a dynamic object may have gone in a frame
   constexpr float kLikeDepth = 0.12F;   // m, and this share of the distance
   constexpr float kDepthShare = 0.02F;  // … this one
@@ -295,47 +334,56 @@ WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before, const
   constexpr float kArrived = 1.5F;      // log-odds that a dynamic object's step warps at most
   const cv::Size size = current.depth.size();
   WarpedPrior result{cv::Mat::zeros(size, CV_32FC1), cv::Mat::zeros(size, CV_8UC1)};
-  cv::Mat& prior = result.log_odds;
   cv::Mat most_near;  // the prior within reach: mostly nothing, and then nothing need be sought
   const int side = 2 * kReach + 1;
   cv::dilate(before.log_odds, most_near, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
-  DepthWarp warped(current.camera, previous_from_current);
-  const auto keep = static_cast<float>(config.prior_share),
-             firm = static_cast<float>(config.confident_log_odds);
+  DepthWarp warped(current.camera, previous_from_current, wide);
   const cv::Mat& depth_then = before.view->depth;
-  const auto *there = depth_then.ptr<float>(), *known = before.log_odds.ptr<float>(),
-             *about = most_near.ptr<float>();
-  for (int y = 0; y < prior.rows; ++y) {
+  const auto* about = most_near.ptr<float>();
+  std::vector<float> tolerance(static_cast<std::size_t>(size.width));
+  for (int y = 0; y < size.height; ++y) {
     const auto* depth = current.depth.ptr<float>(y);
-    auto* out = prior.ptr<float>(y);
-    auto* newly_observed = result.newly_observed.ptr<uchar>(y);
     warped.warp_row(y, depth);
-    for (int x = 0; x < prior.cols; ++x) {
-      if (!warped.inside(x)) {
-        if (depth[x] > 0) newly_observed[x] = 255;
-        continue;
-      }
-      const float expected = warped.z(x),
-                  tolerance = kLikeDepth + kDepthShare * depth[x] +
-                              static_cast<float>(kLikeSigmas *
-                                                 current.camera.stereo_sigma(static_cast<double>(depth[x])));
-      if (std::abs(warped.at(there, x) - expected) < tolerance) {
-        const float odds = warped.at(known, x);
-        out[x] = odds > firm ? odds : keep * odds;
-        continue;
-      }
-      if (warped.at(about, x) <= 0) continue;
-      // A surface that was not here before came from beside, most likely: it is taken to move if what is
-      // there does, but not confidently.
+    for (std::size_t x = 0; x < tolerance.size(); ++x)
+      tolerance[x] =
+          kLikeDepth + kDepthShare * depth[x] +
+          static_cast<float>(kLikeSigmas * current.camera.stereo_sigma(static_cast<double>(depth[x])));
+    const PriorRow row{warped.row(),
+                       depth,
+                       tolerance.data(),
+                       depth_then.ptr<float>(),
+                       before.log_odds.ptr<float>(),
+                       static_cast<float>(config.prior_share),
+                       static_cast<float>(config.confident_log_odds),
+                       result.log_odds.ptr<float>(y),
+                       result.newly_observed.ptr<uchar>(y)};
+    // A surface that was not here before came from beside, most likely: it is taken to move if what is
+    // there does, but not confidently.
+    const auto seek_beside = [&](int x) {
+      if (warped.at(about, x) <= 0) return;
       const cv::Point at = warped.nearest(x);
+      const float expected = warped.z(x), like = 0.5F * tolerance[static_cast<std::size_t>(x)];
       float odds = 0.0F;
-      for (int py = std::max(0, at.y - kReach); py <= std::min(prior.rows - 1, at.y + kReach); ++py)
-        for (int px = std::max(0, at.x - kReach); px <= std::min(prior.cols - 1, at.x + kReach); ++px) {
+      for (int py = std::max(0, at.y - kReach); py <= std::min(size.height - 1, at.y + kReach); ++py)
+        for (int px = std::max(0, at.x - kReach); px <= std::min(size.width - 1, at.x + kReach); ++px) {
           const float near = before.log_odds.ptr<float>(py)[px];
-          if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < 0.5F * tolerance)
-            odds = near;
+          if (near > odds && std::abs(depth_then.ptr<float>(py)[px] - expected) < like) odds = near;
         }
-      out[x] = std::min(keep * odds, kArrived);
+      row.log_odds[x] = std::min(row.keep * odds, kArrived);
+    };
+    int x = 0;
+    for (; wide && x + kAtOnce <= size.width; x += kAtOnce)
+      for (int others = warp_eight(row, x); others != 0; others &= others - 1)
+        seek_beside(x + std::countr_zero(static_cast<unsigned>(others)));
+    for (; x < size.width; ++x) {
+      if (!warped.inside(x)) {
+        if (depth[x] > 0) row.newly_observed[x] = 255;
+      } else if (std::abs(warped.at(row.then, x) - warped.z(x)) < tolerance[static_cast<std::size_t>(x)]) {
+        const float odds = warped.at(row.known, x);
+        row.log_odds[x] = odds > row.firm ? odds : row.keep * odds;
+      } else {
+        seek_beside(x);
+      }
     }
   }
   return result;

@@ -23,7 +23,9 @@ struct WarpedPrior {
 
 /// The log-odds of the frame before, brought to where they belong now: by the camera's motion for what stands
 /// still, and within reach of a dynamic object's step for what does not, onto pixels at a like depth.
+/// @param wide as of compare_with_reference()
 [[nodiscard]] WarpedPrior warp_prior(const RgbdView& current, const MotionPrior& before,
-                                     const Pose& previous_from_current, const StillpointConfig& config);
+                                     const Pose& previous_from_current, const StillpointConfig& config,
+                                     bool wide = has_wide_lanes());
 
 }  // namespace stillpoint

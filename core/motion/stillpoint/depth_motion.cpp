@@ -21,76 +21,82 @@ constexpr float kDoubt = 1.0F;                         // log-odds: registration
 constexpr int kHole = 4;             // downsampled px: half of what a dynamic object may have unmeasured
 constexpr float kStillLimit = 4.0F;  // of log-odds: so that a change of mind stays possible
 
-/// One value for each pixel, by its superpixel; `none` where it lies in no superpixel.
-template <typename T>
-cv::Mat paint_superpixels(const cv::Mat& labels, const std::vector<T>& of_superpixel, T none) {
-  cv::Mat image(labels.size(), cv::DataType<T>::type);
+/// The pixels of moving superpixels.
+cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Superpixel>& superpixels) {
+  std::vector<uchar> moving{0};  // at label + 1: the first entry is for pixels in none
+  for (const Superpixel& superpixel : superpixels) moving.push_back(superpixel.moving ? 255 : 0);
+  cv::Mat image(labels.size(), CV_8UC1);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
-    auto* out = image.ptr<T>(y);
-    for (int x = 0; x < labels.cols; ++x)
-      out[x] = label[x] >= 0 ? of_superpixel[static_cast<std::size_t>(label[x])] : none;
+    auto* out = image.ptr<uchar>(y);
+    for (int x = 0; x < labels.cols; ++x) out[x] = moving[static_cast<std::size_t>(label[x] + 1)];
   }
   return image;
 }
 
-/// The pixels of moving superpixels.
-cv::Mat paint_moving(const cv::Mat& labels, const std::vector<Superpixel>& superpixels) {
-  std::vector<uchar> of_superpixel;
-  of_superpixel.reserve(superpixels.size());
-  for (const Superpixel& superpixel : superpixels) of_superpixel.push_back(superpixel.moving ? 255 : 0);
-  return paint_superpixels<uchar>(labels, of_superpixel, 0);
-}
-
-/// Adds what one reference says of each pixel. Where its superpixel was measured as a whole, that it looks
-/// the same says nothing more: a slow dynamic object's pixels hardly change.
-void add_pixels(const ReferenceEvidence& reference, const cv::Mat& labels, cv::Mat& evidence) {
-  std::vector<std::uint8_t> measured_whole;
-  measured_whole.reserve(reference.motions.size());
-  for (const SuperpixelMotion& superpixel : reference.motions)
-    measured_whole.push_back(superpixel.log_odds != 0.0F);
-  for (int y = 0; y < labels.rows; ++y) {
-    const auto* label = labels.ptr<int>(y);
-    const auto* says = reference.log_odds.ptr<float>(y);
-    auto* sum = evidence.ptr<float>(y);
-    for (int x = 0; x < labels.cols; ++x) {
-      const bool measured = says[x] < 0 && label[x] >= 0 && !measured_whole.empty() &&
-                            measured_whole[static_cast<std::size_t>(label[x])] != 0;
-      if (!measured) sum[x] += says[x];
-    }
-  }
-}
-
-/// What superpixels say by their shifts, at each pixel. Frames in a row see nearly the same shift, so each
-/// says only a part of it.
-cv::Mat evidence_of_superpixels(const StillpointTrace& trace, const StillpointConfig& config) {
-  std::vector<float> of_superpixel(trace.superpixels.size(), 0.0F);
+/// What superpixels say by their shifts, at label + 1: the first entry is for pixels in none. Frames in a row
+/// see nearly the same shift, so each says only a part of it.
+std::vector<float> evidence_of_shifts(const StillpointTrace& trace, const StillpointConfig& config) {
+  std::vector<float> of_superpixel(trace.superpixels.size() + 1, 0.0F);
   for (const ReferenceEvidence& reference : trace.references)
     for (std::size_t i = 0; i < reference.motions.size(); ++i) {
       if (reference.motions[i].log_odds == 0.0F) continue;
-      of_superpixel[i] +=
+      of_superpixel[i + 1] +=
           std::clamp(static_cast<float>(config.superpixel_share) * (reference.motions[i].log_odds - kDoubt),
                      -kMostStill, kMostMoved);
     }
-  return paint_superpixels(trace.labels, of_superpixel, 0.0F);
+  return of_superpixel;
 }
 
-/// Memory and evidence together. What is confidently known to be dynamic is let go but slowly: people who
-/// stop go on.
-cv::Mat with_prior(const cv::Mat& prior, const cv::Mat& evidence, const StillpointConfig& config) {
+/// Whether a reference measured a superpixel as a whole, at label + 1; empty where it measured none.
+std::vector<std::uint8_t> measured_whole(const ReferenceEvidence& reference) {
+  std::vector<std::uint8_t> whole;
+  if (reference.motions.empty()) return whole;
+  whole.push_back(0);
+  for (const SuperpixelMotion& superpixel : reference.motions) whole.push_back(superpixel.log_odds != 0.0F);
+  return whole;
+}
+
+/// Adds what one reference says of a row's pixels. Where a superpixel was measured as a whole, that a pixel
+/// looks the same says nothing more: a slow dynamic object's pixels hardly change.
+void add_pixels(const float* says, const std::vector<std::uint8_t>& whole, const int* label,
+                std::vector<float>& sum) {
+  if (whole.empty())
+    for (std::size_t x = 0; x < sum.size(); ++x) sum[x] += says[x];
+  else
+    for (std::size_t x = 0; x < sum.size(); ++x)
+      sum[x] += says[x] < 0 && whole[static_cast<std::size_t>(label[x] + 1)] != 0 ? 0.0F : says[x];
+}
+
+/// Memory and all evidence together: the trace's `slow` and `log_odds`. What is confidently known to be
+/// dynamic is let go but slowly: people who stop go on.
+void join_evidence(const StillpointConfig& config, StillpointTrace& trace) {
   const auto limit = static_cast<float>(config.max_log_odds),
              firm = static_cast<float>(config.confident_log_odds),
              release = static_cast<float>(config.hysteresis);
-  cv::Mat odds(prior.size(), CV_32FC1);
-  for (int y = 0; y < odds.rows; ++y) {
-    const auto *before = prior.ptr<float>(y), *says = evidence.ptr<float>(y);
-    auto* out = odds.ptr<float>(y);
-    for (int x = 0; x < odds.cols; ++x) {
+  const std::vector<float> shifts = evidence_of_shifts(trace, config);
+  std::vector<std::vector<std::uint8_t>> whole;
+  for (const ReferenceEvidence& reference : trace.references) whole.push_back(measured_whole(reference));
+  trace.slow.create(trace.prior.size(), CV_32FC1);
+  trace.log_odds.create(trace.prior.size(), CV_32FC1);
+  std::vector<float> says(
+      static_cast<std::size_t>(trace.prior.cols));  // of a row's pixels, by all references
+  for (int y = 0; y < trace.prior.rows; ++y) {
+    const auto* label = trace.labels.ptr<int>(y);
+    const auto* before = trace.prior.ptr<float>(y);
+    auto *slow = trace.slow.ptr<float>(y), *out = trace.log_odds.ptr<float>(y);
+    std::fill(says.begin(), says.end(), 0.0F);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      add_pixels(trace.references[i].log_odds.ptr<float>(y), whole[i], label, says);
+    for (std::size_t x = 0; x < says.size(); ++x) {
+      slow[x] = shifts[static_cast<std::size_t>(label[x] + 1)];
+      says[x] += slow[x];
+    }
+    for (std::size_t x = 0; x < says.size(); ++x) {
       const float share = before[x] > firm && says[x] < 0 ? release : 1.0F;
-      out[x] = std::clamp(before[x] + share * says[x], -kStillLimit, limit);
+      out[x] = std::min(std::max(before[x] + share * says[x], -kStillLimit), limit);
     }
   }
-  return odds;
 }
 
 void drop_small_regions(cv::Mat& mask, double min_area_share) {
@@ -100,9 +106,13 @@ void drop_small_regions(cv::Mat& mask, double min_area_share) {
   std::vector<std::uint8_t> keep(static_cast<std::size_t>(count), 0);
   for (int i = 1; i < count; ++i)
     keep[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least;
-  for (int y = 0; y < mask.rows; ++y)
+  if (std::all_of(keep.begin() + 1, keep.end(), [](std::uint8_t k) { return k != 0; })) return;
+  for (int y = 0; y < mask.rows; ++y) {
+    const auto* label = labels.ptr<int>(y);
+    auto* out = mask.ptr<uchar>(y);
     for (int x = 0; x < mask.cols; ++x)
-      if (!keep[static_cast<std::size_t>(labels.at<int>(y, x))]) mask.at<uchar>(y, x) = 0;
+      out[x] = keep[static_cast<std::size_t>(label[x])] != 0 ? out[x] : uchar{0};
+  }
 }
 
 /// Whether a pixel without depth lies in a dynamic object: whether the nearest measured pixels to all four
@@ -127,10 +137,11 @@ bool enclosed_by_motion(const cv::Mat& mask, const cv::Mat& depth, int x, int y,
 void fill_unmeasured(const cv::Mat& depth, int reach, cv::Mat& mask) {
   const cv::Rect dynamic = cv::boundingRect(mask);
   std::vector<cv::Point> inside;
-  for (int y = dynamic.y; y < dynamic.br().y; ++y)
+  for (int y = dynamic.y; y < dynamic.br().y; ++y) {
+    const auto* z = depth.ptr<float>(y);
     for (int x = dynamic.x; x < dynamic.br().x; ++x)
-      if (depth.at<float>(y, x) <= 0 && enclosed_by_motion(mask, depth, x, y, reach))
-        inside.emplace_back(x, y);
+      if (z[x] <= 0 && enclosed_by_motion(mask, depth, x, y, reach)) inside.emplace_back(x, y);
+  }
   for (const cv::Point& p : inside) mask.at<uchar>(p) = 255;
 }
 
@@ -222,7 +233,7 @@ void remember_judgement(StillpointTrace& trace, const StillpointConfig& config) 
       const float odds = log_odds[x];
       const bool agrees = superpixel.moving && odds > superpixel.log_odds;
       const float joined = agrees ? odds : 0.5F * (odds + superpixel.log_odds);
-      log_odds[x] = std::min(joined, std::max({odds, superpixel.evidence, limit}));
+      log_odds[x] = std::min(joined, std::max(std::max(odds, superpixel.evidence), limit));
     }
   }
 }
@@ -268,16 +279,9 @@ StillpointTrace detect_depth_motion(const RgbdView& current, Superpixels superpi
         std::async(threads > 1 && i + 1 < references.size() ? std::launch::async : std::launch::deferred,
                    [&, i] { return evidence_of_reference(current, references[i], trace, config); }));
   if (!compared.empty()) compared.back().wait();
-  cv::Mat evidence = cv::Mat::zeros(current.depth.size(), CV_32FC1);
-  for (std::future<ReferenceEvidence>& one : compared) {
-    trace.references.push_back(one.get());
-    add_pixels(trace.references.back(), trace.labels, evidence);
-  }
+  for (std::future<ReferenceEvidence>& one : compared) trace.references.push_back(one.get());
   (void)watch.lap();
-  trace.slow = evidence_of_superpixels(trace, config);
-  evidence += trace.slow;
-  trace.log_odds = with_prior(trace.prior, evidence, config);
-
+  join_evidence(config, trace);
   judge_superpixels(trace.log_odds, trace.labels, superpixels.adjacency, config, trace.superpixels);
   trace.ms.superpixels = watch.lap();
   trace.small_mask = paint_moving(trace.labels, trace.superpixels);

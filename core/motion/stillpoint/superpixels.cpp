@@ -54,35 +54,50 @@ class Candidates {
  public:
   Candidates(int width, int side, int columns, int rows) : side_(side), columns_(columns), rows_(rows) {
     const auto n = static_cast<std::size_t>(width);
-    for (Candidate& c : all_)
-      c = {std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<int>(n)};
+    for (auto& row : of_row_)
+      for (Candidate& c : row)
+        c = {std::vector<float>(n), std::vector<float>(n), std::vector<float>(n), std::vector<int>(n)};
   }
 
+  /// For the pixels of a row of cells; rows one after the other, from 0 on.
   void gather(const std::vector<Superpixel>& superpixels, int row) {
-    for (std::size_t k = 0; k < all_.size(); ++k) {
-      Candidate& candidate = all_[k];
-      const int r = row - 1 + static_cast<int>(k) / 3, width = static_cast<int>(candidate.x.size());
+    if (row == 0) fill(superpixels, -1), fill(superpixels, 0);
+    fill(superpixels, row + 1);
+    for (std::size_t k = 0; k < all_.size(); ++k)
+      all_[k] = &of_row_[place_of(row - 1 + static_cast<int>(k) / 3)][k % 3];
+  }
+
+  /// Row by row, from the left.
+  [[nodiscard]] const std::array<const Candidate*, 9>& all() const { return all_; }
+
+ private:
+  static std::size_t place_of(int row) { return static_cast<std::size_t>(row + 3) % 3; }
+
+  /// The superpixels of one row, as those left of a pixel, at its own column, and right of it.
+  void fill(const std::vector<Superpixel>& superpixels, int row) {
+    constexpr float kNowhere = 1e9F;  // px: beyond every image, so that it is nobody's nearest
+    const Superpixel nobody{.centre = {kNowhere, kNowhere}};
+    int beside = -1;
+    for (Candidate& candidate : of_row_[place_of(row)]) {
+      const int width = static_cast<int>(candidate.x.size());
       for (int column = 0; column < columns_; ++column) {
-        const int c = column - 1 + static_cast<int>(k) % 3;
-        const bool exists = r >= 0 && r < rows_ && c >= 0 && c < columns_;
-        constexpr float kNowhere = 1e9F;  // px: beyond every image, so that it is nobody's nearest
-        const Superpixel nobody{.centre = {kNowhere, kNowhere}};
+        const int c = column + beside;
+        const bool exists = row >= 0 && row < rows_ && c >= 0 && c < columns_;
         const Superpixel& superpixel =
-            exists ? superpixels[static_cast<std::size_t>(r * columns_ + c)] : nobody;
+            exists ? superpixels[static_cast<std::size_t>(row * columns_ + c)] : nobody;
         const int begin = column * side_, end = column + 1 < columns_ ? begin + side_ : width;
         std::fill(candidate.x.begin() + begin, candidate.x.begin() + end, superpixel.centre.x);
         std::fill(candidate.y.begin() + begin, candidate.y.begin() + end, superpixel.centre.y);
         std::fill(candidate.z.begin() + begin, candidate.z.begin() + end, superpixel.depth);
-        std::fill(candidate.label.begin() + begin, candidate.label.begin() + end, r * columns_ + c);
+        std::fill(candidate.label.begin() + begin, candidate.label.begin() + end, row * columns_ + c);
       }
+      ++beside;
     }
   }
 
-  [[nodiscard]] const std::array<Candidate, 9>& all() const { return all_; }
-
- private:
   int side_, columns_, rows_;
-  std::array<Candidate, 9> all_;
+  std::array<std::array<Candidate, 3>, 3> of_row_;  // of the three rows about a pixel, by row modulo 3
+  std::array<const Candidate*, 9> all_{};
 };
 
 /// A row's pixels, as many as fill the lanes, and the nearest superpixel found for each so far.
@@ -113,18 +128,20 @@ void offer(const Candidate& candidate, float y, float side, Row& row) {
   }
 }
 
-/// The nearest superpixel of each pixel of a row, by offer() of all candidates.
-void find_nearest(const std::array<Candidate, 9>& candidates, float y, float side, Row& row) {
+/// The nearest superpixel of each pixel of a row, by offer() of all candidates; -1 where there is no depth.
+void find_nearest(const std::array<const Candidate*, 9>& candidates, float y, float side, Row& row) {
   for (std::size_t x = 0; x < row.depth.size(); ++x)
     row.by_depth[x] = 1.0F / (kDepthScale * std::max(kNearest, row.depth[x]));
   std::fill(row.distance.begin(), row.distance.end(), std::numeric_limits<float>::max());
-  for (const Candidate& candidate : candidates) offer(candidate, y, side, row);
+  for (const Candidate* candidate : candidates) offer(*candidate, y, side, row);
+  for (std::size_t x = 0; x < row.depth.size(); ++x)
+    if (!(row.depth[x] > 0)) row.label[x] = -1;
 }
 
 #if defined(__x86_64__)
 /// The same, eight pixels at a time and each with all its candidates.
-STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<Candidate, 9>& candidates, float y, float side,
-                                          Row& row) {
+STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<const Candidate*, 9>& candidates, float y,
+                                          float side, Row& row) {
   const __m256 no_depth = _mm256_set1_ps(2.0F), zero = _mm256_setzero_ps(), down = _mm256_set1_ps(y),
                by_side = _mm256_set1_ps(1.0F / side);
   for (std::size_t x = 0; x < row.x.size(); x += kWideLanes) {
@@ -135,10 +152,10 @@ STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<Candidate, 9>& candid
     __m256 best = _mm256_set1_ps(std::numeric_limits<float>::max());
     __m256i* label = reinterpret_cast<__m256i*>(&row.label[x]);
     __m256 best_label = _mm256_castsi256_ps(_mm256_loadu_si256(label));
-    for (const Candidate& candidate : candidates) {
-      const __m256 z = _mm256_loadu_ps(&candidate.z[x]);
-      const __m256 dx = _mm256_mul_ps(_mm256_sub_ps(at, _mm256_loadu_ps(&candidate.x[x])), by_side);
-      const __m256 dy = _mm256_mul_ps(_mm256_sub_ps(down, _mm256_loadu_ps(&candidate.y[x])), by_side);
+    for (const Candidate* candidate : candidates) {
+      const __m256 z = _mm256_loadu_ps(&candidate->z[x]);
+      const __m256 dx = _mm256_mul_ps(_mm256_sub_ps(at, _mm256_loadu_ps(&candidate->x[x])), by_side);
+      const __m256 dy = _mm256_mul_ps(_mm256_sub_ps(down, _mm256_loadu_ps(&candidate->y[x])), by_side);
       const __m256 dz = _mm256_blendv_ps(no_depth, _mm256_mul_ps(_mm256_sub_ps(depth, z), by_depth),
                                          _mm256_cmp_ps(z, zero, _CMP_GT_OQ));
       const __m256 d =
@@ -146,13 +163,15 @@ STILLPOINT_AVX2 void find_nearest_by_avx2(const std::array<Candidate, 9>& candid
       const __m256 nearer = _mm256_cmp_ps(d, best, _CMP_LT_OQ);
       best = _mm256_blendv_ps(best, d, nearer);
       best_label = _mm256_blendv_ps(
-          best_label, _mm256_loadu_ps(reinterpret_cast<const float*>(&candidate.label[x])), nearer);
+          best_label, _mm256_loadu_ps(reinterpret_cast<const float*>(&candidate->label[x])), nearer);
     }
-    _mm256_storeu_si256(label, _mm256_castps_si256(best_label));
+    const __m256 measured = _mm256_cmp_ps(depth, zero, _CMP_GT_OQ);
+    _mm256_storeu_si256(label, _mm256_castps_si256(_mm256_blendv_ps(
+                                   _mm256_castsi256_ps(_mm256_set1_epi32(-1)), best_label, measured)));
   }
 }
 #else
-void find_nearest_by_avx2(const std::array<Candidate, 9>&, float, float, Row&) {}
+void find_nearest_by_avx2(const std::array<const Candidate*, 9>&, float, float, Row&) {}
 #endif
 
 /// What giving pixels to superpixels is done in, round after round.
@@ -189,8 +208,7 @@ void assign(const RgbdView& view, const std::vector<Superpixel>& superpixels, in
     std::copy(depth, depth + width, row.depth.begin());
     (wide ? find_nearest_by_avx2 : find_nearest)(candidates.all(), static_cast<float>(y),
                                                  static_cast<float>(side), row);
-    auto* label = labels.ptr<int>(y);
-    for (int x = 0; x < width; ++x) label[x] = depth[x] > 0 ? row.label[static_cast<std::size_t>(x)] : -1;
+    std::copy_n(row.label.begin(), width, labels.ptr<int>(y));
   }
 }
 
@@ -252,11 +270,14 @@ std::vector<AdjacencyEdge> find_adjacency(const RgbdView& view, const cv::Mat& l
   // Cells to a side and below; places of a superpixel's neighbours.
   constexpr int kFar = 3, kWide = 2 * kFar + 1, kPlaces = (kFar + 1) * kWide;
   std::vector<int> counts(superpixels * kPlaces, 0);
+  std::vector<int> cell(superpixels);  // so that the difference of two is a place, but for kFar
+  for (int i = 0; i < static_cast<int>(superpixels); ++i)
+    cell[static_cast<std::size_t>(i)] = i / columns * kWide + i % columns;
   const auto look = [&](int a, int b, float za, float zb) {
     if (a == b || a < 0 || b < 0 || !same_surface(za, zb)) return;
     const int first = std::min(a, b), second = std::max(a, b);
-    const int down = second / columns - first / columns, right = second % columns - first % columns;
-    ++counts[static_cast<std::size_t>(first * kPlaces + down * kWide + right + kFar)];
+    const int place = cell[static_cast<std::size_t>(second)] - cell[static_cast<std::size_t>(first)] + kFar;
+    ++counts[static_cast<std::size_t>(first * kPlaces + place)];
   };
   for (int y = 0; y < labels.rows; ++y) {
     const bool last = y + 1 == labels.rows;
@@ -306,8 +327,12 @@ void judge_superpixels(const cv::Mat& log_odds, const cv::Mat& labels,
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<int>(y);
     const auto* odds = log_odds.ptr<float>(y);
-    for (int x = 0; x < labels.cols; ++x)
-      if (label[x] >= 0) superpixels[static_cast<std::size_t>(label[x])].evidence += odds[x];
+    for (int x = 0; x < labels.cols;) {
+      const int of = label[x];
+      float sum = of >= 0 ? superpixels[static_cast<std::size_t>(of)].evidence : 0.0F;
+      for (; x < labels.cols && label[x] == of; ++x) sum += odds[x];
+      if (of >= 0) superpixels[static_cast<std::size_t>(of)].evidence = sum;
+    }
   }
   for (Superpixel& superpixel : superpixels) {
     if (superpixel.pixels > 0) superpixel.evidence /= static_cast<float>(superpixel.pixels);
