@@ -61,7 +61,7 @@ class PointFollower {
     const WindowPlace from(first);
     if (!from.touches(source_[level + 1])) return false;
     fill_window(source_[level], source_[level + 1], from, window_);
-    const float a11 = window_.a11, a12 = window_.a12, a22 = window_.a22;
+    const auto [a11, a12, a22, rest_most] = sum_gradients(window_);
     const float determinant = a11 * a22 - a12 * a12;
     const float least = (a22 + a11 - std::sqrt((a11 - a22) * (a11 - a22) + 4.0F * a12 * a12)) /
                         static_cast<float>(2 * kWindow * kWindow);
@@ -71,7 +71,7 @@ class PointFollower {
     for (int step = 0; step < steps_; ++step) {
       const WindowPlace place(at);
       if (!place.touches(destination_[level])) return false;
-      const cv::Point2f b = mismatch(window_, destination_[level], place);
+      const cv::Point2f b = mismatch(window_, rest_most, destination_[level], place);
       const cv::Point2f delta((a12 * b.y - a22 * b.x) * inverse, (a12 * b.x - a11 * b.y) * inverse);
       at += delta;
       to = at + kHalf;
