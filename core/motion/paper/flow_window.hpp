@@ -26,7 +26,8 @@ struct alignas(32) WindowRow {
 /// What the gradients of a window sum up to.
 struct GradientSums {
   float a11, a12, a22;  ///< sums of dx², dx·dy and dy², scaled
-  float rest_most;      ///< the larger of the sums of dx² and of dy² over the pixels from kLanedPixels on
+  float rest_most;      ///< for mismatch(): the larger of the sums of dx² and of dy² over the pixels from
+                        ///< kLanedPixels on
 };
 
 struct Window {

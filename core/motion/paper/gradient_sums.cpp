@@ -32,7 +32,7 @@ STILLPOINT_AVX2 inline FloatSums sums_of_lanes(__m256 squares, __m256 products) 
 }
 
 /// Sums of the laned pixels, and of the others.
-struct WindowSums {
+struct RoundedSums {
   FloatSums laned, rest;
 };
 
@@ -65,7 +65,7 @@ STILLPOINT_AVX2 inline void add_rounded(const std::array<std::int16_t, 16>& grad
 }
 
 /// Sums rounded to a float at each step, in OpenCV's order.
-STILLPOINT_AVX2 WindowSums rounded_sums(const Window& window) {
+STILLPOINT_AVX2 RoundedSums rounded_sums(const Window& window) {
   __m256 squares = _mm256_setzero_ps(), products = squares;
   FloatSums rest;
   for (const WindowRow& row : window.rows) {
@@ -90,7 +90,7 @@ STILLPOINT_AVX2 GradientSums sum_gradients(const Window& window) {
   _mm_store_si128(reinterpret_cast<__m128i*>(product.data()), add_halves(rest.products));
   const int xx = square[0] + square[1],
             yy = square[2] + square[3];  // at most 105 times 4080²: 32 bits hold it
-  WindowSums sums;
+  RoundedSums sums;
   // Squares below kExact were so all the way, and products are no more than they.
   if (std::max(xx, yy) < kExact && _mm256_testz_si256(laned.squares, _mm256_set1_epi32(-kExact)) != 0) {
     sums.laned = sums_of_lanes(_mm256_cvtepi32_ps(laned.squares), _mm256_cvtepi32_ps(laned.products));
