@@ -26,26 +26,32 @@ using MatrixRows = std::array<MatrixRow, 3>;
 
 #if defined(__x86_64__)
 
-/// @return how many pixels it filled
-STILLPOINT_AVX2 int fill_eights(const short* gradients, int width, MatrixRow& row) {
-  int x = 0;
-  for (; x + kLanes <= width; x += kLanes) {
+/// Keeps a number of eight pixels, and adds it to those of the two other rows.
+template <bool kIsThird>
+STILLPOINT_AVX2 inline void keep_and_add(__m256 own, const float* a, const float* b, float* keep,
+                                         float* sum) {
+  _mm256_storeu_ps(keep, own);
+  const __m256 first = _mm256_loadu_ps(a), second = _mm256_loadu_ps(b);
+  _mm256_storeu_ps(sum, kIsThird ? _mm256_add_ps(_mm256_add_ps(first, second), own)
+                                 : _mm256_add_ps(_mm256_add_ps(first, own), second));
+}
+
+/// fill_row and add_rows in one. @param a,b the other rows in order: the new one lies between them, before
+/// them (which is the same to the bit) or, where it is the third, after them
+/// @return how many pixels it did
+template <bool kIsThird>
+STILLPOINT_AVX2 int fill_and_add_eights(const short* gradients, int width, const MatrixRow& a,
+                                        const MatrixRow& b, MatrixRow& row, MatrixRow& sum) {
+  std::size_t x = 0;
+  for (; x + kLanes <= static_cast<std::size_t>(width); x += kLanes) {
     const __m256i both = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(gradients + 2 * x));
     const __m256 dx = _mm256_cvtepi32_ps(_mm256_srai_epi32(_mm256_slli_epi32(both, 16), 16));
     const __m256 dy = _mm256_cvtepi32_ps(_mm256_srai_epi32(both, 16));
-    _mm256_storeu_ps(&row.xx[static_cast<std::size_t>(x)], _mm256_mul_ps(dx, dx));
-    _mm256_storeu_ps(&row.xy[static_cast<std::size_t>(x)], _mm256_mul_ps(dx, dy));
-    _mm256_storeu_ps(&row.yy[static_cast<std::size_t>(x)], _mm256_mul_ps(dy, dy));
+    keep_and_add<kIsThird>(_mm256_mul_ps(dx, dx), &a.xx[x], &b.xx[x], &row.xx[x], &sum.xx[x]);
+    keep_and_add<kIsThird>(_mm256_mul_ps(dx, dy), &a.xy[x], &b.xy[x], &row.xy[x], &sum.xy[x]);
+    keep_and_add<kIsThird>(_mm256_mul_ps(dy, dy), &a.yy[x], &b.yy[x], &row.yy[x], &sum.yy[x]);
   }
-  return x;
-}
-
-STILLPOINT_AVX2 int add_eights(const float* a, const float* b, const float* c, int width, float* to) {
-  int x = 0;
-  for (; x + kLanes <= width; x += kLanes)
-    _mm256_storeu_ps(to + x, _mm256_add_ps(_mm256_add_ps(_mm256_loadu_ps(a + x), _mm256_loadu_ps(b + x)),
-                                           _mm256_loadu_ps(c + x)));
-  return x;
+  return static_cast<int>(x);
 }
 
 STILLPOINT_AVX2 inline __m256 with_neighbours(const float* sums) {
@@ -95,30 +101,32 @@ STILLPOINT_AVX2 inline unsigned maxima_of_eight(const float* above, const float*
 
 #endif
 
-void fill_row(const short* gradients, int width, MatrixRow& row, [[maybe_unused]] bool wide) {
+/// Fills rows[slot] from a row of gradients and adds all three up: a + b + c in the rows' order.
+void fill_and_add(const short* gradients, int width, MatrixRows& rows, std::size_t slot, MatrixRow& sum,
+                  [[maybe_unused]] bool wide) {
+  MatrixRow& row = rows[slot];
   int x = 0;
 #if defined(__x86_64__)
-  if (wide) x = fill_eights(gradients, width, row);
+  if (wide)
+    x = slot == 2 ? fill_and_add_eights<true>(gradients, width, rows[0], rows[1], row, sum)
+                  : fill_and_add_eights<false>(gradients, width, rows[1 - slot], rows[2], row, sum);
 #endif
   float *xx = row.xx.data(), *xy = row.xy.data(), *yy = row.yy.data();
-  for (; x < width; ++x) {
-    const float dx = gradients[2 * x], dy = gradients[2 * x + 1];
-    xx[x] = dx * dx;
-    xy[x] = dx * dy;
-    yy[x] = dy * dy;
+  for (int k = x; k < width; ++k) {
+    const float dx = gradients[2 * k], dy = gradients[2 * k + 1];
+    xx[k] = dx * dx;
+    xy[k] = dx * dy;
+    yy[k] = dy * dy;
   }
-}
-
-void add_rows(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& c,
-              std::vector<float>& to, [[maybe_unused]] bool wide) {
-  const int width = static_cast<int>(to.size());
-  int x = 0;
-#if defined(__x86_64__)
-  if (wide) x = add_eights(a.data(), b.data(), c.data(), width, to.data());
-#endif
-  const float *first = a.data(), *second = b.data(), *third = c.data();
-  float* sum = to.data();
-  for (; x < width; ++x) sum[x] = first[x] + second[x] + third[x];
+  const auto add = [x, &rows, &sum, width](std::vector<float> MatrixRow::*numbers) {
+    const float *a = (rows[0].*numbers).data(), *b = (rows[1].*numbers).data(),
+                *c = (rows[2].*numbers).data();
+    float* to = (sum.*numbers).data();
+    for (int k = x; k < width; ++k) to[k] = a[k] + b[k] + c[k];
+  };
+  add(&MatrixRow::xx);
+  add(&MatrixRow::xy);
+  add(&MatrixRow::yy);
 }
 
 /// Twice the smaller eigenvalue at every pixel of a row but the outermost two, which stay as they are.
@@ -221,11 +229,8 @@ std::vector<cv::Point> corner_candidates(const cv::Mat& gradients, double qualit
   Candidates found;
   for (int y = 0; y < height; ++y) {
     // Row y takes row y-3's place; the order of the three does not matter but for rounding, which it fixes.
-    fill_row(gradients.ptr<short>(y), width, rows[slot(y)], wide);
+    fill_and_add(gradients.ptr<short>(y), width, rows, slot(y), sum, wide);
     if (y < 2) continue;
-    add_rows(rows[0].xx, rows[1].xx, rows[2].xx, sum.xx, wide);
-    add_rows(rows[0].xy, rows[1].xy, rows[2].xy, sum.xy, wide);
-    add_rows(rows[0].yy, rows[1].yy, rows[2].yy, sum.yy, wide);
     respond(sum, width, responses[slot(y - 1)].data(), largest, wide);
     const int judged = y - 2;  // the row before, which has both its neighbours now
     if (judged < 1 || largest <= 0.0F) continue;
