@@ -86,12 +86,28 @@ class GrayWarp {
     for (int k = begin; k < end; k += kGroup) {
       const Places from = places(row, k);
       if (k + kGroup <= end && fill_eight(from, to + k)) continue;
+      if (k + kGroup <= end && all_beyond(from)) {
+        std::memset(to + k, 0, kGroup);
+        continue;
+      }
       alignas(32) std::array<int, kGroup> x, y;
       _mm256_store_si256(reinterpret_cast<__m256i*>(x.data()), from.x);
       _mm256_store_si256(reinterpret_cast<__m256i*>(y.data()), from.y);
       for (int i = 0; i < std::min(kGroup, end - k); ++i)
         to[k + i] = pixel(x[static_cast<std::size_t>(i)], y[static_cast<std::size_t>(i)]);
     }
+  }
+
+  /// Whether eight pixels have no part in the source.
+  STILLPOINT_AVX2 inline bool all_beyond(const Places& from) const {
+    const __m256i x = _mm256_srai_epi32(from.x, kFractionBits), y = _mm256_srai_epi32(from.y, kFractionBits);
+    const __m256i before_first = _mm256_set1_epi32(-1);
+    const __m256i beyond =
+        _mm256_or_si256(_mm256_or_si256(_mm256_cmpgt_epi32(before_first, x),
+                                        _mm256_cmpgt_epi32(x, _mm256_set1_epi32(source_.cols - 1))),
+                        _mm256_or_si256(_mm256_cmpgt_epi32(before_first, y),
+                                        _mm256_cmpgt_epi32(y, _mm256_set1_epi32(source_.rows - 1))));
+    return _mm256_movemask_ps(_mm256_castsi256_ps(beyond)) == 0xFF;
   }
 
   /// @return false where one of the eight comes from beyond the source's rim, or from close to its end

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <numeric>
 #include <opencv2/video/tracking.hpp>
+#include <utility>
 
 #include "core/motion/paper/flow_window.hpp"
 
@@ -124,11 +124,11 @@ FollowedPoints follow_by_avx2(const std::vector<cv::Mat>& source, const std::vec
   PointFollower follower(source, destination, settings, known != nullptr ? known->data() : nullptr,
                          to_fill != nullptr ? to_fill->data() : nullptr);
   // From top to bottom: what one point reads is still in the cache when its neighbour does.
-  std::vector<std::size_t> downwards(points.size());
-  std::iota(downwards.begin(), downwards.end(), 0U);
-  std::sort(downwards.begin(), downwards.end(),
-            [&points](std::size_t a, std::size_t b) { return points[a].y < points[b].y; });
-  for (const std::size_t i : downwards)
+  std::vector<std::pair<float, std::size_t>> downwards;
+  downwards.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) downwards.emplace_back(points[i].y, i);
+  std::sort(downwards.begin(), downwards.end());
+  for (const auto& [y, i] : downwards)
     followed.found[i] = follower.follow(i, points[i], levels, followed.to[i], followed.residuals[i]) ? 1 : 0;
   if (to_fill != nullptr) sums->set_filled();
   return followed;
