@@ -130,13 +130,13 @@ double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, co
 }
 
 Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {
-  // Pairs of levels below kPairLevels are counted at once, which nearly all of a difference's are; those of
-  // two words in a table each, for neighbours are often alike and would wait for one another's count. What is
-  // not valid is counted as black, and taken off again.
+  // Pairs of levels below kPairLevels are counted at once, which nearly all of a difference's are; those of a
+  // word in a table each, for neighbours are often alike and would wait for one another's count. What is not
+  // valid is counted as black, and taken off again.
   constexpr unsigned kPairBits = 5, kPairLevels = 1 << kPairBits;
   constexpr std::uint64_t kAbovePairs = 0x0101010101010101U * (0xFF ^ (kPairLevels - 1));
   constexpr std::uint64_t kFirsts = 0x0001000100010001U * (kPairLevels - 1);
-  std::array<std::array<int, kPairLevels * kPairLevels>, 8> pairs{};
+  std::array<std::array<int, kPairLevels * kPairLevels>, 4> pairs{};
   std::array<Histogram, 8> tables{};
   for (int y = 0; y < image.rows; ++y) {
     const unsigned char* pixels = image.ptr(y);
@@ -149,8 +149,7 @@ Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {
       eight &= usable_eight;
       if ((eight & kAbovePairs) == 0) {
         const std::uint64_t four = (eight & kFirsts) | (eight >> (8 - kPairBits) & kFirsts << kPairBits);
-        auto* tables_of_word = &pairs[static_cast<std::size_t>(x) / 8 % 2 * 4];
-        for (std::size_t k = 0; k < 4; ++k) ++tables_of_word[k][four >> (16 * k) & 0xFFFF];
+        for (std::size_t k = 0; k < 4; ++k) ++pairs[k][four >> (16 * k) & 0xFFFF];
       } else {
         for (std::size_t k = 0; k < 8; ++k) ++tables[k][eight >> (8 * k) & 0xFF];
       }
