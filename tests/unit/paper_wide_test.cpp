@@ -123,6 +123,18 @@ TEST_F(PaperWide, MasksAreThoseOfFewerAtOnce) {
   }
 }
 
+TEST_F(PaperWide, WhatIsAboveAThresholdIsOpenCvs) {
+  for (const cv::Size& size : kSizes) {
+    const cv::Mat image = noise(size, CV_8UC1, 0, 256);
+    for (const double threshold :
+         {-3.0, -1.0, -0.5, 0.0, 0.4, 17.0, 17.9, 127.0, 128.0, 253.0, 254.0, 254.5, 255.0, 300.0}) {
+      cv::Mat expected;
+      cv::threshold(image, expected, threshold, 255, cv::THRESH_BINARY);
+      EXPECT_EQ(cv::countNonZero(binarise(image, threshold, true) != expected), 0) << size << threshold;
+    }
+  }
+}
+
 TEST_F(PaperWide, HistogramsCountEachPixel) {
   for (const cv::Size& size : kSizes)
     for (const int most : {8, 32, 33, 40, 256}) {  // pairs of levels below 32 are counted at once

@@ -37,7 +37,7 @@ class Surroundings {
 
  private:
   using Word = std::uint64_t;
-  static constexpr int kWordBits = 64;
+  static constexpr int kWordBits = 64;  // pixels a word
 
   [[nodiscard]] const Word* row(int y) const { return taken_.data() + static_cast<std::size_t>(y) * words_; }
 

@@ -1,6 +1,7 @@
 #include "core/motion/paper/difference.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -191,9 +192,24 @@ int otsu_threshold(const Histogram& levels) {
   return best_level;
 }
 
-cv::Mat binarise(const cv::Mat& difference, double threshold) {
+cv::Mat binarise(const cv::Mat& difference, double threshold, bool wide) {
   cv::Mat mask;
-  cv::threshold(difference, mask, threshold, 255, cv::THRESH_BINARY);
+  const double least = std::floor(threshold) + 1.0;
+  if (!wide || !(least >= 0.0 && least <= 255.0)) {
+    cv::threshold(difference, mask, threshold, 255, cv::THRESH_BINARY);
+    return mask;
+  }
+  mask.create(difference.size(), CV_8UC1);
+  const auto bound = static_cast<uchar>(least);
+  for (int y = 0; y < mask.rows; ++y) {
+    const uchar* pixels = difference.ptr(y);
+    uchar* to = mask.ptr(y);
+    int x = 0;
+#if defined(__x86_64__)
+    x = binarise_wide(pixels, mask.cols, bound, to);
+#endif
+    for (; x < mask.cols; ++x) to[x] = pixels[x] >= bound ? 255 : 0;
+  }
   return mask;
 }
 

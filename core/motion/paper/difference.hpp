@@ -30,6 +30,6 @@ using Histogram = std::array<int, 256>;
 [[nodiscard]] int otsu_threshold(const Histogram& levels);
 
 /// Eq. (2): 255 where the difference is above the threshold, else 0.
-[[nodiscard]] cv::Mat binarise(const cv::Mat& difference, double threshold);
+[[nodiscard]] cv::Mat binarise(const cv::Mat& difference, double threshold, bool wide = has_wide_lanes());
 
 }  // namespace stillpoint

@@ -68,5 +68,17 @@ STILLPOINT_AVX2 int differences_wide(const unsigned char* there, const unsigned 
   return x;
 }
 
+STILLPOINT_AVX2 int binarise_wide(const unsigned char* pixels, int width, unsigned char least,
+                                  unsigned char* to) {
+  const __m256i bound = _mm256_set1_epi8(static_cast<char>(least));
+  int x = 0;
+  for (; x + kPixels <= width; x += kPixels) {
+    const __m256i own = pixels_at(pixels + x);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + x),
+                        _mm256_cmpeq_epi8(_mm256_max_epu8(own, bound), own));
+  }
+  return x;
+}
+
 }  // namespace stillpoint
 #endif

@@ -34,14 +34,14 @@ class KnownSums {
   }
   /// @return what to fill in before set_filled(); null where somebody else does or did
   [[nodiscard]] std::vector<GradientSums>* to_fill() {
-    int empty = kEmpty;
+    State empty = kEmpty;
     return state_.compare_exchange_strong(empty, kBeingFilled) ? &sums_ : nullptr;
   }
   void set_filled() { state_.store(kFilled, std::memory_order_release); }
 
  private:
-  static constexpr int kEmpty = 0, kBeingFilled = 1, kFilled = 2;
-  std::atomic<int> state_ = kEmpty;
+  enum State { kEmpty, kBeingFilled, kFilled };
+  std::atomic<State> state_ = kEmpty;
   std::vector<GradientSums> sums_;  // a point's levels from the full image on, then the next point's
 };
 
