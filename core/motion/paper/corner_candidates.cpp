@@ -160,23 +160,26 @@ class Candidates {
   }
   /// Leaves those of at least `least`, in order.
   void sort_from(float least) {
-    const auto is_less = [least](std::uint64_t key) {
-      return std::bit_cast<float>(~static_cast<std::uint32_t>(key >> 32)) < least;
-    };
+    const auto is_less = [least](std::uint64_t key) { return response_of(key) < least; };
     keys_.erase(std::remove_if(keys_.begin(), keys_.end(), is_less), keys_.end());
     std::sort(keys_.begin(), keys_.end());
   }
-  [[nodiscard]] std::vector<cv::Point> points(int width) const {
-    std::vector<cv::Point> points;
-    points.reserve(keys_.size());
+  [[nodiscard]] std::vector<CornerCandidate> list(int width) const {
+    std::vector<CornerCandidate> list;
+    list.reserve(keys_.size());
     for (const std::uint64_t key : keys_) {
       const auto pixel = static_cast<std::uint32_t>(key), across = static_cast<std::uint32_t>(width);
-      points.emplace_back(static_cast<int>(pixel % across), static_cast<int>(pixel / across));
+      list.push_back(
+          {{static_cast<int>(pixel % across), static_cast<int>(pixel / across)}, response_of(key)});
     }
-    return points;
+    return list;
   }
 
  private:
+  static float response_of(std::uint64_t key) {
+    return std::bit_cast<float>(~static_cast<std::uint32_t>(key >> 32));
+  }
+
   std::vector<std::uint64_t> keys_;
 };
 
@@ -215,7 +218,7 @@ void add_maxima(const ThreeRows& rows, int width, float least, std::uint32_t fir
 
 }  // namespace
 
-std::vector<cv::Point> corner_candidates(const cv::Mat& gradients, double quality, bool wide) {
+std::vector<CornerCandidate> corner_candidates(const cv::Mat& gradients, double quality, bool wide) {
   const int width = gradients.cols, height = gradients.rows;
   if (width < 3 || height < 3) return {};
   MatrixRows rows = {MatrixRow(width), MatrixRow(width), MatrixRow(width)};
@@ -246,7 +249,7 @@ std::vector<cv::Point> corner_candidates(const cv::Mat& gradients, double qualit
       {responses[slot(last - 1)].data(), responses[slot(last)].data(), responses[slot(last + 1)].data()},
       width, least(), static_cast<std::uint32_t>(last) * static_cast<std::uint32_t>(width), found, wide);
   found.sort_from(least());
-  return found.points(width);
+  return found.list(width);
 }
 
 }  // namespace stillpoint

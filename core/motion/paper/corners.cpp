@@ -67,7 +67,7 @@ std::vector<cv::Point2f> find_corners(const cv::Mat& gradients, int max_corners,
                                       double distance_px) {
   std::vector<cv::Point2f> corners;
   Surroundings chosen(gradients.size(), distance_px);
-  for (const cv::Point& at : corner_candidates(gradients, quality)) {
+  for (const auto& [at, response] : corner_candidates(gradients, quality)) {
     if (!chosen.is_free(at)) continue;
     chosen.take(at);
     corners.emplace_back(at);
