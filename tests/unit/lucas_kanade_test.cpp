@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "core/wide_lanes.hpp"
 #include "tests/unit/motion_scene.hpp"
 
 namespace stillpoint {
@@ -76,6 +77,21 @@ TEST_F(LucasKanade, IsOpenCvsWhereSumsAreTooLargeToBeExact) {
 TEST_F(LucasKanade, IsOpenCvsWhereAnImageHasNothingToFollow) {
   const cv::Mat even(120, 160, CV_8UC1, cv::Scalar(90));
   EXPECT_EQ(expect_same_as_opencv(even, even), 0);
+}
+
+TEST(LucasKanadePoints, GoTheSameWayWhenTheirSumsAreKnown) {
+  const auto scene = motion_test::plane_and_patch({320, 240}, {130, 60, 65, 120}, {20, -1}, 16);
+  const auto from = pyramid_of(scene.reference), into = pyramid_of(scene.target);
+  const std::vector<cv::Point2f> points = points_over(scene.reference.size());
+  KnownSums sums;
+  for (const auto* destination : {&into, &from, &into}) {  // the first fills the sums in
+    const FollowedPoints anew = follow_points(from, *destination, points, {});
+    const FollowedPoints known = follow_points(from, *destination, points, {}, &sums);
+    EXPECT_EQ(known.found, anew.found);
+    EXPECT_EQ(known.to, anew.to);
+    EXPECT_EQ(known.residuals, anew.residuals);
+    EXPECT_EQ(sums.all() != nullptr, has_wide_lanes());
+  }
 }
 
 TEST(LucasKanadePoints, GoWhereThePlaneGoes) {

@@ -175,6 +175,30 @@ TEST(DetectMotion, PreparedFramesGiveTheSameAndServeTwice) {
                       detect_motion(target, reference, config));
 }
 
+TEST(DetectMotion, ADirectionWhoseTracksStaySeesTheSameAgain) {
+  int stayed = 0;
+  for (int i = 0; i < 12; ++i) {
+    const PlaneAndPatch scene = plane_and_patch({320, 240}, {90, 60, 100, 120}, {12 + i, 0}, 8);
+    const PaperConfig config = pulled_config();
+    const PaperTrace trace = detect_motion(scene.reference, scene.target, config);
+    for (std::size_t r = 1; r < trace.rounds.size(); ++r)
+      for (auto direction : {&MotionRound::forward, &MotionRound::backward}) {
+        const DirectionTrace &before = trace.rounds[r - 1].*direction, &now = trace.rounds[r].*direction;
+        std::vector<Track> tracks = now.tracks;
+        const bool same = std::equal(tracks.begin(), tracks.end(), before.tracks.begin(),
+                                     [](const Track& a, const Track& b) { return a.removed == b.removed; });
+        const HomographyEstimate anew =
+            estimate_homography(tracks, scene.target.size(), config, before.homography.matrix);
+        EXPECT_EQ(now.homography.matrix, anew.matrix);
+        EXPECT_EQ(now.homography.valid, anew.valid);
+        if (!same) continue;
+        ++stayed;
+        expect_equal_directions(now, before);
+      }
+  }
+  EXPECT_GT(stayed, 0);
+}
+
 TEST(DetectMotion, ForwardAndBackwardChangePlacesWithTheFrames) {
   const PlaneAndPatch scene = walking_patch();
   PaperConfig config;

@@ -7,6 +7,8 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <vector>
 
+#include "core/avx2.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -27,12 +29,52 @@ const std::array<Word, 256>& bytes_of_bits() {
   return bytes;
 }
 
+#if defined(__x86_64__)
+
+constexpr int kWide = 32;  // pixels at once
+
+/// Bits of 32 pixels of 0 or 255.
+STILLPOINT_AVX2 Word bits_of_wide(const unsigned char* pixels) {
+  return static_cast<std::uint32_t>(
+      _mm256_movemask_epi8(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(pixels))));
+}
+
+/// @return how many bits it set, a multiple of 32
+STILLPOINT_AVX2 int set_bits_wide(const unsigned char* pixels, int width, Word* bits) {
+  int x = 0;
+  for (; x + kWordBits <= width; x += kWordBits)
+    bits[x / kWordBits] = bits_of_wide(pixels + x) | bits_of_wide(pixels + x + kWide) << kWide;
+  if (x + kWide > width) return x;
+  bits[x / kWordBits] = bits_of_wide(pixels + x);
+  return x + kWide;
+}
+
+/// @return how many pixels it made
+STILLPOINT_AVX2 int where_wide(const Word* bits, const unsigned char* usable, int width,
+                               unsigned char* pixels) {
+  const __m256i byte_of_pixel = _mm256_setr_epi8(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1,  //
+                                                 2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3);
+  const __m256i bit_of_pixel = _mm256_set1_epi64x(static_cast<long long>(0x8040201008040201U));
+  int x = 0;
+  for (; x + kWide <= width; x += kWide) {
+    const auto own = static_cast<int>(bits[x / kWordBits] >> (x % kWordBits));
+    const __m256i spread = _mm256_shuffle_epi8(_mm256_set1_epi32(own), byte_of_pixel);
+    const __m256i set = _mm256_cmpeq_epi8(_mm256_and_si256(spread, bit_of_pixel), bit_of_pixel);
+    const __m256i valid = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(usable + x));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(pixels + x), _mm256_and_si256(set, valid));
+  }
+  return x;
+}
+
+#endif
+
 /// A mask with a bit a pixel: kernels of many pixels then take a few operations for 64 pixels at once.
 class BitMask {
  public:
   /// @param mask CV_8UC1, 0 or 255
-  explicit BitMask(const cv::Mat& mask)
-      : rows_(mask.rows),
+  BitMask(const cv::Mat& mask, bool wide)
+      : wide_(wide),
+        rows_(mask.rows),
         columns_(mask.cols),
         words_(static_cast<std::size_t>((mask.cols + kWordBits - 1) / kWordBits)),
         bits_(static_cast<std::size_t>(mask.rows) * words_, 0) {
@@ -40,6 +82,9 @@ class BitMask {
       const unsigned char* pixels = mask.ptr(y);
       Word* bits = row(y);
       int x = 0;
+#if defined(__x86_64__)
+      if (wide_) x = set_bits_wide(pixels, columns_, bits);
+#endif
       for (; x + 16 <= columns_; x += 16) {
         const auto sixteen = cv::v_reinterpret_as_s8(cv::v_load(pixels + x));
         bits[x / kWordBits] |= static_cast<Word>(cv::v_signmask(sixteen)) << (x % kWordBits);
@@ -72,6 +117,9 @@ class BitMask {
       const unsigned char* usable = valid.ptr(y);
       unsigned char* pixels = mask.ptr(y);
       int x = 0;
+#if defined(__x86_64__)
+      if (wide_) x = where_wide(bits, usable, columns_, pixels);
+#endif
       for (; x + 8 <= columns_; x += 8) {
         Word eight = 0;
         std::memcpy(&eight, usable + x, 8);
@@ -140,6 +188,7 @@ class BitMask {
     for (int y = 0; y < rows_; ++y) row(y)[words_ - 1] &= (Word{1} << rest) - 1;
   }
 
+  [[maybe_unused]] bool wide_;
   int rows_, columns_;
   std::size_t words_;
   std::vector<Word> bits_;
@@ -150,8 +199,8 @@ int side_at_once(int side, int times) { return 1 + times * (side - 1); }
 
 }  // namespace
 
-cv::Mat clean_mask(const cv::Mat& raw_mask, const cv::Mat& valid, const PaperConfig& config) {
-  BitMask mask(raw_mask);
+cv::Mat clean_mask(const cv::Mat& raw_mask, const cv::Mat& valid, const PaperConfig& config, bool wide) {
+  BitMask mask(raw_mask, wide);
   mask.erode(side_at_once(config.erode_kernel_px, config.erode_iterations),
              config.erode_iterations * (config.erode_kernel_px / 2));
   mask.dilate(side_at_once(config.dilate_kernel_px, config.dilate_iterations),

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/motion/paper/paper_config.hpp"
+#include "core/wide_lanes.hpp"
 
 namespace stillpoint {
 
@@ -13,6 +14,8 @@ namespace stillpoint {
 /// shape back where it was, and with the paper's sizes the result lies half a pixel off centre. Pixels
 /// outside the image neither erode nor dilate.
 /// @param raw_mask,valid CV_8UC1, 0 or 255, one size
-[[nodiscard]] cv::Mat clean_mask(const cv::Mat& raw_mask, const cv::Mat& valid, const PaperConfig& config);
+/// @param wide 32 pixels at once, for processors with AVX2; the result is the same
+[[nodiscard]] cv::Mat clean_mask(const cv::Mat& raw_mask, const cv::Mat& valid, const PaperConfig& config,
+                                 bool wide = has_wide_lanes());
 
 }  // namespace stillpoint

@@ -48,11 +48,15 @@ cv::Mat valid_area(const cv::Size& size, const cv::Matx33d& homography, int bord
   const double low = border_px, right = size.width - 1 - border_px, bottom = size.height - 1 - border_px;
   const std::array<cv::Vec3d, 5> inside = {x - low * w, right * w - x, y - low * w, bottom * w - y, w};
 
-  cv::Mat valid = cv::Mat::zeros(size, CV_8UC1);
+  cv::Mat valid(size, CV_8UC1);
   for (int row = 0; row < size.height; ++row) {
     const Span span = row_span(inside, row, size.width);
-    if (span.end > span.begin)
-      std::memset(valid.ptr(row, span.begin), 255, static_cast<std::size_t>(span.end - span.begin));
+    unsigned char* to = valid.ptr(row);
+    const int begin = span.end > span.begin ? span.begin : size.width;
+    const int end = std::max(span.end, begin);
+    std::memset(to, 0, static_cast<std::size_t>(begin));
+    std::memset(to + begin, 255, static_cast<std::size_t>(end - begin));
+    std::memset(to + end, 0, static_cast<std::size_t>(size.width - end));
   }
   return valid;
 }

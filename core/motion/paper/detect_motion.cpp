@@ -76,6 +76,13 @@ DirectionTrace look_one_way(std::vector<Track> tracks, const cv::Mat& source, co
   return seen;
 }
 
+/// What a direction sees whose tracks are those of the round before: the same, at no time.
+DirectionTrace seen_again(const DirectionTrace& before) {
+  DirectionTrace seen = before;
+  seen.ms = {};
+  return seen;
+}
+
 /// Step 5. The backward mask lies in the reference's camera; the forward homography brings it into the
 /// target's (the inverse of the backward one, where there is no forward one), and what the forward warp has
 /// no data for stays out of the union. Step 6's regions are found when somebody looks (describe_paper): what
@@ -168,18 +175,25 @@ PaperTrace detect_motion(const MotionFrame& reference, const MotionFrame& target
       [&] { backward_tracks = follow_corners(target, reference, config); });
   trace.tracks_ms = watch.milliseconds();
 
+  // A direction none of whose tracks changed sides would see again what it saw.
+  int forward_changed = 0, backward_changed = 0;
   for (int i = 0; i < config.max_rounds; ++i) {  // fig. 2
     MotionRound round;
     const auto last_forward = last_homography(trace.rounds, &MotionRound::forward);
     const auto last_backward = last_homography(trace.rounds, &MotionRound::backward);
-    run_both(
-        threads,
-        [&] {
-          round.forward = look_one_way(forward_tracks, reference.gray, target.gray, last_forward, config);
-        },
-        [&] {
-          round.backward = look_one_way(backward_tracks, target.gray, reference.gray, last_backward, config);
-        });
+    const auto look_forward = [&] {
+      if (i > 0 && forward_changed == 0)
+        round.forward = seen_again(trace.rounds.back().forward);
+      else
+        round.forward = look_one_way(forward_tracks, reference.gray, target.gray, last_forward, config);
+    };
+    const auto look_backward = [&] {
+      if (i > 0 && backward_changed == 0)
+        round.backward = seen_again(trace.rounds.back().backward);
+      else
+        round.backward = look_one_way(backward_tracks, target.gray, reference.gray, last_backward, config);
+    };
+    run_both(threads, look_forward, look_backward);
     watch.lap();
     unite_directions(round);
     round.union_ms = watch.lap();
@@ -189,11 +203,11 @@ PaperTrace detect_motion(const MotionFrame& reference, const MotionFrame& target
     const bool settled =
         i > 0 && homographies_settled(trace.rounds[trace.rounds.size() - 2], trace.rounds.back(), config);
     watch.lap();
-    const int changed = remove_moving_tracks(forward_tracks, TrackEnd::kTo, mask) +
-                        remove_moving_tracks(backward_tracks, TrackEnd::kFrom, mask);
+    forward_changed = remove_moving_tracks(forward_tracks, TrackEnd::kTo, mask);
+    backward_changed = remove_moving_tracks(backward_tracks, TrackEnd::kFrom, mask);
     trace.rounds.back().removal_ms = watch.lap();
-    trace.rounds.back().changed_tracks = changed;
-    trace.converged = settled || changed == 0;
+    trace.rounds.back().changed_tracks = forward_changed + backward_changed;
+    trace.converged = settled || trace.rounds.back().changed_tracks == 0;
     if (trace.converged) break;
   }
   trace.note = note_on(trace, config);

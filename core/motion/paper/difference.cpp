@@ -1,6 +1,7 @@
 #include "core/motion/paper/difference.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -8,20 +9,18 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "core/motion/paper/difference_wide.hpp"
+
 namespace stillpoint {
 namespace {
 
-constexpr int kDark = 48, kBright = 215;  // grey levels: coarse steps below, cut off above
 // Ratios of grey levels: exposure hardly changes by more between two frames.
 constexpr double kLeastRatio = 0.5, kMostRatio = 2.0;
 
-/// Pixels that tell a ratio, and those of them whose ratio is too far from 1 to be left untold.
-struct RatioCounts {
-  int all = 0, darker = 0, brighter = 0;
-};
-
-/// Every other pixel of a row, eight at once.
-void count_ratios(const uchar* to, const uchar* from, const uchar* usable, int width, RatioCounts& counts) {
+/// Every other pixel of a row from an even pixel on, eight at once.
+/// @return how far it came
+int count_ratios_by_eight(const uchar* to, const uchar* from, const uchar* usable, int begin, int width,
+                          RatioCounts& counts) {
   const auto even_pixels = [](const uchar* pixels) {
     return cv::v_reinterpret_as_s16(cv::v_load(pixels)) & cv::v_setall_s16(0xFF);
   };
@@ -32,7 +31,8 @@ void count_ratios(const uchar* to, const uchar* from, const uchar* usable, int w
     return cv::v_mul_wrap(gray, cv::v_setall_s16(factor));
   };
   cv::v_int16x8 all = cv::v_setzero_s16(), darker = all, brighter = all;
-  for (int x = 0; x + 16 <= width; x += 16) {
+  int x = begin;
+  for (; x + 16 <= width; x += 16) {
     const cv::v_int16x8 a = even_pixels(to + x), b = even_pixels(from + x);
     const cv::v_int16x8 tells = (even_pixels(usable + x) != cv::v_setzero_s16()) & is_mid(a) & is_mid(b) &
                                 (times(a, 2) >= b) & (a < times(b, 2));  // kLeastRatio, kMostRatio
@@ -43,7 +43,17 @@ void count_ratios(const uchar* to, const uchar* from, const uchar* usable, int w
   counts.all += cv::v_reduce_sum(all);
   counts.darker += cv::v_reduce_sum(darker);
   counts.brighter += cv::v_reduce_sum(brighter);
-  for (int x = width / 16 * 16; x < width; x += 2) {
+  return x;
+}
+
+void count_ratios(const uchar* to, const uchar* from, const uchar* usable, int width,
+                  [[maybe_unused]] bool wide, RatioCounts& counts) {
+  int x = 0;
+#if defined(__x86_64__)
+  if (wide) x = count_ratios_wide(to, from, usable, width, counts);
+#endif
+  x = count_ratios_by_eight(to, from, usable, x, width, counts);
+  for (; x < width; x += 2) {
     const int a = to[x], b = from[x];
     if (usable[x] == 0 || std::min(a, b) < kDark || std::max(a, b) > kBright || 2 * a < b || a >= 2 * b)
       continue;
@@ -81,12 +91,16 @@ class RatioBins {
 
 }  // namespace
 
-cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid) {
+cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid,
+                         [[maybe_unused]] bool wide) {
   cv::Mat difference(destination.size(), CV_8UC1);
   for (int y = 0; y < difference.rows; ++y) {
     const uchar *there = destination.ptr(y), *carried = compensated.ptr(y), *usable = valid.ptr(y);
     uchar* to = difference.ptr(y);
     int x = 0;
+#if defined(__x86_64__)
+    if (wide) x = differences_wide(there, carried, usable, difference.cols, to);
+#endif
     for (; x + cv::v_uint8x16::nlanes <= difference.cols; x += cv::v_uint8x16::nlanes)
       cv::v_store(to + x,
                   cv::v_absdiff(cv::v_load(there + x), cv::v_load(carried + x)) & cv::v_load(usable + x));
@@ -95,10 +109,11 @@ cv::Mat frame_difference(const cv::Mat& destination, const cv::Mat& compensated,
   return difference;
 }
 
-double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid) {
+double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, const cv::Mat& valid,
+                      bool wide) {
   RatioCounts counts;
   for (int y = 0; y < destination.rows; y += 2)
-    count_ratios(destination.ptr(y), compensated.ptr(y), valid.ptr(y), destination.cols, counts);
+    count_ratios(destination.ptr(y), compensated.ptr(y), valid.ptr(y), destination.cols, wide, counts);
   if (counts.all * 40 < static_cast<int>(destination.total())) return 1.0;  // of every fourth pixel
   if (2 * counts.darker < counts.all && 2 * counts.brighter <= counts.all) return 1.0;
 
@@ -116,8 +131,13 @@ double exposure_ratio(const cv::Mat& destination, const cv::Mat& compensated, co
 }
 
 Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {
-  // Eight tables, for neighbouring pixels are often alike and would wait for one another's count. What is not
+  // Pairs of levels below kPairLevels are counted at once, which nearly all of a difference's are; those of a
+  // word in a table each, for neighbours are often alike and would wait for one another's count. What is not
   // valid is counted as black, and taken off again.
+  constexpr unsigned kPairBits = 5, kPairLevels = 1 << kPairBits;
+  constexpr std::uint64_t kAbovePairs = 0x0101010101010101U * (0xFF ^ (kPairLevels - 1));
+  constexpr std::uint64_t kFirsts = 0x0001000100010001U * (kPairLevels - 1);
+  std::array<std::array<int, kPairLevels * kPairLevels>, 4> pairs{};
   std::array<Histogram, 8> tables{};
   for (int y = 0; y < image.rows; ++y) {
     const unsigned char* pixels = image.ptr(y);
@@ -128,13 +148,23 @@ Histogram histogram(const cv::Mat& image, const cv::Mat& valid) {
       std::memcpy(&eight, pixels + x, 8);
       std::memcpy(&usable_eight, usable + x, 8);
       eight &= usable_eight;
-      for (std::size_t k = 0; k < 8; ++k) ++tables[k][eight >> (8 * k) & 0xFF];
+      if ((eight & kAbovePairs) == 0) {
+        const std::uint64_t four = (eight & kFirsts) | (eight >> (8 - kPairBits) & kFirsts << kPairBits);
+        for (std::size_t k = 0; k < 4; ++k) ++pairs[k][four >> (16 * k) & 0xFFFF];
+      } else {
+        for (std::size_t k = 0; k < 8; ++k) ++tables[k][eight >> (8 * k) & 0xFF];
+      }
     }
     for (; x < image.cols; ++x) ++tables[0][static_cast<std::size_t>(pixels[x] & usable[x])];
   }
   Histogram levels{};
   for (const Histogram& table : tables)
     for (std::size_t level = 0; level < levels.size(); ++level) levels[level] += table[level];
+  for (const auto& table : pairs)
+    for (std::size_t pair = 0; pair < table.size(); ++pair) {
+      levels[pair % kPairLevels] += table[pair];
+      levels[pair / kPairLevels] += table[pair];
+    }
   levels[0] -= static_cast<int>(valid.total()) - cv::countNonZero(valid);
   return levels;
 }
@@ -162,9 +192,24 @@ int otsu_threshold(const Histogram& levels) {
   return best_level;
 }
 
-cv::Mat binarise(const cv::Mat& difference, double threshold) {
+cv::Mat binarise(const cv::Mat& difference, double threshold, bool wide) {
   cv::Mat mask;
-  cv::threshold(difference, mask, threshold, 255, cv::THRESH_BINARY);
+  const double least = std::floor(threshold) + 1.0;
+  if (!wide || !(least >= 0.0 && least <= 255.0)) {
+    cv::threshold(difference, mask, threshold, 255, cv::THRESH_BINARY);
+    return mask;
+  }
+  mask.create(difference.size(), CV_8UC1);
+  const auto bound = static_cast<uchar>(least);
+  for (int y = 0; y < mask.rows; ++y) {
+    const uchar* pixels = difference.ptr(y);
+    uchar* to = mask.ptr(y);
+    int x = 0;
+#if defined(__x86_64__)
+    x = binarise_wide(pixels, mask.cols, bound, to);
+#endif
+    for (; x < mask.cols; ++x) to[x] = pixels[x] >= bound ? 255 : 0;
+  }
   return mask;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/avx2.hpp"
+#include "core/motion/paper/window_lanes.hpp"
 
 namespace stillpoint {
 namespace {
@@ -14,8 +14,7 @@ namespace {
 // one after the other. Which sum a number enters, and when, decides the last bit, and is kept here.
 constexpr int kGrayBits = 5;  // interpolated grey levels have five bits behind the point
 constexpr int kGrayShift = kWindowWeightBits - kGrayBits;
-constexpr float kSumScale = 1.0F / (1 << 20);
-constexpr int kExact = 1 << 24;  // whole numbers below it are floats, and so are their sums
+constexpr float kExactSquared = 0.999F * kExact * kExact;     // with room for what a float is off
 constexpr std::size_t kGrayBytes = 32, kGradientBytes = 100;  // read from the first pixel of a row on
 
 /// The bytes of an image from a window's first pixel on, `bytes` of each of its rows and of one below; copied
@@ -45,14 +44,6 @@ class WindowBytes {
   std::array<unsigned char, (kWindow + 1) * kCopyStep> copy_;
 };
 
-template <typename T>
-STILLPOINT_AVX2 inline __m256i load(const T& of) {
-  return _mm256_load_si256(reinterpret_cast<const __m256i*>(&of));
-}
-template <typename T>
-STILLPOINT_AVX2 inline void store(T& to, __m256i value) {
-  _mm256_store_si256(reinterpret_cast<__m256i*>(&to), value);
-}
 STILLPOINT_AVX2 inline __m256i load_bytes(const unsigned char* from) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
 }
@@ -95,13 +86,16 @@ struct GrayRow {
   __m256i laned, rest;
 };
 
+/// Each four of eight numbers twice, in 16 bits.
+STILLPOINT_AVX2 inline __m256i fours_twice(__m256i eight) { return _mm256_packs_epi32(eight, eight); }
+
 STILLPOINT_AVX2 inline GrayRow gray_between(const Line& upper, const Line& lower, const Weights& weights) {
   const __m256i half = _mm256_set1_epi32(1 << (kGrayShift - 1));
   const __m256i first = weigh(upper.first, lower.first, weights, half);
   const __m256i second = weigh(upper.second, lower.second, weights, half);
   return {_mm256_blend_epi16(_mm256_srli_epi32(first, kGrayShift), _mm256_slli_epi32(second, 16 - kGrayShift),
                              0xAA),
-          _mm256_srli_epi32(weigh(upper.rest, lower.rest, weights, half), kGrayShift)};
+          fours_twice(_mm256_srli_epi32(weigh(upper.rest, lower.rest, weights, half), kGrayShift))};
 }
 
 /// Gradients of eight pixels beside their right neighbours': dx of two pixels, dy of two, … in 32 bits each.
@@ -114,146 +108,109 @@ STILLPOINT_AVX2 inline GradientLine gradient_line_at(const unsigned char* from) 
   return {_mm256_unpacklo_epi16(here, right), _mm256_unpackhi_epi16(here, right)};
 }
 
-/// Interpolated gradients of eight pixels, in order.
-struct Gradients {
-  __m256i dx, dy;
-};
-
-STILLPOINT_AVX2 inline Gradients gradients_between(const GradientLine& upper, const GradientLine& lower,
-                                                   const Weights& weights) {
+/// Interpolated gradients of eight pixels: dx of pixel 0, dy, dx of pixel 1, …
+STILLPOINT_AVX2 inline __m256i gradients_between(const GradientLine& upper, const GradientLine& lower,
+                                                 const Weights& weights) {
   const __m256i half = _mm256_set1_epi32(1 << (kWindowWeightBits - 1));
-  const __m256 even =
-      _mm256_castsi256_ps(_mm256_srai_epi32(weigh(upper.even, lower.even, weights, half), kWindowWeightBits));
-  const __m256 odd =
-      _mm256_castsi256_ps(_mm256_srai_epi32(weigh(upper.odd, lower.odd, weights, half), kWindowWeightBits));
-  return {_mm256_castps_si256(_mm256_shuffle_ps(even, odd, 0x88)),
-          _mm256_castps_si256(_mm256_shuffle_ps(even, odd, 0xDD))};
+  return _mm256_packs_epi32(
+      _mm256_srai_epi32(weigh(upper.even, lower.even, weights, half), kWindowWeightBits),
+      _mm256_srai_epi32(weigh(upper.odd, lower.odd, weights, half), kWindowWeightBits));
 }
 
-/// Eight numbers as pairs of 16 bits: 0 4 1 5 2 6 3 7.
-STILLPOINT_AVX2 inline __m128i lane_pairs(__m256i numbers) {
-  return _mm_blend_epi16(_mm256_castsi256_si128(numbers),
-                         _mm_slli_epi32(_mm256_extracti128_si256(numbers, 1), 16), 0xAA);
+STILLPOINT_AVX2 inline void store_laned(std::array<std::int16_t, 16>& to, __m256i gradients) {
+  const __m256i by_lanes = _mm256_setr_epi8(0, 1, 8, 9, 4, 5, 12, 13, 2, 3, 10, 11, 6, 7, 14, 15,  //
+                                            0, 1, 8, 9, 4, 5, 12, 13, 2, 3, 10, 11, 6, 7, 14, 15);
+  store(to, _mm256_shuffle_epi8(_mm256_permute4x64_epi64(gradients, 0xD8), by_lanes));
 }
 
-/// ((lane 0 + lane 2) + (lane 1 + lane 3)).
-STILLPOINT_AVX2 inline float sum_of_lanes(__m128 lanes) {
-  const __m128 two = _mm_add_ps(lanes, _mm_movehl_ps(lanes, lanes));
-  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+STILLPOINT_AVX2 inline void store_rest(WindowRow& row, __m256i gradients) {
+  const __m256i in_window = _mm256_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15,  //
+                                             0, 1, -1, -1, -1, -1, -1, -1, 2, 3, -1, -1, -1, -1, -1, -1);
+  store(row.rest_gradient, _mm256_shuffle_epi8(gradients, in_window));
 }
-
-STILLPOINT_AVX2 inline __m128 add_halves(__m128 sum, __m256 eight) {
-  return _mm_add_ps(_mm_add_ps(sum, _mm256_castps256_ps128(eight)), _mm256_extractf128_ps(eight, 1));
-}
-
-/// Sums of dx², dx·dy and dy² in lanes.
-struct LanedSums {
-  __m128 xx = _mm_setzero_ps(), xy = _mm_setzero_ps(), yy = _mm_setzero_ps();
-};
-
-STILLPOINT_AVX2 inline void take_laned(const Gradients& eight, std::array<std::int16_t, 16>& to,
-                                       LanedSums& sums) {
-  store(to, _mm256_set_m128i(lane_pairs(eight.dy), lane_pairs(eight.dx)));
-  const __m256 dx = _mm256_cvtepi32_ps(eight.dx), dy = _mm256_cvtepi32_ps(eight.dy);
-  sums.xx = add_halves(sums.xx, _mm256_mul_ps(dx, dx));
-  sums.xy = add_halves(sums.xy, _mm256_mul_ps(dx, dy));
-  sums.yy = add_halves(sums.yy, _mm256_mul_ps(dy, dy));
-}
-
-/// Sums of dx², dx·dy and dy², one pixel after the other.
-struct SumsInOrder {
-  float xx = 0.0F, xy = 0.0F, yy = 0.0F;
-};
-
-STILLPOINT_AVX2 inline void take_rest(const Gradients& eight, WindowRow& row, SumsInOrder& sums) {
-  const __m256i in_window = _mm256_setr_epi32(0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0, 0, 0);
-  store(row.dx, _mm256_and_si256(eight.dx, in_window));
-  store(row.dy, _mm256_and_si256(eight.dy, in_window));
-  const __m256 dx = _mm256_cvtepi32_ps(eight.dx), dy = _mm256_cvtepi32_ps(eight.dy);
-  alignas(32) std::array<float, 8> xx, xy, yy;
-  _mm256_store_ps(xx.data(), _mm256_mul_ps(dx, dx));
-  _mm256_store_ps(xy.data(), _mm256_mul_ps(dx, dy));
-  _mm256_store_ps(yy.data(), _mm256_mul_ps(dy, dy));
-#pragma GCC unroll 8
-  for (std::size_t k = 0; k < kRestPixels; ++k) {
-    sums.xx += xx[k];
-    sums.xy += xy[k];
-    sums.yy += yy[k];
-  }
-}
-
-/// Sums of a window's gradients, on the way to Window::a11 and so on.
-struct WindowSums {
-  LanedSums laned;
-  SumsInOrder in_order;
-};
 
 STILLPOINT_AVX2 void interpolate_window(const WindowBytes& gray, const WindowBytes& change,
-                                        const Weights& weights, Window& window, WindowSums& sums) {
+                                        const Weights& weights, Window& window) {
   Line upper = line_at(gray.row(0));
   for (int y = 0; y < kWindow; ++y) {
     WindowRow& row = window.rows[static_cast<std::size_t>(y)];
     const Line lower = line_at(gray.row(y + 1));
     const GrayRow levels = gray_between(upper, lower, weights);
     store(row.laned_gray, levels.laned);
-    store(row.gray, levels.rest);
+    store(row.rest_gray, levels.rest);
     upper = lower;
   }
   GradientLine first = gradient_line_at(change.row(0)), second = gradient_line_at(change.row(0) + 32);
   for (int y = 0; y < kWindow; ++y) {
     WindowRow& row = window.rows[static_cast<std::size_t>(y)];
     const GradientLine first_below = gradient_line_at(change.row(y + 1));
-    take_laned(gradients_between(first, first_below, weights), row.laned_gradient[0], sums.laned);
+    store_laned(row.laned_gradient[0], gradients_between(first, first_below, weights));
     first = first_below;
     const GradientLine second_below = gradient_line_at(change.row(y + 1) + 32);
-    take_laned(gradients_between(second, second_below, weights), row.laned_gradient[1], sums.laned);
+    store_laned(row.laned_gradient[1], gradients_between(second, second_below, weights));
     second = second_below;
   }
   GradientLine rest = gradient_line_at(change.row(0) + 64);
   for (int y = 0; y < kWindow; ++y) {
     const GradientLine rest_below = gradient_line_at(change.row(y + 1) + 64);
-    take_rest(gradients_between(rest, rest_below, weights), window.rows[static_cast<std::size_t>(y)],
-              sums.in_order);
+    store_rest(window.rows[static_cast<std::size_t>(y)], gradients_between(rest, rest_below, weights));
     rest = rest_below;
   }
 }
 
-/// Gradients of eight pixels as they are.
-STILLPOINT_AVX2 inline Gradients gradients_at(const unsigned char* from) {
-  const __m256i both = load_bytes(from);
-  return {_mm256_srai_epi32(_mm256_slli_epi32(both, 16), 16), _mm256_srai_epi32(both, 16)};
-}
-
 /// The same for a window that lies on whole pixels, as a corner's does in the full image.
-STILLPOINT_AVX2 void copy_window(const WindowBytes& gray, const WindowBytes& change, Window& window,
-                                 WindowSums& sums) {
+STILLPOINT_AVX2 void copy_window(const WindowBytes& gray, const WindowBytes& change, Window& window) {
   const __m256i low_half = _mm256_set1_epi32(0xFFFF);
   for (int y = 0; y < kWindow; ++y) {
     WindowRow& row = window.rows[static_cast<std::size_t>(y)];
     const Line line = line_at(gray.row(y));
     const __m256i laned = _mm256_blend_epi16(line.first, _mm256_slli_epi32(line.second, 16), 0xAA);
     store(row.laned_gray, _mm256_slli_epi16(laned, kGrayBits));
-    store(row.gray, _mm256_slli_epi32(_mm256_and_si256(line.rest, low_half), kGrayBits));
-    take_laned(gradients_at(change.row(y)), row.laned_gradient[0], sums.laned);
-    take_laned(gradients_at(change.row(y) + 32), row.laned_gradient[1], sums.laned);
-    take_rest(gradients_at(change.row(y) + 64), row, sums.in_order);
+    store(row.rest_gray, fours_twice(_mm256_slli_epi32(_mm256_and_si256(line.rest, low_half), kGrayBits)));
+    store_laned(row.laned_gradient[0], load_bytes(change.row(y)));
+    store_laned(row.laned_gradient[1], load_bytes(change.row(y) + 32));
+    store_rest(row, load_bytes(change.row(y) + 64));
   }
 }
 
-/// Products of differences and gradients, of the pixels that are summed one after the other.
-struct Products {
-  alignas(32) std::array<std::array<std::int32_t, 8>, kWindow> x, y;
+/// Differences of the pixels that are summed one after the other, ordered as in WindowRow.
+struct alignas(32) Differences {
+  std::array<std::array<std::int16_t, 16>, kWindow> rows;
 };
 
-/// Their sums along x and y in order, each rounded to a float.
-cv::Point2f sum_in_order(const Products& products) {
+/// Sums of differences times gradients in order, each rounded to a float.
+cv::Point2f sum_in_order(const Differences& differences, const Window& window) {
   cv::Point2f sum;
   for (std::size_t y = 0; y < kWindow; ++y)
     for (std::size_t k = 0; k < kRestPixels; ++k) {
-      sum.x += static_cast<float>(products.x[y][k]);
-      sum.y += static_cast<float>(products.y[y][k]);
+      const int off = differences.rows[y][kRestX[k]];
+      sum.x += static_cast<float>(off * window.rows[y].rest_gradient[kRestX[k]]);
+      sum.y += static_cast<float>(off * window.rows[y].rest_gradient[kRestY[k]]);
     }
   return sum;
+}
+
+/// Whether no sum of the rest's differences times gradients reaches kExact on the way: by Cauchy and Schwarz
+/// it is at most the root of the product of their squares' sums.
+/// @param squares differences', twice in each half; those of more than 31 bits show by their sign
+STILLPOINT_AVX2 inline bool are_exact(__m256i squares, float rest_most) {
+  if (_mm256_movemask_ps(_mm256_castsi256_ps(squares)) != 0) return false;
+  const __m128 both = add_halves(_mm256_cvtepi32_ps(squares));
+  return (_mm_cvtss_f32(both) + _mm_cvtss_f32(_mm_movehdup_ps(both))) * rest_most < kExactSquared;
+}
+
+/// The same by what sums came to at each row, and what the row's own could add at most, where that bound is
+/// too wide.
+STILLPOINT_AVX2 bool are_exact(const Differences& differences, const Window& window) {
+  __m128i sums = _mm_setzero_si128(), most = sums;  // along x, along y
+  for (std::size_t y = 0; y < kWindow; ++y) {
+    const __m256i off = load(differences.rows[y]), gradient = load(window.rows[y].rest_gradient);
+    const __m256i sizes = _mm256_madd_epi16(_mm256_abs_epi16(off), _mm256_abs_epi16(gradient));
+    const __m128i row = _mm_hadd_epi32(add_halves(_mm256_madd_epi16(off, gradient)), add_halves(sizes));
+    most = _mm_or_si128(most, _mm_add_epi32(_mm_abs_epi32(sums), _mm_unpackhi_epi64(row, row)));
+    sums = _mm_add_epi32(sums, row);
+  }
+  return _mm_testz_si128(most, _mm_setr_epi32(-kExact, -kExact, 0, 0)) != 0;
 }
 
 }  // namespace
@@ -266,22 +223,19 @@ STILLPOINT_AVX2 void fill_window(const cv::Mat& image, const cv::Mat& gradients,
     __builtin_prefetch(change.row(y));
     __builtin_prefetch(change.row(y) + 64);
   }
-  WindowSums sums;
   if (place.is_on_pixels())
-    copy_window(gray, change, window, sums);
+    copy_window(gray, change, window);
   else
-    interpolate_window(gray, change, weights_of(place), window, sums);
-  window.a11 = (sums.in_order.xx + sum_of_lanes(sums.laned.xx)) * kSumScale;
-  window.a12 = (sums.in_order.xy + sum_of_lanes(sums.laned.xy)) * kSumScale;
-  window.a22 = (sums.in_order.yy + sum_of_lanes(sums.laned.yy)) * kSumScale;
+    interpolate_window(gray, change, weights_of(place), window);
 }
 
-STILLPOINT_AVX2 cv::Point2f mismatch(const Window& window, const cv::Mat& image, const WindowPlace& place) {
+STILLPOINT_AVX2 cv::Point2f mismatch(const Window& window, float rest_most, const cv::Mat& image,
+                                     const WindowPlace& place) {
   const WindowBytes gray(image, place.corner, kGrayBytes);
   const Weights weights = weights_of(place);
-  Products products;
-  __m256 laned = _mm256_setzero_ps();  // four lanes along x, then four along y
-  __m256i sum_x = _mm256_setzero_si256(), sum_y = sum_x, size_x = sum_x, size_y = sum_x;
+  Differences differences;
+  __m256 laned = _mm256_setzero_ps();  // in each half two lanes along x, two along y
+  __m256i rest = _mm256_setzero_si256(), squares = rest;
   Line upper = line_at(gray.row(0));
   for (int y = 0; y < kWindow; ++y) {
     const WindowRow& row = window.rows[static_cast<std::size_t>(y)];
@@ -289,35 +243,32 @@ STILLPOINT_AVX2 cv::Point2f mismatch(const Window& window, const cv::Mat& image,
     const GrayRow levels = gray_between(upper, lower, weights);
     upper = lower;
     const __m256i off = _mm256_sub_epi16(levels.laned, load(row.laned_gray));
-    const __m256i first = _mm256_permute4x64_epi64(off, 0x44), second = _mm256_permute4x64_epi64(off, 0xEE);
+    const __m256i first = _mm256_permute4x64_epi64(off, 0x50), second = _mm256_permute4x64_epi64(off, 0xFA);
     laned = _mm256_add_ps(laned, _mm256_cvtepi32_ps(_mm256_madd_epi16(first, load(row.laned_gradient[0]))));
     laned = _mm256_add_ps(laned, _mm256_cvtepi32_ps(_mm256_madd_epi16(second, load(row.laned_gradient[1]))));
-    const __m256i rest = _mm256_sub_epi32(levels.rest, load(row.gray));
-    const __m256i x = _mm256_madd_epi16(rest, load(row.dx)), down = _mm256_madd_epi16(rest, load(row.dy));
-    store(products.x[static_cast<std::size_t>(y)], x);
-    store(products.y[static_cast<std::size_t>(y)], down);
-    sum_x = _mm256_add_epi32(sum_x, x);
-    sum_y = _mm256_add_epi32(sum_y, down);
-    size_x = _mm256_add_epi32(size_x, _mm256_abs_epi32(x));
-    size_y = _mm256_add_epi32(size_y, _mm256_abs_epi32(down));
+    const __m256i rest_off = _mm256_sub_epi16(levels.rest, load(row.rest_gray));
+    store(differences.rows[static_cast<std::size_t>(y)], rest_off);
+    rest = _mm256_add_epi32(rest, _mm256_madd_epi16(rest_off, load(row.rest_gradient)));
+    squares = _mm256_add_epi32(squares, _mm256_madd_epi16(rest_off, rest_off));
   }
-  // Sums that cannot reach kExact on the way are the same in any order.
-  const __m256i four = _mm256_hadd_epi32(_mm256_hadd_epi32(sum_x, sum_y), _mm256_hadd_epi32(size_x, size_y));
-  const __m128i sums = _mm_add_epi32(_mm256_castsi256_si128(four), _mm256_extracti128_si256(four, 1));
-  const bool lanes_fit = _mm256_testz_si256(_mm256_or_si256(size_x, size_y), _mm256_set1_epi32(-kExact)) != 0;
+  alignas(16) std::array<float, 4> lanes;
+  _mm_store_ps(lanes.data(), add_halves(laned));
   cv::Point2f sum;
-  if (lanes_fit && _mm_extract_epi32(sums, 2) < kExact && _mm_extract_epi32(sums, 3) < kExact)
-    sum = {static_cast<float>(_mm_extract_epi32(sums, 0)), static_cast<float>(_mm_extract_epi32(sums, 1))};
-  else
-    sum = sum_in_order(products);
-  return {(sum.x + sum_of_lanes(_mm256_castps256_ps128(laned))) * kSumScale,
-          (sum.y + sum_of_lanes(_mm256_extractf128_ps(laned, 1))) * kSumScale};
+  if (are_exact(squares, rest_most) || are_exact(differences, window)) {  // the same in any order
+    alignas(16) std::array<std::int32_t, 4> sums;
+    _mm_store_si128(reinterpret_cast<__m128i*>(sums.data()), add_halves(rest));
+    sum = {static_cast<float>(sums[0] + sums[1]), static_cast<float>(sums[2] + sums[3])};
+  } else {
+    sum = sum_in_order(differences, window);
+  }
+  return {(sum.x + (lanes[0] + lanes[1])) * kSumScale, (sum.y + (lanes[2] + lanes[3])) * kSumScale};
 }
 
 STILLPOINT_AVX2 float mean_difference(const Window& window, const cv::Mat& image, const WindowPlace& place) {
   const WindowBytes gray(image, place.corner, kGrayBytes);
   const Weights weights = weights_of(place);
-  const __m256i in_window = _mm256_setr_epi32(-1, -1, -1, -1, -1, 0, 0, 0);
+  const __m256i ones = _mm256_set1_epi16(1);
+  const __m256i in_window = _mm256_setr_epi16(1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0);
   __m256i sum = _mm256_setzero_si256();
   Line upper = line_at(gray.row(0));
   for (int y = 0; y < kWindow; ++y) {
@@ -326,9 +277,9 @@ STILLPOINT_AVX2 float mean_difference(const Window& window, const cv::Mat& image
     const GrayRow levels = gray_between(upper, lower, weights);
     upper = lower;
     const __m256i off = _mm256_abs_epi16(_mm256_sub_epi16(levels.laned, load(row.laned_gray)));
-    const __m256i rest = _mm256_abs_epi32(_mm256_sub_epi32(levels.rest, load(row.gray)));
-    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(off, _mm256_set1_epi16(1)));
-    sum = _mm256_add_epi32(sum, _mm256_and_si256(rest, in_window));
+    const __m256i rest = _mm256_abs_epi16(_mm256_sub_epi16(levels.rest, load(row.rest_gray)));
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(off, ones));
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(rest, in_window));
   }
   alignas(32) std::array<std::int32_t, 8> lanes;
   store(lanes, sum);

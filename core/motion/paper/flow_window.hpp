@@ -18,14 +18,20 @@ constexpr int kWindowWeightBits = 14;                        ///< the weights of
 /// A row of a window: its grey levels, and how they change along x and y.
 struct alignas(32) WindowRow {
   std::array<std::int16_t, 16> laned_gray;                     ///< of pixels 0 4 1 5 2 6 3 7, 8 12 9 13 …
-  std::array<std::array<std::int16_t, 16>, 2> laned_gradient;  ///< of eight pixels: along x, then along y
-  std::array<std::int32_t, 8> gray;    ///< of the pixels from kLanedPixels on, in order
-  std::array<std::int32_t, 8> dx, dy;  ///< … 0 past the window; 16 bits each
+  std::array<std::array<std::int16_t, 16>, 2> laned_gradient;  ///< of eight: x of 0 4 1 5, y, x of 2 6 3 7, y
+  std::array<std::int16_t, 16> rest_gray;      ///< of the pixels from kLanedPixels on: four twice, four twice
+  std::array<std::int16_t, 16> rest_gradient;  ///< … x of four, y of four, likewise; 0 past the window
+};
+
+/// What the gradients of a window sum up to.
+struct GradientSums {
+  float a11, a12, a22;  ///< sums of dx², dx·dy and dy², scaled
+  float rest_most;      ///< for mismatch(): the larger of the sums of dx² and of dy² over the pixels from
+                        ///< kLanedPixels on
 };
 
 struct Window {
   std::array<WindowRow, kWindow> rows;
-  float a11, a12, a22;  ///< sums of dx², dx·dy and dy², scaled
 };
 
 /// Where a window's first pixel lies in an image, and how the four pixels around are weighed.
@@ -50,12 +56,16 @@ struct WindowPlace {
   int upper_weights, lower_weights;  ///< two of 16 bits: the left pixel's, and above it the right one's
 };
 
-/// The window of `image` at `place`, with the sums of its gradients.
+/// The window of `image` at `place`.
 /// @param image CV_8UC1 with a window's side of border, @param gradients CV_16SC2 of it
 void fill_window(const cv::Mat& image, const cv::Mat& gradients, const WindowPlace& place, Window& window);
 
+[[nodiscard]] GradientSums sum_gradients(const Window& window);
+
 /// What differs between the image at `place` and the window, times the window's gradients, summed and scaled.
-[[nodiscard]] cv::Point2f mismatch(const Window& window, const cv::Mat& image, const WindowPlace& place);
+/// @param rest_most the window's GradientSums::rest_most
+[[nodiscard]] cv::Point2f mismatch(const Window& window, float rest_most, const cv::Mat& image,
+                                   const WindowPlace& place);
 
 /// The mean absolute difference between the image at `place` and the window, grey levels.
 [[nodiscard]] float mean_difference(const Window& window, const cv::Mat& image, const WindowPlace& place);

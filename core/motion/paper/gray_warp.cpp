@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/avx2.hpp"
+#include "core/motion/paper/block_warp.hpp"
 
 namespace stillpoint {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 
 constexpr int kFractionBits = 5, kFractions = 1 << kFractionBits;  // of a pixel
 constexpr int kGroup = 8;                                          // pixels at once
-
-/// Where a row of the destination comes from: (x + m0 · k) / (w + m6 · k) and so on for its k-th pixel.
-struct WarpedRow {
-  double x, y, w;
-};
 
 /// Whether no pixel of the destination comes from a horizon or from further away than integers reach.
 bool is_tame(const cv::Matx33d& source_from_destination, const cv::Size& size) {
@@ -42,11 +38,22 @@ class GrayWarp {
   STILLPOINT_AVX2 void fill(cv::Mat& destination) const {
     // The sums for a block's first pixel are made anew at each block, as OpenCV does: last bits depend on it.
     const int block = std::min(1024 / std::min(16, destination.rows), destination.cols);
+    const BlockWarp near(source_, m_);
+    const bool by_groups = block <= BlockWarp::kBlock && can_warp_blocks();
     for (int y = 0; y < destination.rows; ++y)
       for (int x = 0; x < destination.cols; x += block) {
         const WarpedRow row{m_[0] * x + m_[1] * y + m_[2], m_[3] * x + m_[4] * y + m_[5],
                             m_[6] * x + m_[7] * y + m_[8]};
-        fill_block(row, std::min(block, destination.cols - x), destination.ptr(y, x));
+        const int count = std::min(block, destination.cols - x);
+        unsigned char* to = destination.ptr(y, x);
+        const unsigned filled = by_groups ? near.fill(row, {x, y}, count, to) : 0;
+        if (filled == 0) {
+          fill_pixels(row, 0, count, to);
+          continue;
+        }
+        for (int k = 0; k < count; k += BlockWarp::kGroup)
+          if ((filled >> (k / BlockWarp::kGroup) & 1) == 0)
+            fill_pixels(row, k, std::min(k + BlockWarp::kGroup, count), to);
       }
   }
 
@@ -74,16 +81,33 @@ class GrayWarp {
     return {_mm256_set_m128i(x1, x0), _mm256_set_m128i(y1, y0)};
   }
 
-  STILLPOINT_AVX2 void fill_block(const WarpedRow& row, int count, unsigned char* to) const {
-    for (int k = 0; k < count; k += kGroup) {
+  /// @param begin,end pixels of the block, the first a multiple of kGroup
+  STILLPOINT_AVX2 void fill_pixels(const WarpedRow& row, int begin, int end, unsigned char* to) const {
+    for (int k = begin; k < end; k += kGroup) {
       const Places from = places(row, k);
-      if (k + kGroup <= count && fill_eight(from, to + k)) continue;
+      if (k + kGroup <= end && fill_eight(from, to + k)) continue;
+      if (k + kGroup <= end && all_beyond(from)) {
+        std::memset(to + k, 0, kGroup);
+        continue;
+      }
       alignas(32) std::array<int, kGroup> x, y;
       _mm256_store_si256(reinterpret_cast<__m256i*>(x.data()), from.x);
       _mm256_store_si256(reinterpret_cast<__m256i*>(y.data()), from.y);
-      for (int i = 0; i < std::min(kGroup, count - k); ++i)
+      for (int i = 0; i < std::min(kGroup, end - k); ++i)
         to[k + i] = pixel(x[static_cast<std::size_t>(i)], y[static_cast<std::size_t>(i)]);
     }
+  }
+
+  /// Whether eight pixels have no part in the source.
+  STILLPOINT_AVX2 inline bool all_beyond(const Places& from) const {
+    const __m256i x = _mm256_srai_epi32(from.x, kFractionBits), y = _mm256_srai_epi32(from.y, kFractionBits);
+    const __m256i before_first = _mm256_set1_epi32(-1);
+    const __m256i beyond =
+        _mm256_or_si256(_mm256_or_si256(_mm256_cmpgt_epi32(before_first, x),
+                                        _mm256_cmpgt_epi32(x, _mm256_set1_epi32(source_.cols - 1))),
+                        _mm256_or_si256(_mm256_cmpgt_epi32(before_first, y),
+                                        _mm256_cmpgt_epi32(y, _mm256_set1_epi32(source_.rows - 1))));
+    return _mm256_movemask_ps(_mm256_castsi256_ps(beyond)) == 0xFF;
   }
 
   /// @return false where one of the eight comes from beyond the source's rim, or from close to its end

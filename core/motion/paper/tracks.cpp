@@ -27,6 +27,7 @@ MotionFrame prepare_motion_frame(const cv::Mat& gray, const PaperConfig& config)
   const cv::Mat& gradients = frame.pyramid[1];  // levels and their derivatives take turns
   frame.corners =
       find_corners(gradients, config.max_corners, config.corner_quality, config.corner_distance_px);
+  frame.sums = std::make_shared<KnownSums>();
   return frame;
 }
 
@@ -39,7 +40,8 @@ std::vector<Track> follow_corners(const MotionFrame& source, const MotionFrame& 
                                                     {.window_px = config.flow_window_px,
                                                      .levels = config.flow_levels,
                                                      .max_steps = 20,
-                                                     .least_step_px = 0.03});
+                                                     .least_step_px = 0.03},
+                                                    source.sums.get());
   tracks.reserve(to.size());
   for (std::size_t i = 0; i < to.size(); ++i) {
     const bool good = found[i] != 0 && static_cast<double>(residuals[i]) <= config.flow_max_residual &&

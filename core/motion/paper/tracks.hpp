@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/motion/paper/lucas_kanade.hpp"
 #include "core/motion/paper/paper_config.hpp"
 #include "core/motion/paper/paper_trace.hpp"
 
@@ -14,6 +16,7 @@ struct MotionFrame {
   cv::Mat gray;                      ///< CV_8UC1
   std::vector<cv::Mat> pyramid;      ///< Lucas-Kanade levels with their derivatives, as OpenCV lays them out
   std::vector<cv::Point2f> corners;  ///< px, strongest first
+  std::shared_ptr<KnownSums> sums;   ///< of the corners' windows, which are followed forward and backward
 };
 
 /// The Shi-Tomasi corners and the pyramid of a frame. A frame smaller than kMinMotionSide gets neither.
