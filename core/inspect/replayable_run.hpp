@@ -15,6 +15,7 @@
 #include "core/run/records_file.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/tracked_poses.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
@@ -135,12 +136,14 @@ class ReplayableRun {
   Odometry odometry_;
   int seen_ = 0;  // frames odometry_ has processed
   int begins_at_ = 0;
-  FrameRecords records_;  // without features
   std::shared_ptr<ByteStore> store_ = ByteStore::make();
-  std::vector<StoredBytes> features_;  // … which are here; empty where they are not kept, …
+  FrameRecords records_;               // without features, put by but for their outlines
+  ChunkedList<StoredBytes> features_;  // … which are here; empty where they are not kept, …
   std::shared_ptr<const FrameDetails> recorded_features_;  // … or here, of the first …
   int recorded_frames_ = 0;                                // … records
-  ScoreList scores_;                                       // one a record
+  ScoreList scores_;                                       // one a record, put by
+  TrackedPoses poses_;                                     // of the records, put by
+  std::shared_ptr<FigureColumns> columns_;                 // of the records, as they were asked for
   std::map<int, Odometry> checkpoints_;                    // by the frame they process next
   std::map<int, MotionStage> motion_states_;               // without images, by the frame they judge next
   int motion_state_every_;  // frames between them; doubled when there are too many
