@@ -139,6 +139,7 @@ void ReplayableRun::keep_features(const std::vector<FeatureRecord>& features) {
 }
 
 void ReplayableRun::keep_checkpoint() {
+  odometry_.shelve_features(*store_);
   checkpoints_.emplace(seen_, odometry_).first->second.drop_images();
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
