@@ -216,6 +216,8 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
   return other;
 }
 
+MeasuredFrames ReplayableRun::measured() const { return {records_, nullptr, &scores_, columns_.get()}; }
+
 RunView ReplayableRun::view() const {
   RunView view;
   view.name = name();

@@ -98,6 +98,8 @@ class ReplayableRun {
   [[nodiscard]] const FrameRecords& records() const { return records_; }
   /// One a record: its mask against the true one, where that is known and was to be scored.
   [[nodiscard]] const ScoreList& scores() const { return scores_; }
+  /// Its frames as figures are asked of them that need no evaluation; refers to this run.
+  [[nodiscard]] MeasuredFrames measured() const;
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
   [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
@@ -117,6 +119,10 @@ class ReplayableRun {
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
   [[nodiscard]] bool keeps_times() const { return options_.keep_times; }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
+  /// Bytes of memory that lists of one thing a frame hold: what grows with a sequence.
+  [[nodiscard]] std::size_t held_bytes() const {
+    return records_.held_bytes() + scores_.held_bytes() + poses_.held_bytes() + features_.held_bytes();
+  }
   [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
 
   /// The run for panels: records without their features, trajectory and evaluation so far.

@@ -134,6 +134,11 @@ const std::string& column_head(const FigureInfo& figure) {
   return figure.column.empty() ? figure.name : figure.column;
 }
 
+bool needs_evaluation(int figure) {
+  const FrameFigure& one = figure_table().at(static_cast<std::size_t>(figure));
+  return one.of_evaluation || one.of_removal;
+}
+
 int first_method_figure() {
   const auto& all = figure_table();
   const auto is_of_method = [](const FrameFigure& figure) { return figure.of == nullptr; };
@@ -151,7 +156,7 @@ int frame_figure(std::string_view name) {
 
 std::vector<double> frame_figure_values(const MeasuredFrames& frames, int figure) {
   const FrameFigure& wanted = figure_table().at(static_cast<std::size_t>(figure));
-  if (wanted.of_removal || wanted.of_evaluation) return values_by_outline(wanted, frames);
+  if (needs_evaluation(figure)) return values_by_outline(wanted, frames);
   if (frames.columns != nullptr) return frames.columns->values(frames, figure);
   std::vector<double> values;
   values.reserve(frames.records.size());
@@ -217,8 +222,7 @@ FrameFigures::FrameFigures(const MeasuredFrames& frames, const std::set<int>& fi
   for (const FrameOutline& outline : frames.records.outlines()) frames_.push_back(outline.index);
   std::vector<int> in_one_pass;
   for (const int figure : figures) {
-    const FrameFigure& one = figure_table().at(static_cast<std::size_t>(figure));
-    if (one.of_removal || one.of_evaluation || frames.columns != nullptr)
+    if (needs_evaluation(figure) || frames.columns != nullptr)
       columns_[static_cast<std::size_t>(figure)] = frame_figure_values(frames, figure);
     else
       in_one_pass.push_back(figure);

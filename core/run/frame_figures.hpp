@@ -40,6 +40,9 @@ struct ShownUnit {
 /// Its head in CSV: FigureInfo::column, or the name.
 [[nodiscard]] const std::string& column_head(const FigureInfo& figure);
 
+/// Whether it is told by the evaluation of all poses: what others are asked of needs none.
+[[nodiscard]] bool needs_evaluation(int figure);
+
 /// Index of the first figure that only one method has.
 [[nodiscard]] int first_method_figure();
 
