@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/geometry/se3.hpp"
@@ -18,5 +20,9 @@ struct Alignment {
 /// the cameras' orientations.
 /// @param estimate,truth corresponding poses, of one length; none gives the identity
 [[nodiscard]] Alignment align(const std::vector<Pose>& estimate, const std::vector<Pose>& truth);
+
+/// The same of poses that lie elsewhere. @param estimate,truth give each of `count` poses
+using PoseAt = std::function<const Pose&(std::size_t)>;
+[[nodiscard]] Alignment align(std::size_t count, const PoseAt& estimate, const PoseAt& truth);
 
 }  // namespace stillpoint

@@ -23,7 +23,9 @@ RelativeError relative_error(const MatchedPose& i, const MatchedPose& j) {
 }
 
 void summarise(RelativePoseError& result, const std::string& why_none) {
+  result.errors.shrink_to_fit();  // many lists of them are held at once
   std::vector<double> translations, rotations;
+  translations.reserve(result.errors.size()), rotations.reserve(result.errors.size());
   for (const RelativeError& error : result.errors) {
     translations.push_back(error.translation_m);
     rotations.push_back(error.rotation_deg);

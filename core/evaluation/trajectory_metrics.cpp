@@ -79,7 +79,9 @@ std::vector<MatchedPose> match_trajectories(const Trajectory& truth, const Traje
     return column(trajectory, &StampedPose::timestamp);
   };
   std::vector<MatchedPose> matched;
-  for (const AssociatedPair& pair : associate(stamps(estimate), stamps(truth), max_difference_s)) {
+  const auto pairs = associate(stamps(estimate), stamps(truth), max_difference_s);
+  matched.reserve(pairs.size());  // of a long run the most that is held of a pose
+  for (const AssociatedPair& pair : pairs) {
     const StampedPose &e = estimate[pair.first], &t = truth[pair.second];
     matched.push_back({e.timestamp, t.timestamp, e.world_from_camera, t.world_from_camera});
   }
@@ -116,33 +118,31 @@ std::vector<MatchedPose> match_interpolated(const Trajectory& truth, const Traje
 }
 
 AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched, AlignBy by, int align_first) {
-  std::vector<Pose> estimate, truth;
-  for (const MatchedPose& pose : matched) {
-    estimate.push_back(pose.estimate);
-    truth.push_back(pose.truth);
-  }
   AbsoluteTrajectoryError result;
-  const std::size_t needed = by == AlignBy::nothing || by == AlignBy::origin ? 1 : kFewestToAlign;
-  if (by == AlignBy::first) {
-    const auto first = std::min(matched.size(), static_cast<std::size_t>(std::max(align_first, 0)));
-    estimate.resize(first), truth.resize(first);
-  }
+  const bool fitted = by != AlignBy::nothing && by != AlignBy::origin;
+  const std::size_t needed = fitted ? kFewestToAlign : 1;
+  std::size_t count = matched.size();  // poses to align by
+  if (by == AlignBy::first) count = std::min(count, static_cast<std::size_t>(std::max(align_first, 0)));
+  const Alignment aligned_by_all = align(
+      count, [&matched](std::size_t i) -> const Pose& { return matched[i].estimate; },
+      [&matched](std::size_t i) -> const Pose& { return matched[i].truth; });
   if (by == AlignBy::origin && !matched.empty())
-    result.alignment.truth_from_estimate = truth.front() * estimate.front().inverse();
-  else if (by != AlignBy::nothing)
-    result.alignment = align(estimate, truth);
+    result.alignment.truth_from_estimate = matched.front().truth * matched.front().estimate.inverse();
+  else if (fitted)
+    result.alignment = aligned_by_all;
+  result.errors.reserve(matched.size());
   for (const MatchedPose& pose : matched) {
     const Pose aligned = result.alignment.truth_from_estimate * pose.estimate;
     result.errors.push_back({pose.timestamp, (aligned.translation() - pose.truth.translation()).norm(),
                              to_degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
   }
-  if (estimate.size() < needed) {
-    result.why_none = fmt::format("{} matched pose(s), and an alignment needs {}", estimate.size(), needed);
+  if (count < needed) {
+    result.why_none = fmt::format("{} matched pose(s), and an alignment needs {}", count, needed);
     return result;
   }
   result.translation_m = statistics_of(column(result.errors, &AbsoluteError::translation_m));
   result.rotation_deg = statistics_of(column(result.errors, &AbsoluteError::rotation_deg));
-  if (!align(estimate, truth).degenerate) result.similarity = similarity_fit(matched);
+  if (!aligned_by_all.degenerate) result.similarity = similarity_fit(matched);
   return result;
 }
 

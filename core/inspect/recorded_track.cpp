@@ -3,6 +3,8 @@
 #include "core/inspect/replayable_run.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/frame_figures.hpp"
+#include "core/run/frame_records.hpp"
 
 namespace stillpoint {
 
@@ -12,6 +14,8 @@ ReplayableRun::ReplayableRun(const FrameSource& source, std::shared_ptr<const Re
       options_(options),
       recorded_(std::move(recorded)),
       odometry_(source.camera(), recorded_->run.config),
+      poses_(poses_put_by(store_)),
+      columns_(std::make_shared<FigureColumns>()),
       motion_state_every_(odometry_.motion().info().needs.checkpoint_every) {
   scores_ = recorded_->run.scores;
   scores_.resize(recorded_->run.records.size());

@@ -7,6 +7,8 @@
 
 #include "core/inspect/run_view.hpp"
 #include "core/odometry/engines.hpp"
+#include "core/run/frame_figures.hpp"
+#include "core/run/frame_records.hpp"
 #include "core/sequence/prefetch.hpp"
 
 namespace stillpoint {
@@ -27,6 +29,10 @@ ReplayableRun::ReplayableRun(const FrameSource& source, const Config& config,
     : source_(&source),
       options_(options),
       odometry_(source.camera(), config),
+      records_(records_put_by(store_, Outlines::at_hand)),
+      scores_(scores_put_by(store_)),
+      poses_(poses_put_by(store_)),
+      columns_(std::make_shared<FigureColumns>()),
       motion_state_every_(odometry_.motion().info().needs.checkpoint_every) {}
 
 bool ReplayableRun::needs_true_mask(const Config& config) const {
@@ -103,6 +109,10 @@ FrameResult ReplayableRun::process_next(const ReadFrame& read) {
   keep_features(result.record.features);
   std::vector<FeatureRecord> features = std::move(result.record.features);
   result.record.features = {};
+  // Of a finished run nobody asks for them before it goes on.
+  if (is_as_recorded())
+    for (const FrameRecord& record : records_) add_pose(record, poses_);
+  add_pose(result.record, poses_);
   records_.push_back(result.record);
   result.record.features = std::move(features);
   return result;
@@ -115,7 +125,7 @@ FrameRecord ReplayableRun::record(int index) const {
     record.features = recorded_features_->of(row).features;
     return record;
   }
-  const StoredBytes& features = features_[row];
+  const StoredBytes features = features_[row];
   record.features.resize(features.size() / sizeof(FeatureRecord));
   features.read(record.features.data());
   return record;
@@ -129,6 +139,7 @@ void ReplayableRun::keep_features(const std::vector<FeatureRecord>& features) {
 }
 
 void ReplayableRun::keep_checkpoint() {
+  odometry_.shelve_features(*store_);
   checkpoints_.emplace(seen_, odometry_).first->second.drop_images();
   if (static_cast<int>(checkpoints_.size()) <= options_.max_checkpoints) return;
   options_.checkpoint_every *= 2;
@@ -194,20 +205,26 @@ ReplayableRun ReplayableRun::branch(int from, const Config& config, const ReadFr
   other.begins_at_ = from;
   other.seen_ = from;
   other.records_ = records_.first(static_cast<std::size_t>(from));
-  other.features_.assign(features_.begin(), features_.begin() + from);
+  other.features_ = features_.first(static_cast<std::size_t>(from));
   other.recorded_features_ = recorded_features_;
   other.recorded_frames_ = std::min(recorded_frames_, from);
   other.scores_ = scores_.first(static_cast<std::size_t>(from));
-  for (const FrameRecord& record : other.records_) other.hash_.add(record);
+  for (const FrameRecord& record : other.records_) {
+    other.hash_.add(record);
+    add_pose(record, other.poses_);
+  }
   return other;
 }
+
+MeasuredFrames ReplayableRun::measured() const { return {records_, nullptr, &scores_, columns_.get()}; }
 
 RunView ReplayableRun::view() const {
   RunView view;
   view.name = name();
   view.records = records_;
   view.scores = scores_;
-  view.trajectory = is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, records_);
+  view.columns = columns_;
+  view.trajectory = is_as_recorded() ? recorded_->run.trajectory : trajectory_so_far(odometry_, poses_);
   if (!source_->ground_truth().empty() && !view.trajectory.empty()) {
     EvaluationOptions options;
     options.expected_frames = processed();

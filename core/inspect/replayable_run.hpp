@@ -15,6 +15,7 @@
 #include "core/run/records_file.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
+#include "core/run/tracked_poses.hpp"
 #include "core/sequence/source.hpp"
 
 namespace stillpoint {
@@ -97,6 +98,8 @@ class ReplayableRun {
   [[nodiscard]] const FrameRecords& records() const { return records_; }
   /// One a record: its mask against the true one, where that is known and was to be scored.
   [[nodiscard]] const ScoreList& scores() const { return scores_; }
+  /// Its frames as figures are asked of them that need no evaluation; refers to this run.
+  [[nodiscard]] MeasuredFrames measured() const;
   /// A record with its features, where they are kept.
   [[nodiscard]] FrameRecord record(int index) const;
   [[nodiscard]] std::vector<SavedKeyframe> keyframes() const;
@@ -116,6 +119,10 @@ class ReplayableRun {
   [[nodiscard]] const Config& config() const { return odometry_.config(); }
   [[nodiscard]] bool keeps_times() const { return options_.keep_times; }
   [[nodiscard]] int checkpoints() const { return static_cast<int>(checkpoints_.size()); }
+  /// Bytes of memory that lists of one thing a frame hold: what grows with a sequence.
+  [[nodiscard]] std::size_t held_bytes() const {
+    return records_.held_bytes() + scores_.held_bytes() + poses_.held_bytes() + features_.held_bytes();
+  }
   [[nodiscard]] std::string hash() const { return hash_.hex(); }  ///< run_hash of records()
 
   /// The run for panels: records without their features, trajectory and evaluation so far.
@@ -135,12 +142,14 @@ class ReplayableRun {
   Odometry odometry_;
   int seen_ = 0;  // frames odometry_ has processed
   int begins_at_ = 0;
-  FrameRecords records_;  // without features
   std::shared_ptr<ByteStore> store_ = ByteStore::make();
-  std::vector<StoredBytes> features_;  // … which are here; empty where they are not kept, …
+  FrameRecords records_;               // without features, put by but for their outlines
+  ChunkedList<StoredBytes> features_;  // … which are here; empty where they are not kept, …
   std::shared_ptr<const FrameDetails> recorded_features_;  // … or here, of the first …
   int recorded_frames_ = 0;                                // … records
-  ScoreList scores_;                                       // one a record
+  ScoreList scores_;                                       // one a record, put by
+  TrackedPoses poses_;                                     // of the records, put by
+  std::shared_ptr<FigureColumns> columns_;                 // of the records, as they were asked for
   std::map<int, Odometry> checkpoints_;                    // by the frame they process next
   std::map<int, MotionStage> motion_states_;               // without images, by the frame they judge next
   int motion_state_every_;  // frames between them; doubled when there are too many

@@ -4,6 +4,6 @@
 
 namespace stillpoint {
 
-MeasuredFrames RunView::measured() const { return {records, &evaluation, &scores}; }
+MeasuredFrames RunView::measured() const { return {records, &evaluation, &scores, columns.get()}; }
 
 }  // namespace stillpoint

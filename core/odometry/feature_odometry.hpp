@@ -29,6 +29,7 @@ class FeatureOdometry final : public OdometryEngine {
   [[nodiscard]] std::unique_ptr<OdometryEngine> continued_with(
       const Config& config, const std::vector<PastFrame>& before) const override;
   [[nodiscard]] int frames_wanted(const Config& config) const override;
+  void shelve_features(ByteStore& store) override;
   void drop_images() override;
   void restore_images(int next, const std::function<Frame(int)>& read) override;
 

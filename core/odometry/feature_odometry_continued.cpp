@@ -5,13 +5,17 @@
 
 namespace stillpoint {
 
+void FeatureOdometry::shelve_features(ByteStore& store) { mapper_.shelve_features(store); }
+
 void FeatureOdometry::drop_images() {
+  mapper_.drop_features();
   preparer_.motion().forget();
   motion_.drop_images();
   solver_.direct().drop_images();
 }
 
 void FeatureOdometry::restore_images(int next, const std::function<Frame(int)>& read) {
+  mapper_.restore_features();
   preparer_.motion().restore(next, config_.run.threads, read);
   motion_.restore_images(next, std::numeric_limits<int>::max(), read);
   solver_.direct().restore_images(next, read);

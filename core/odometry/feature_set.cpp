@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 namespace stillpoint {
 
 void FeatureSet::build_index(int width, int height) {
   columns_ = width / kCell + 1;
   rows_ = height / kCell + 1;
+  place();
+}
+
+void FeatureSet::place() {
   const auto cell_of = [&](const cv::Point2f& p) {
     // Undistorted pixels may lie outside the image: the outermost cells take them.
     const int column = std::clamp(static_cast<int>(std::floor(p.x / kCell)), 0, columns_ - 1);
@@ -49,6 +55,53 @@ void FeatureSet::find(const cv::Point2f& pixel, float radius, int min_octave, in
     }
     found.resize(count);
   }
+}
+
+std::vector<std::uint8_t> FeatureSet::packed() const {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [&bytes](const void* from, std::size_t count) {
+    const auto* first = static_cast<const std::uint8_t*>(from);
+    bytes.insert(bytes.end(), first, first + count);
+  };
+  const auto append_all = [&append]<typename T>(const std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::size_t count = values.size();
+    append(&count, sizeof(count));
+    append(values.data(), count * sizeof(T));
+  };
+  append(&columns_, sizeof(columns_));
+  append(&rows_, sizeof(rows_));
+  append_all(keypoints);
+  append_all(undistorted);
+  append_all(descriptors);
+  append_all(depth);
+  append_all(static_weight);
+  return bytes;
+}
+
+FeatureSet FeatureSet::unpacked(const std::vector<std::uint8_t>& bytes) {
+  const std::uint8_t* at = bytes.data();
+  const auto take = [&at](void* to, std::size_t count) {
+    if (count > 0) std::memcpy(to, at, count);
+    at += count;
+  };
+  const auto take_all = [&take]<typename T>(std::vector<T>& values) {
+    std::size_t count = 0;
+    take(&count, sizeof(count));
+    values.resize(count);
+    take(values.data(), count * sizeof(T));
+  };
+  FeatureSet set;
+  take(&set.columns_, sizeof(set.columns_));
+  take(&set.rows_, sizeof(set.rows_));
+  take_all(set.keypoints);
+  take_all(set.undistorted);
+  take_all(set.descriptors);
+  take_all(set.depth);
+  take_all(set.static_weight);
+  // One that was never placed has no cells.
+  if (set.columns_ > 0) set.place();
+  return set;
 }
 
 FeatureSet subset(const FeatureSet& all, const std::vector<std::uint8_t>& keep, int width, int height) {

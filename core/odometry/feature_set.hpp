@@ -39,7 +39,13 @@ struct FeatureSet {
   void find(const cv::Point2f& pixel, float radius, int min_octave, int max_octave,
             std::vector<int>& found) const;
 
+  /// All of it as bytes, and from them to the last bit. @pre `bytes` are packed()'s
+  [[nodiscard]] std::vector<std::uint8_t> packed() const;
+  [[nodiscard]] static FeatureSet unpacked(const std::vector<std::uint8_t>& bytes);
+
  private:
+  void place();
+
   static constexpr int kCell = 16;  // px; a few features a cell
   int columns_ = 0, rows_ = 0;
   /// What finding asks of a feature, side by side.

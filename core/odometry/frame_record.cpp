@@ -53,4 +53,40 @@ std::string remarks_on(const FrameRecord& record) {
   return record.note + (record.note.empty() || record.mask_problem.empty() ? "" : "; ") + record.mask_problem;
 }
 
+FrameOutline outline_of(const FrameRecord& record) {
+  const auto position = record.world_from_camera.translation();
+  return {.timestamp = record.timestamp,
+          .position = {position.x(), position.y(), position.z()},
+          .index = record.index,
+          .status = record.status,
+          .estimated = record.estimated,
+          .keyframe = record.keyframe,
+          .remarked = !record.note.empty() || !record.mask_problem.empty(),
+          .removal_checked = record.removal_check.nothing_removed || record.removal_check.truth_removed};
+}
+
+void FrameRecords::push_back(FrameRecord one) {
+  outlines_.push_back(outline_of(one));
+  ChunkedList::push_back(std::move(one));
+}
+
+FrameRecords FrameRecords::first(std::size_t count) const {
+  FrameRecords some;
+  static_cast<ChunkedList&>(some) = ChunkedList::first(count);
+  some.outlines_ = outlines().first(count);
+  return some;
+}
+
+void FrameRecords::resize(std::size_t count) {
+  if (count < size()) *this = first(count);
+  while (size() < count) push_back({});
+}
+
+FrameOutlines FrameRecords::outlines() const {
+  if (!held_) return outlines_;
+  FrameOutlines made;
+  for (const FrameRecord& record : *this) made.push_back(outline_of(record));
+  return made;
+}
+
 }  // namespace stillpoint

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -194,8 +195,65 @@ struct FrameRecord {
 /// What there is to say of the frame: its note, and why a mask was missing.
 [[nodiscard]] std::string remarks_on(const FrameRecord& record);
 
-/// The records of a run's frames, in order: those of a run that goes on are walked over, and shared with who
-/// shows them; those of a run without a window are put by, and read back at its end.
-using FrameRecords = ChunkedList<FrameRecord>;
+/// What everybody who goes over all of a run's frames asks of each: little enough to stay in memory where the
+/// records are put by.
+struct FrameOutline {
+  double timestamp = 0.0;            ///< s
+  std::array<double, 3> position{};  ///< m, of FrameRecord::world_from_camera
+  int index = 0;
+  FrameStatus status = FrameStatus::lost;
+  bool estimated = false, keyframe = false;
+  bool remarked = false;         ///< remarks_on() the frame says something
+  bool removal_checked = false;  ///< FrameRecord::removal_check holds a pose
+};
+using FrameOutlines = ChunkedList<FrameOutline>;
+
+[[nodiscard]] FrameOutline outline_of(const FrameRecord& record);
+
+/// No pose could be estimated, or there was no image.
+[[nodiscard]] constexpr bool is_lost(FrameStatus status) {
+  return status == FrameStatus::lost || status == FrameStatus::unreadable;
+}
+
+/// The records of a run's frames, in order. Where they are put by, a walk over them reads all of them back:
+/// what their outlines tell is asked of these.
+class FrameRecords : public ChunkedList<FrameRecord> {
+ public:
+  FrameRecords() = default;
+  /// Put by. @param outlines null where these stay in memory
+  FrameRecords(std::shared_ptr<ChunkKeeper<FrameRecord>> records,
+               std::shared_ptr<ChunkKeeper<FrameOutline>> outlines)
+      : ChunkedList(std::move(records)), outlines_(std::move(outlines)) {}
+  FrameRecords(std::vector<FrameRecord> all) {  // NOLINT(google-explicit-constructor)
+    for (FrameRecord& one : all) push_back(std::move(one));
+  }
+
+  void push_back(FrameRecord one);
+  [[nodiscard]] FrameRecords first(std::size_t count) const;
+  void resize(std::size_t count);
+  /// Changes one, as `change(record)` does.
+  template <typename Change>
+  void change(std::size_t i, const Change& change) {
+    FrameRecord& record = ChunkedList::edit(i);
+    change(record);
+    outlines_.edit(i) = outline_of(record);
+  }
+  /// One to be changed at any time, so that outlines are made anew from then on whenever they are asked for.
+  [[nodiscard]] FrameRecord& edit(std::size_t i) {
+    held_ = true;
+    return ChunkedList::edit(i);
+  }
+
+  /// One a record. A copy, which shares what it holds.
+  [[nodiscard]] FrameOutlines outlines() const;
+
+  [[nodiscard]] std::size_t held_bytes() const {
+    return ChunkedList::held_bytes() + outlines_.held_bytes() - sizeof(outlines_);
+  }
+
+ private:
+  FrameOutlines outlines_;
+  bool held_ = false;  // somebody may change a record
+};
 
 }  // namespace stillpoint

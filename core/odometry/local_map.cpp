@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/odometry/feature_shelf.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -166,6 +168,22 @@ void LocalMap::update_point(int id, double scale_factor, int levels) {
   const double distance = (point.position - centre(keyframe.camera_from_world)).norm();
   point.max_distance = distance * std::pow(scale_factor, octave);
   point.min_distance = point.max_distance / std::pow(scale_factor, levels - 1);
+}
+
+void LocalMap::shelve_features(ByteStore& store) {
+  for (auto& [id, keyframe] : keyframes_)
+    if (!keyframe.shelved)
+      keyframe.shelved = std::make_shared<const ShelvedFeatures>(store, keyframe.features);
+}
+
+void LocalMap::drop_features() {
+  for (auto& [id, keyframe] : keyframes_)
+    if (keyframe.shelved) keyframe.features.reset();
+}
+
+void LocalMap::restore_features() {
+  for (auto& [id, keyframe] : keyframes_)
+    if (!keyframe.features) keyframe.features = keyframe.shelved->get();
 }
 
 std::vector<int> LocalMap::point_ids() const {

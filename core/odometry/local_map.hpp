@@ -14,6 +14,9 @@
 
 namespace stillpoint {
 
+class ByteStore;
+class ShelvedFeatures;
+
 /// A keyframe's sight of a map point.
 struct Observation {
   int keyframe = kNone;
@@ -42,6 +45,7 @@ struct Keyframe {
   Pose camera_from_world = Pose::Identity();
   std::shared_ptr<const FeatureSet> features;  ///< static features only; shared between copies of the map
   std::vector<int> points;                     ///< map point id a feature, or kNone
+  std::shared_ptr<const ShelvedFeatures> shelved{};  ///< the features as they were put by; null while not
 };
 
 /// A keyframe that left the map: its pose hangs on another keyframe's, or on none and is final.
@@ -100,6 +104,13 @@ class LocalMap {
   [[nodiscard]] const Keyframe& keyframe(int id) const { return keyframes_.at(id); }
   [[nodiscard]] Keyframe& keyframe(int id) { return keyframes_.at(id); }
   [[nodiscard]] bool has_keyframe(int id) const { return keyframes_.contains(id); }
+
+  /// Puts the keyframes' features by, each once, for copies that drop them.
+  void shelve_features(ByteStore& store);
+  /// Lets go of features that were put by: nothing but restore_features() may be asked of the map then.
+  void drop_features();
+  /// Has them again, as they were. @throws InputError when the disk does not give them back
+  void restore_features();
 
   /// Ids of all points, ascending.
   [[nodiscard]] std::vector<int> point_ids() const;

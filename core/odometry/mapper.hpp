@@ -20,6 +20,11 @@ class Mapper {
   void adopt(const Config& config) { config_ = config; }
   [[nodiscard]] const LocalMap& map() const { return map_; }
 
+  // LocalMap's, for copies that are put by.
+  void shelve_features(ByteStore& store) { map_.shelve_features(store); }
+  void drop_features() { map_.drop_features(); }
+  void restore_features() { map_.restore_features(); }
+
   /// Takes the map points that lie on what is dynamic out of the map. @param mask CV_8UC1, 255 = dynamic;
   /// empty: nothing does. @param about keyframe near which the camera is
   void remove_dynamic_points(const Frame& image, const cv::Mat& mask, const Pose& camera_from_world,

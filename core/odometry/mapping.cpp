@@ -164,6 +164,12 @@ int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, con
   // Keyframes: a point seen by so many is not lost with one, as ORB-SLAM has it.
   constexpr int kSeenByOthers = 3;
   const double far = camera.depth_limit(config.map.far_depth_m);
+  // Asked for every sight of every point, which in a full map is most of culling.
+  std::vector<const FeatureSet*> features_of;
+  if (!map.keyframes().empty())
+    features_of.resize(static_cast<std::size_t>(map.keyframes().rbegin()->first) + 1);
+  for (const auto& [id, keyframe] : map.keyframes())
+    features_of[static_cast<std::size_t>(id)] = keyframe.features.get();
   int culled = 0;
   for (const auto& [id, shared] : map.covisible(newest_keyframe)) {
     if (id == map.keyframes().begin()->first) continue;  // the first keyframe holds the map in place
@@ -175,9 +181,9 @@ int cull_keyframes(LocalMap& map, int newest_keyframe, const Camera& camera, con
       const int octave = keyframe.features->keypoints[f].octave;
       int others = 0;
       for (const Observation& o : map.point(keyframe.points[f]).observations) {
-        if (o.keyframe != id &&
-            map.keyframe(o.keyframe).features->keypoints[static_cast<std::size_t>(o.feature)].octave <=
-                octave + 1)
+        if (o.keyframe != id && features_of[static_cast<std::size_t>(o.keyframe)]
+                                        ->keypoints[static_cast<std::size_t>(o.feature)]
+                                        .octave <= octave + 1)
           ++others;
         if (others >= kSeenByOthers) break;  // in a full map dozens see it
       }

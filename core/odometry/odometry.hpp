@@ -55,7 +55,10 @@ class Odometry {
   /// How many earlier frames continued_with() needs; 0 where it has all that the new config asks for.
   [[nodiscard]] int frames_wanted(const Config& config) const { return engine_->frames_wanted(config); }
 
-  /// Lets go of images kept of earlier frames: what a copy that is put by need not carry.
+  /// Puts by what copies that drop images would hold longer than this one does: the features of keyframes.
+  void shelve_features(ByteStore& store) { engine_->shelve_features(store); }
+  /// Lets go of images kept of earlier frames, and of features that were put by: what a copy that is put by
+  /// need not carry. Its map is not to be asked then.
   void drop_images() { engine_->drop_images(); }
   /// Has them again, as they were, before it goes on. @param next index of the frame it processes next
   void restore_images(int next, const std::function<Frame(int)>& read) {

@@ -15,6 +15,8 @@
 
 namespace stillpoint {
 
+class ByteStore;
+
 /// A way to tell where the camera is, behind any motion method: what Odometry is a handle on. FeatureOdometry
 /// is METHOD.md §2; an engine of another kind (dense, direct) is a class beside it and a line in
 /// engines.cpp. What each function owes its callers stands with Odometry.
@@ -36,6 +38,7 @@ class OdometryEngine {
   [[nodiscard]] virtual std::unique_ptr<OdometryEngine> continued_with(
       const Config& config, const std::vector<PastFrame>& before) const = 0;
   [[nodiscard]] virtual int frames_wanted(const Config& config) const = 0;
+  virtual void shelve_features(ByteStore& /*store*/) {}
   virtual void drop_images() = 0;
   virtual void restore_images(int next, const std::function<Frame(int)>& read) = 0;
 

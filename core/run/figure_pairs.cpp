@@ -37,13 +37,13 @@ FigurePairs figure_pairs(const MeasuredFrames& measured, int x, int y) {
                             all_y = frame_figure_values(measured, y);
   FigurePairs known, pairs;
   std::size_t row = 0;
-  for (const FrameRecord& record : measured.records) {
+  for (const FrameOutline& frame : measured.records.outlines()) {
     const double of_x = all_x[row], of_y = all_y[row];
     ++row;
     if (!std::isfinite(of_x) || !std::isfinite(of_y)) continue;
     known.x.push_back(of_x);
     known.y.push_back(of_y);
-    known.frames.push_back(record.index);
+    known.frames.push_back(frame.index);
   }
   for (const std::size_t i : sorted_places(known.x)) {
     pairs.x.push_back(known.x[i]);

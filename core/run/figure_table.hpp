@@ -24,8 +24,10 @@ struct MeasuredFrame {
 /// A figure and where it comes from.
 struct FrameFigure {
   FigureInfo info;
-  double (*of)(const MeasuredFrame&) = nullptr;  ///< null: a method's own, found by its name
+  double (*of)(const MeasuredFrame&) = nullptr;  ///< null: a method's own, found by its name. Of removal and
+                                                 ///< evaluation it asks no more of a record than its outline
   bool of_removal = false;                       ///< known of frames that were checked alone
+  bool of_evaluation = false;  ///< by MeasuredFrame::evaluation, which all frames together make
 };
 
 /// Every figure there is, each once: those of any run, then those that only one method measures.

@@ -32,19 +32,40 @@ RemovalErrors removal_of(const MeasuredFrames& frames) {
   return errors;
 }
 
+const RemovalError* error_of(const RemovalErrors& removal, int frame) {
+  const auto checked = removal.find(frame);
+  return checked == removal.end() ? nullptr : &checked->second;
+}
+
+/// @param from row to begin with
 template <typename Take>
-void walk(const MeasuredFrames& frames, const RemovalErrors& removal, const Take& take) {
+void walk(const MeasuredFrames& frames, const RemovalErrors& removal, const Take& take,
+          std::size_t from = 0) {
   static const FrameScores none;
   static const ScoreList no_scores;
   const ScoreList& scores = frames.scores != nullptr ? *frames.scores : no_scores;
-  auto score = scores.begin();
-  for (const FrameRecord& record : frames.records) {
+  auto score = scores.begin() + static_cast<std::ptrdiff_t>(std::min(from, scores.size()));
+  const auto end = frames.records.end();
+  for (auto record = frames.records.begin() + static_cast<std::ptrdiff_t>(from); record != end; ++record) {
     const bool scored = score != scores.end();
-    const auto checked = removal.find(record.index);
-    take(MeasuredFrame{record, scored ? *score : none, frames.evaluation,
-                       checked == removal.end() ? nullptr : &checked->second});
+    take(MeasuredFrame{*record, scored ? *score : none, frames.evaluation, error_of(removal, record->index)});
     if (scored) ++score;
   }
+}
+
+/// Of removal or evaluation: records that are put by stay there.
+std::vector<double> values_by_outline(const FrameFigure& figure, const MeasuredFrames& frames) {
+  static const FrameScores none;
+  const RemovalErrors removal = figure.of_removal ? removal_of(frames) : RemovalErrors{};
+  std::vector<double> values;
+  values.reserve(frames.records.size());
+  FrameRecord record;
+  for (const FrameOutline& outline : frames.records.outlines()) {
+    record.index = outline.index, record.timestamp = outline.timestamp;
+    record.estimated = outline.estimated;
+    values.push_back(value_of(figure, {record, none, frames.evaluation, error_of(removal, outline.index)}));
+  }
+  return values;
 }
 
 }  // namespace
@@ -113,6 +134,11 @@ const std::string& column_head(const FigureInfo& figure) {
   return figure.column.empty() ? figure.name : figure.column;
 }
 
+bool needs_evaluation(int figure) {
+  const FrameFigure& one = figure_table().at(static_cast<std::size_t>(figure));
+  return one.of_evaluation || one.of_removal;
+}
+
 int first_method_figure() {
   const auto& all = figure_table();
   const auto is_of_method = [](const FrameFigure& figure) { return figure.of == nullptr; };
@@ -130,11 +156,31 @@ int frame_figure(std::string_view name) {
 
 std::vector<double> frame_figure_values(const MeasuredFrames& frames, int figure) {
   const FrameFigure& wanted = figure_table().at(static_cast<std::size_t>(figure));
+  if (needs_evaluation(figure)) return values_by_outline(wanted, frames);
+  if (frames.columns != nullptr) return frames.columns->values(frames, figure);
   std::vector<double> values;
   values.reserve(frames.records.size());
-  walk(frames, wanted.of_removal ? removal_of(frames) : RemovalErrors{},
-       [&](const MeasuredFrame& row) { values.push_back(value_of(wanted, row)); });
+  walk(frames, {}, [&](const MeasuredFrame& row) { values.push_back(value_of(wanted, row)); });
   return values;
+}
+
+std::vector<double> FigureColumns::values(const MeasuredFrames& frames, int figure) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t rows = frames.records.size();
+  std::vector<double>& column = columns_[figure];
+  // One pass for all that go as far as this one, for they are asked for one after the other.
+  const std::size_t known = column.size();
+  std::vector<std::pair<const FrameFigure*, std::vector<double>*>> behind;
+  for (auto& [of, one] : columns_)
+    if (one.size() == known) behind.emplace_back(&figure_table().at(static_cast<std::size_t>(of)), &one);
+  if (known < rows)
+    walk(
+        frames, {},
+        [&](const MeasuredFrame& row) {
+          for (const auto& [of, one] : behind) one->push_back(value_of(*of, row));
+        },
+        known);
+  return {column.begin(), column.begin() + static_cast<std::ptrdiff_t>(rows)};
 }
 
 std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t row) {
@@ -173,14 +219,19 @@ FrameFigures::FrameFigures(const MeasuredFrames& frames) : FrameFigures(frames, 
 FrameFigures::FrameFigures(const MeasuredFrames& frames, const std::set<int>& figures)
     : columns_(figure_table().size()) {
   frames_.reserve(frames.records.size());
-  for (const int figure : figures)
-    columns_.at(static_cast<std::size_t>(figure)).reserve(frames.records.size());
-  const bool any_of_removal = std::any_of(figures.begin(), figures.end(), [](int figure) {
-    return figure_table()[static_cast<std::size_t>(figure)].of_removal;
-  });
-  walk(frames, any_of_removal ? removal_of(frames) : RemovalErrors{}, [&](const MeasuredFrame& row) {
-    frames_.push_back(row.record.index);
-    for (const int figure : figures)
+  for (const FrameOutline& outline : frames.records.outlines()) frames_.push_back(outline.index);
+  std::vector<int> in_one_pass;
+  for (const int figure : figures) {
+    if (needs_evaluation(figure) || frames.columns != nullptr)
+      columns_[static_cast<std::size_t>(figure)] = frame_figure_values(frames, figure);
+    else
+      in_one_pass.push_back(figure);
+  }
+  if (in_one_pass.empty()) return;
+  for (const int figure : in_one_pass)
+    columns_[static_cast<std::size_t>(figure)].reserve(frames.records.size());
+  walk(frames, {}, [&](const MeasuredFrame& row) {
+    for (const int figure : in_one_pass)
       columns_[static_cast<std::size_t>(figure)].push_back(
           value_of(figure_table()[static_cast<std::size_t>(figure)], row));
   });

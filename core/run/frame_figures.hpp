@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -38,17 +40,35 @@ struct ShownUnit {
 /// Its head in CSV: FigureInfo::column, or the name.
 [[nodiscard]] const std::string& column_head(const FigureInfo& figure);
 
+/// Whether it is told by the evaluation of all poses: what others are asked of needs none.
+[[nodiscard]] bool needs_evaluation(int figure);
+
 /// Index of the first figure that only one method has.
 [[nodiscard]] int first_method_figure();
 
 /// Index into frame_figure_infos(), by a figure's name, column or old name; -1 where there is none.
 [[nodiscard]] int frame_figure(std::string_view name);
 
-/// Records and what was measured of them. Refers to all three.
+class FigureColumns;
+
+/// Records and what was measured of them. Refers to all of these.
 struct MeasuredFrames {
   const FrameRecords& records;
   const TrajectoryEvaluation* evaluation = nullptr;  ///< null, or of these records' poses
   const ChunkedList<FrameScores>* scores = nullptr;  ///< null, or one a record
+  FigureColumns* columns = nullptr;  ///< null, or of the run that these are all or the first of
+};
+
+/// What records and scores tell of a run's frames, as it was asked for: while the run grows, only frames that
+/// are new are walked over. From several threads.
+class FigureColumns {
+ public:
+  /// frame_figure_values() of a figure that neither removal nor evaluation tells.
+  [[nodiscard]] std::vector<double> values(const MeasuredFrames& frames, int figure);
+
+ private:
+  std::mutex mutex_;
+  std::map<int, std::vector<double>> columns_;  // by figure, as far as it was asked for
 };
 
 /// One figure of each record; NaN where it is not known.

@@ -8,6 +8,7 @@
 #include "core/byte_store.hpp"
 #include "core/run/frame_scores.hpp"
 #include "core/run/record_codec.hpp"
+#include "core/run/tracked_poses.hpp"
 
 namespace stillpoint {
 namespace {
@@ -87,19 +88,23 @@ class RecordKeeper final : public StoredChunks<FrameRecord> {
   }
 };
 
-class ScoreKeeper final : public StoredChunks<FrameScores> {
+/// Elements as they lie in memory.
+template <typename T>
+class PlainKeeper final : public StoredChunks<T> {
+  static_assert(std::is_trivially_copyable_v<T>);
+
  public:
-  using StoredChunks::StoredChunks;
+  using StoredChunks<T>::StoredChunks;
+  using Chunk = typename StoredChunks<T>::Chunk;
 
  private:
-  static_assert(std::is_trivially_copyable_v<FrameScores>);
   [[nodiscard]] std::vector<std::uint8_t> pack(const Chunk& chunk) const override {
-    std::vector<std::uint8_t> bytes(chunk.size() * sizeof(FrameScores));
+    std::vector<std::uint8_t> bytes(chunk.size() * sizeof(T));
     std::memcpy(bytes.data(), chunk.data(), bytes.size());
     return bytes;
   }
   [[nodiscard]] Chunk unpack(const std::vector<std::uint8_t>& bytes) const override {
-    Chunk chunk(bytes.size() / sizeof(FrameScores));
+    Chunk chunk(bytes.size() / sizeof(T));
     std::memcpy(chunk.data(), bytes.data(), bytes.size());
     return chunk;
   }
@@ -107,12 +112,18 @@ class ScoreKeeper final : public StoredChunks<FrameScores> {
 
 }  // namespace
 
-FrameRecords records_put_by(std::shared_ptr<ByteStore> store) {
-  return FrameRecords(std::make_shared<RecordKeeper>(std::move(store)));
+FrameRecords records_put_by(const std::shared_ptr<ByteStore>& store, Outlines outlines) {
+  std::shared_ptr<ChunkKeeper<FrameOutline>> keeper;
+  if (outlines == Outlines::put_by) keeper = std::make_shared<PlainKeeper<FrameOutline>>(store);
+  return {std::make_shared<RecordKeeper>(store), std::move(keeper)};
 }
 
 ScoreList scores_put_by(std::shared_ptr<ByteStore> store) {
-  return ScoreList(std::make_shared<ScoreKeeper>(std::move(store)));
+  return ScoreList(std::make_shared<PlainKeeper<FrameScores>>(std::move(store)));
+}
+
+TrackedPoses poses_put_by(std::shared_ptr<ByteStore> store) {
+  return TrackedPoses(std::make_shared<PlainKeeper<TrackedPose>>(std::move(store)));
 }
 
 }  // namespace stillpoint

@@ -171,16 +171,16 @@ void tell_parts(RecordedRun& recorded, const std::optional<bool>& masks) {
   FrameRecords& records = recorded.run.records;
   if (recorded.outside.empty()) {
     const RecordParts measured = engine_of(recorded.run.config).measures;
-    for (std::size_t i = 0; i < records.size(); ++i) records.edit(i).measured = measured;
+    for (std::size_t i = 0; i < records.size(); ++i)
+      records.change(i, [&measured](FrameRecord& record) { record.measured = measured; });
     return;
   }
   const bool any = masks.value_or(std::any_of(records.begin(), records.end(), [](const FrameRecord& record) {
     return record.mask_share > 0.0 || !record.mask_problem.empty();
   }));
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    FrameRecord& record = records.edit(i);
-    tell_parts_of_outside(record, any && record.mask_problem.empty());
-  }
+  for (std::size_t i = 0; i < records.size(); ++i)
+    records.change(
+        i, [any](FrameRecord& record) { tell_parts_of_outside(record, any && record.mask_problem.empty()); });
 }
 
 /// The run as far as its frames tell: poses are those of the moment, and nothing was scored.

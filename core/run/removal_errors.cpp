@@ -47,6 +47,10 @@ void judge(std::vector<RemovalError>& errors) {
 
 std::vector<RemovalError> removal_errors(const FrameRecords& records,
                                          const TrajectoryEvaluation& evaluation) {
+  const FrameOutlines outlines = records.outlines();
+  if (std::none_of(outlines.begin(), outlines.end(),
+                   [](const FrameOutline& one) { return one.removal_checked; }))
+    return {};
   std::unordered_map<double, const Pose*> truth;
   for (const MatchedPose& matched : evaluation.matched) truth.emplace(matched.timestamp, &matched.truth);
   std::vector<RemovalError> errors;

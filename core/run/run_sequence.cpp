@@ -15,6 +15,7 @@
 #include "core/odometry/odometry.hpp"
 #include "core/odometry/smoother.hpp"
 #include "core/run/frame_records.hpp"
+#include "core/run/tracked_poses.hpp"
 #include "core/sequence/prefetch.hpp"
 #include "core/stopwatch.hpp"
 
@@ -169,18 +170,46 @@ std::vector<SavedPoint> moved_points(const LocalMap& map) {
   return points;
 }
 
+namespace {
+
+StampedPose pose_now(double timestamp, int frame, const KeyframeRelativePose& tracked,
+                     const Odometry& odometry, KeyframePoses& keyframes) {
+  const KeyframeRelativePose pose = odometry.revised_poses().of(frame).value_or(tracked);
+  const Pose camera_from_world = pose.camera_from_reference * keyframes.of(pose.reference_keyframe);
+  return {timestamp, normalised(camera_from_world.inverse())};
+}
+
+}  // namespace
+
 Trajectory trajectory_so_far(const Odometry& odometry, const FrameRecords& records) {
   Trajectory trajectory;
   trajectory.reserve(records.size());
-  KeyframePoses poses(odometry.map());
-  for (const FrameRecord& record : records) {
-    if (!record.estimated) continue;
-    const KeyframeRelativePose pose =
-        odometry.revised_poses()
-            .of(record.index)
-            .value_or(KeyframeRelativePose{record.reference_keyframe, record.camera_from_reference});
-    const Pose camera_from_world = pose.camera_from_reference * poses.of(pose.reference_keyframe);
-    trajectory.push_back({record.timestamp, normalised(camera_from_world.inverse())});
+  KeyframePoses keyframes(odometry.map());
+  for (const FrameRecord& record : records)
+    if (record.estimated)
+      trajectory.push_back(pose_now(record.timestamp, record.index,
+                                    {record.reference_keyframe, record.camera_from_reference}, odometry,
+                                    keyframes));
+  return trajectory;
+}
+
+void add_pose(const FrameRecord& record, TrackedPoses& poses) {
+  if (!record.estimated) return;
+  TrackedPose pose{record.timestamp, record.index, record.reference_keyframe, {}};
+  Eigen::Map<Eigen::Matrix<double, 3, 4>>(pose.camera_from_reference.data()) =
+      record.camera_from_reference.matrix().topRows<3>();
+  poses.push_back(pose);
+}
+
+Trajectory trajectory_so_far(const Odometry& odometry, const TrackedPoses& poses) {
+  Trajectory trajectory;
+  trajectory.reserve(poses.size());
+  KeyframePoses keyframes(odometry.map());
+  for (const TrackedPose& one : poses) {
+    KeyframeRelativePose tracked{one.reference_keyframe, Pose::Identity()};
+    tracked.camera_from_reference.matrix().topRows<3>() =
+        Eigen::Map<const Eigen::Matrix<double, 3, 4>>(one.camera_from_reference.data());
+    trajectory.push_back(pose_now(one.timestamp, one.frame, tracked, odometry, keyframes));
   }
   return trajectory;
 }

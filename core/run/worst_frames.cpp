@@ -13,10 +13,6 @@
 namespace stillpoint {
 namespace {
 
-bool has_no_pose(const FrameRecord& record) {
-  return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
-}
-
 std::string in_lower_case(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
   return text;
@@ -32,13 +28,18 @@ int usual_figure(const MeasuredFrames& frames) {
 std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, int apart, std::size_t most) {
   const FigureInfo& info = frame_figure_infos().at(static_cast<std::size_t>(figure));
   std::vector<WorstFrame> worst;
+  const FrameOutlines outlines = frames.records.outlines();
   bool posed = true;  // the frame before
-  for (const FrameRecord& record : frames.records) {
+  std::size_t row = 0;
+  for (const FrameOutline& frame : outlines) {
     if (worst.size() >= most) break;
-    if (has_no_pose(record) && posed)
-      worst.push_back({record.index, fmt::format("{}{}{}", to_string(record.status),
-                                                 record.note.empty() ? "" : ": ", record.note)});
-    posed = !has_no_pose(record);
+    if (is_lost(frame.status) && posed) {
+      const std::string note = frames.records[row].note;
+      worst.push_back(
+          {frame.index, fmt::format("{}{}{}", to_string(frame.status), note.empty() ? "" : ": ", note)});
+    }
+    posed = !is_lost(frame.status);
+    ++row;
   }
   struct Ranked {
     double badness;  // negated, so that ties stand in order of time
@@ -49,11 +50,11 @@ std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, i
   const std::vector<double> values = frame_figure_values(frames, figure);
   const double sign = info.worse == WorseWhen::low ? 1.0 : -1.0;
   auto value = values.begin();
-  for (const FrameRecord& record : frames.records) {
+  for (const FrameOutline& frame : outlines) {
     const double known = *value++;
-    if (std::isfinite(known) && !has_no_pose(record) &&
-        (record.status != FrameStatus::initialised || info.worse != WorseWhen::low))
-      ranked.push_back({sign * known, record.index, known});
+    if (std::isfinite(known) && !is_lost(frame.status) &&
+        (frame.status != FrameStatus::initialised || info.worse != WorseWhen::low))
+      ranked.push_back({sign * known, frame.index, known});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Ranked& a, const Ranked& b) { return a.badness < b.badness; });

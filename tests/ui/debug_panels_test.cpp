@@ -275,7 +275,7 @@ TEST(Removal, TheWorstHarmIsGoneTo) {
 
 TEST(Removal, IsCheckedWhenAskedFor) {
   SessionView session = debug_example();
-  session.debug.removal.clear();
+  session.debug.removal = {};
   session.ground_truth = Trajectory{{0.0, Pose::Identity()}};
   PanelStage stage("removal", {}, kSheetWidth, kSheetHeight);
   EXPECT_EQ(only<request::RunAll>(stage.click(session, 0.06, 0.05)).config.run.check_removal, true);

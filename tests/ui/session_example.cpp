@@ -387,6 +387,7 @@ SessionView debug_example() {
   debug.ghosts.push_back(handmade_ghost(view, "motion.border_px 7", 12, 2.5));
   debug.ghosts.push_back(handmade_ghost(view, "method none", 20, 3.5));
   debug.ghosts.back().busy = true;
+  std::vector<RemovalError> removal;
   for (int i = 1; i < 40; ++i) {
     if (i == 18) continue;
     RemovalError error{.frame = i,
@@ -399,8 +400,9 @@ SessionView debug_example() {
       error.helped = false;
       error.hurt = true;
     }
-    debug.removal.push_back(error);
+    removal.push_back(error);
   }
+  debug.removal = std::move(removal);
   return view;
 }
 

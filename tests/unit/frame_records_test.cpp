@@ -7,6 +7,8 @@
 #include <cmath>
 #include <thread>
 
+#include "core/evaluation/trajectory_metrics.hpp"
+#include "core/inspect/replayable_run.hpp"
 #include "core/odometry/smoother.hpp"
 #include "core/run/frame_figures.hpp"
 #include "core/run/run_hash.hpp"
@@ -168,6 +170,144 @@ TEST(FrameRecords, IteratorsSearchAsThoseOfAVectorDo) {
             50);
 }
 
+void expect_outlined(const FrameOutline& outline, const FrameRecord& record) {
+  EXPECT_EQ(outline.index, record.index);
+  EXPECT_EQ(outline.timestamp, record.timestamp);
+  EXPECT_EQ(outline.status, record.status);
+  EXPECT_EQ(outline.estimated, record.estimated);
+  EXPECT_EQ(outline.keyframe, record.keyframe);
+  EXPECT_EQ(outline.remarked, !remarks_on(record).empty());
+  EXPECT_EQ(outline.removal_checked, record.removal_check.nothing_removed.has_value());
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_EQ(outline.position[static_cast<std::size_t>(axis)], record.world_from_camera.translation()[axis]);
+}
+
+/// Frames of several kinds.
+FrameRecord mixed_record(int i) {
+  FrameRecord record = full_record(i);
+  if (i % 3 == 0) record.note.clear();
+  if (i % 6 == 0) record.mask_problem.clear();
+  if (i % 5 == 0) record.status = FrameStatus::lost, record.estimated = record.keyframe = false;
+  if (i % 4 == 0) record.removal_check = {};
+  return record;
+}
+
+TEST(FrameRecords, OutlinesTellWhatRecordsDo) {
+  const auto store = ByteStore::make();
+  for (FrameRecords records :
+       {FrameRecords(), records_put_by(store), records_put_by(store, Outlines::at_hand)}) {
+    for (int i = 0; i < 200; ++i) records.push_back(mixed_record(i));
+    records.change(3, [](FrameRecord& record) { record.keyframe = !record.keyframe; });
+    EXPECT_NE(records[3].keyframe, mixed_record(3).keyframe);
+    FrameRecords some = records.first(150);
+    some.resize(151);
+    FrameRecord& held = records.edit(199);
+    held.index = 1000;
+    for (const FrameRecords& all : {records, some}) {
+      const FrameOutlines outlines = all.outlines();
+      ASSERT_EQ(outlines.size(), all.size());
+      std::size_t row = 0;
+      for (const FrameRecord& record : all) expect_outlined(outlines[row++], record);
+    }
+    EXPECT_EQ(records.outlines().back().index, 1000);
+    held.index = 1001;
+    EXPECT_EQ(records.outlines().back().index, 1001);
+  }
+}
+
+TEST(FrameRecords, OutlinesAtHandTakeLittle) {
+  FrameRecords records = records_put_by(ByteStore::make(), Outlines::at_hand);
+  constexpr int kMany = 6400;
+  for (int i = 0; i < kMany; ++i) records.push_back(mixed_record(i));
+  EXPECT_LT(static_cast<double>(records.held_bytes()) / kMany, 90.0) << "bytes a frame";
+}
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+/// A run whose frames, errors and scores are of several kinds.
+struct MixedRun {
+  FrameRecords records = records_put_by(ByteStore::make());
+  ScoreList scores;
+  TrajectoryEvaluation evaluation;
+
+  void add(int frames) {
+    for (const int end = static_cast<int>(records.size()) + frames; static_cast<int>(records.size()) < end;) {
+      const int i = static_cast<int>(records.size());
+      const FrameRecord record = mixed_record(i);
+      FrameScores scored;
+      scored.known = i % 2 == 0, scored.dynamic_inliers = i, scored.mask.found_rightly = 1 + i;
+      scores.push_back(scored);
+      evaluation.matched.push_back({record.timestamp, record.timestamp, some_pose(i), some_pose(i + 2)});
+      evaluation.ate.errors.push_back({record.timestamp, 0.01 * i, 0.0});
+      evaluation.rpe_frame.errors.push_back({0.0, record.timestamp, 0.02 * i, 0.03 * i});
+      if (i % 7 != 0) evaluation.rpe_time.errors.push_back({0.0, record.timestamp, 0.04 * i, 0.05 * i});
+      records.push_back(record);
+    }
+  }
+};
+
+TEST(FigureColumns, AreThoseOfAWalkHoweverTheRunGrew) {
+  MixedRun run;
+  FigureColumns columns;
+  const int inliers = frame_figure("inliers"), few = 30;
+  const auto count = static_cast<int>(frame_figure_infos().size());
+  for (const int more : {few, 1, 100, 0, 64}) {
+    run.add(more);
+    const MeasuredFrames measured{run.records, &run.evaluation, &run.scores, &columns};
+    std::vector<std::vector<double>> walked(static_cast<std::size_t>(count));
+    walk_figures(measured, [&](const FrameRecord&, const std::vector<double>& all) {
+      for (std::size_t i = 0; i < all.size(); ++i) walked[i].push_back(all[i]);
+    });
+    int known = 0;
+    for (int figure = 0; figure < count; ++figure) {
+      // Some are asked for late, as when somebody chooses another lane.
+      if (more == few && figure % 2 == 0 && figure != inliers) continue;
+      const std::vector<double>& all = walked[static_cast<std::size_t>(figure)];
+      EXPECT_TRUE(same(frame_figure_values(measured, figure), all))
+          << shown_name(frame_figure_infos()[static_cast<std::size_t>(figure)]);
+      EXPECT_TRUE(same(frame_figure_values({run.records, &run.evaluation, &run.scores}, figure), all));
+      known += std::any_of(all.begin(), all.end(), [](double value) { return std::isfinite(value); }) ? 1 : 0;
+    }
+    EXPECT_GT(known, 20) << "more than what is never known is compared";
+  }
+  // What was shown of the run when it was shorter.
+  const FrameRecords first = run.records.first(few);
+  EXPECT_EQ(frame_figure_values({first, nullptr, &run.scores, &columns}, inliers).size(),
+            static_cast<std::size_t>(few));
+}
+
+TEST(FigureColumns, OnlyNewFramesAreWalkedOver) {
+  // Records that change behind its back show what was asked of them.
+  FrameRecords records;
+  for (int i = 0; i < 10; ++i) records.push_back(full_record(i));
+  FigureColumns columns;
+  const int inliers = frame_figure("inliers");
+  EXPECT_EQ(frame_figure_values({records, nullptr, nullptr, &columns}, inliers)[4], 250.0);
+  records.edit(4).inliers = 1;
+  records.push_back(full_record(10));
+  const std::vector<double> values = frame_figure_values({records, nullptr, nullptr, &columns}, inliers);
+  EXPECT_EQ(values[4], 250.0);
+  EXPECT_EQ(values.size(), 11U);
+}
+
+TEST(TrackedPoses, ArePutByToTheLastBit) {
+  TrackedPoses poses = poses_put_by(ByteStore::make());
+  for (int i = 0; i < 640; ++i) add_pose(mixed_record(i), poses);
+  EXPECT_EQ(poses.size(), 512U) << "a fifth has none";
+  EXPECT_EQ(poses[0].frame, 1);
+  const TrackedPose last = poses[511];
+  EXPECT_EQ(last.frame, 639);
+  EXPECT_EQ(last.timestamp, full_record(639).timestamp);
+  EXPECT_EQ(last.reference_keyframe, full_record(639).reference_keyframe);
+  const Eigen::Matrix<double, 3, 4> pose =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4>>(last.camera_from_reference.data());
+  EXPECT_EQ(pose, some_pose(640).matrix().topRows<3>());
+  EXPECT_LT(poses.held_bytes(), 512U * 40U);
+}
+
 TEST(RevisedPoses, TakeAPoseAFrameAndShareIt) {
   RevisedPoses poses;
   constexpr int kMany = 6400;
@@ -182,6 +322,51 @@ TEST(RevisedPoses, TakeAPoseAFrameAndShareIt) {
   EXPECT_EQ(found->camera_from_reference.matrix(), some_pose(100).matrix());
   EXPECT_FALSE(copy.of(301));
   EXPECT_FALSE(RevisedPoses().of(0));
+}
+
+TEST(ReplayableRun, ShowsOfAFrameThatIsPutByWhatWasRecorded) {
+  constexpr int kFrames = 200, kChunk = static_cast<int>(FrameRecords::kChunk);
+  const auto source = rendered("room", kFrames);
+  Config config;
+  config.features.count = 150;
+  ReplayableRun run(*source, config);
+  const auto read = [&source](int index) { return source->read(index); };
+  std::vector<FrameRecord> recorded;
+  std::size_t held = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    recorded.push_back(run.process_next(read).record);
+    if (i + 1 == kChunk) held = run.held_bytes();
+  }
+  EXPECT_LT(static_cast<double>(run.held_bytes() - held) / (kFrames - kChunk), 250.0) << "bytes a frame";
+  for (const int i : {0, 5, 63, 64, 130, 199}) {
+    const FrameRecord again = run.record(i), &before = recorded[static_cast<std::size_t>(i)];
+    EXPECT_TRUE(computed_alike(again, before)) << i;
+    EXPECT_EQ(again.ms.total, before.ms.total);
+    EXPECT_EQ(again.note, before.note);
+    EXPECT_EQ(again.pose_covariance, before.pose_covariance);
+  }
+  EXPECT_EQ(run.hash(), run_hash(FrameRecords(recorded)));
+  const RunView view = run.view();
+  std::size_t row = 0;
+  for (const FrameRecord& record : view.records) {
+    EXPECT_TRUE(computed_alike(record,
+                               [&] {
+                                 FrameRecord without = recorded[row];
+                                 without.features.clear();
+                                 return without;
+                               }()))
+        << row;
+    ++row;
+  }
+  EXPECT_EQ(row, static_cast<std::size_t>(kFrames));
+  const Trajectory by_records = [&] {
+    RunOptions options;
+    options.count = kFrames;
+    return run_sequence(*source, config, options).trajectory;
+  }();
+  ASSERT_EQ(view.trajectory.size(), by_records.size());
+  for (std::size_t i = 0; i < by_records.size(); ++i)
+    EXPECT_EQ(view.trajectory[i].world_from_camera.matrix(), by_records[i].world_from_camera.matrix());
 }
 
 TEST(FrameRecords, OfARunArePutBy) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/odometry/bundle_adjustment.hpp"
+#include "core/odometry/feature_shelf.hpp"
 #include "core/odometry/local_map.hpp"
 #include "core/odometry/mapping.hpp"
 #include "core/run/run_sequence.hpp"
@@ -71,6 +72,46 @@ class Wall : public ::testing::Test {
   Config config_;
   std::vector<Eigen::Vector3d> truth_;
 };
+
+TEST_F(Wall, FeaturesPutByTakeNoMemoryAndComeBackToTheLastBit) {
+  begin();
+  const auto store = ByteStore::make();
+  map_.shelve_features(*store);
+  LocalMap copy = map_;
+  copy.drop_features();
+  EXPECT_EQ(copy.keyframe(0).features, nullptr);
+  LocalMap beside = copy;
+  beside.restore_features();
+  EXPECT_EQ(beside.keyframe(0).features, map_.keyframe(0).features) << "the very set, while it is there";
+  beside = LocalMap();
+
+  const FeatureSet was = *map_.keyframe(0).features;
+  EXPECT_EQ(map_.keyframe(0).shelved->bytes().bytes_in_memory(), 0U);
+  map_.shelve_features(*store);
+  EXPECT_EQ(map_.keyframe(0).shelved, copy.keyframe(0).shelved) << "each is put by once";
+  std::weak_ptr<const FeatureSet> alive = map_.keyframe(0).features;
+  map_ = LocalMap();
+  EXPECT_TRUE(alive.expired()) << "a copy that dropped them holds none";
+  copy.restore_features();
+  const FeatureSet& again = *copy.keyframe(0).features;
+  ASSERT_EQ(again.size(), kPoints);
+  EXPECT_EQ(again.undistorted, was.undistorted);
+  EXPECT_EQ(again.descriptors, was.descriptors);
+  EXPECT_EQ(again.depth, was.depth);
+  EXPECT_EQ(again.static_weight, was.static_weight);
+  std::size_t near_some = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(again.keypoints[at].pt, was.keypoints[at].pt);
+    EXPECT_EQ(again.keypoints[at].octave, was.keypoints[at].octave);
+    std::vector<int> found, before;
+    again.find(was.undistorted[at], 40.0F, 0, 0, found);
+    was.find(was.undistorted[at], 40.0F, 0, 0, before);
+    EXPECT_EQ(found, before);
+    near_some += found.size();
+  }
+  EXPECT_GT(near_some, static_cast<std::size_t>(kPoints)) << "each finds itself, and some another";
+}
 
 TEST_F(Wall, PointsAreMadeWhereDepthSaysTheyAre) {
   const auto ids = begin();

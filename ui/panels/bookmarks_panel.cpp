@@ -92,7 +92,7 @@ class BookmarksPanel final : public NamedPanel {
       ImGui::TableNextColumn();
       ImGui::AlignTextToFramePadding();
       if (const auto at = record_of(session, bookmark.frame))
-        ImGui::TextDisabled("%.2f s", session.run->records[*at].timestamp - series_start(session));
+        ImGui::TextDisabled("%.2f s", session.run->records.outlines()[*at].timestamp - series_start(session));
     }
     ImGui::TableNextColumn();
     Field& field = fields_[index];

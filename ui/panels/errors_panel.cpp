@@ -114,7 +114,7 @@ class ErrorsPanel final : public NamedPanel {
       plot.series.push_back({shortened(ghost.name, 24), series.x, series.y, look.colour, look.line, 2.0F});
       if (!ghost.diverged) continue;
       if (const auto at = record_of(session, *ghost.diverged))
-        plot.marks.push_back({session.run->records[*at].timestamp - series_start(session),
+        plot.marks.push_back({session.run->records.outlines()[*at].timestamp - series_start(session),
                               fmt::format("≠ at {}", *ghost.diverged), look.colour});
     }
   }

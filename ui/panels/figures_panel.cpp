@@ -91,9 +91,9 @@ class FiguresPanel final : public NamedPanel {
     FigurePairs curve;
     if (x_ == kTime) {  // what is not known is a gap
       curve.y = frame_figure_values(run.measured(), y_);
-      for (const FrameRecord& record : run.records) {
-        curve.x.push_back(record.timestamp - start);
-        curve.frames.push_back(record.index);
+      for (const FrameOutline& frame : run.records.outlines()) {
+        curve.x.push_back(frame.timestamp - start);
+        curve.frames.push_back(frame.index);
       }
     } else {
       curve = figure_pairs(run.measured(), x_, y_);

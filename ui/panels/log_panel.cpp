@@ -47,21 +47,25 @@ std::vector<Line> lines_of_run(const SessionView& session) {
   std::vector<Line> lines;
   std::string last;
   int first = 0, last_frame = -2;
-  for (const FrameRecord& record : session.run->records) {
-    const std::string note = note_of(record);
-    const bool goes_on = note == last && record.index == last_frame + 1;
-    last_frame = record.index;
+  std::size_t row = 0;
+  for (const FrameOutline& frame : session.run->records.outlines()) {
+    // Of most frames there is nothing to say, and their records need not be asked.
+    const bool usual = frame.status == FrameStatus::tracked && !frame.remarked;
+    const std::string note = usual ? "" : note_of(session.run->records[row]);
+    ++row;
+    const bool goes_on = note == last && frame.index == last_frame + 1;
+    last_frame = frame.index;
     if (note.empty()) {
       last.clear();
       continue;
     }
     if (goes_on) {
-      lines.back().when = fmt::format("frames {} to {}", first, record.index);
+      lines.back().when = fmt::format("frames {} to {}", first, frame.index);
       continue;
     }
     last = note;
-    first = record.index;
-    lines.push_back({fmt::format("frame {}", record.index), note, record.index, is_lost(record)});
+    first = frame.index;
+    lines.push_back({fmt::format("frame {}", frame.index), note, frame.index, is_lost(frame.status)});
   }
   return lines;
 }
@@ -81,7 +85,9 @@ class LogPanel final : public NamedPanel {
     }
     Controls controls(frame);
     controls.toggle("Errors only", errors_only_, "Lost and unreadable frames, and what could not be done");
-    const auto lost = std::count_if(session.run->records.begin(), session.run->records.end(), is_lost);
+    const FrameOutlines frames = session.run->records.outlines();
+    const auto lost = std::count_if(frames.begin(), frames.end(),
+                                    [](const FrameOutline& one) { return is_lost(one.status); });
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", fmt::format("{} of {} frames without a pose", lost, records_).c_str());

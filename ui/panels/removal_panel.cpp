@@ -29,7 +29,7 @@ class RemovalPanel final : public NamedPanel {
   [[nodiscard]] PanelSize least() const override { return {300.0F, 230.0F}; }
 
   void draw(UiFrame& frame, const SessionView& session, PanelActions& actions) override {
-    if (session.debug.removal.empty()) {
+    if (session.debug.removal->empty()) {
       draw_unchecked(frame, session, actions);
       return;
     }
@@ -69,7 +69,7 @@ class RemovalPanel final : public NamedPanel {
   }
 
   void collect(const SessionView& session) {
-    const auto& errors = session.debug.removal;
+    const auto& errors = *session.debug.removal;
     index_.clear();
     for (Series* series : {&with_, &without_, &told_, &hurt_}) *series = {};
     for (const RemovalError& one : errors) {
@@ -120,7 +120,7 @@ class RemovalPanel final : public NamedPanel {
   void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, ImVec2 size) {
     const ThemeName theme = frame.theme.name;
     Plot plot{.x_label = "frame", .y_label = "step error", .y_unit = "mm"};
-    for (const RemovalError& one : session.debug.removal) {
+    for (const RemovalError& one : *session.debug.removal) {
       if (!one.hurt && !one.helped) continue;
       plot.bands.push_back({{one.frame - 0.5, one.frame + 0.5},
                             one.hurt ? hurt_colour(frame) : helped_colour(),

@@ -14,8 +14,8 @@
 namespace stillpoint {
 
 double series_start(const SessionView& session) {
-  const auto& records = session.run->records;
-  return records.empty() ? session.current->frame.timestamp : records.front().timestamp;
+  const FrameOutlines frames = session.run->records.outlines();
+  return frames.empty() ? session.current->frame.timestamp : frames.front().timestamp;
 }
 
 Series error_series(const RelativePoseError& error, double start, bool rotation) {
@@ -40,26 +40,26 @@ Series error_series(const RelativePoseError& error, double start, bool rotation)
 }
 
 AxisRange record_range(const SessionView& session) {
-  const auto& records = session.run->records;
-  if (records.size() < 2) return {0.0, 1.0};
-  return {0.0, records.back().timestamp - records.front().timestamp};
+  const FrameOutlines frames = session.run->records.outlines();
+  if (frames.size() < 2) return {0.0, 1.0};
+  return {0.0, frames.back().timestamp - frames.front().timestamp};
 }
 
 std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
-  const auto& records = session.run->records;
+  const FrameOutlines frames = session.run->records.outlines();
   const double start = series_start(session);
   std::vector<PlotBand> bands;
   std::optional<double> from;
-  for (const FrameRecord& record : records) {
-    const double here = record.timestamp - start;
-    if (is_lost(record)) {
+  for (const FrameOutline& frame : frames) {
+    const double here = frame.timestamp - start;
+    if (is_lost(frame.status)) {
       if (!from) from = here;
     } else if (from) {
       bands.push_back({{*from, here}, colour});
       from.reset();
     }
   }
-  if (from) bands.push_back({{*from, records.back().timestamp - start}, colour});
+  if (from) bands.push_back({{*from, frames.back().timestamp - start}, colour});
   return bands;
 }
 
@@ -68,29 +68,25 @@ std::optional<std::size_t> record_of(const SessionView& session, int frame_index
 }
 
 std::optional<std::size_t> record_of(const RunView& run, int frame_index) {
-  const auto& records = run.records;
+  const FrameOutlines frames = run.records.outlines();
   const auto found =
-      std::lower_bound(records.begin(), records.end(), frame_index,
-                       [](const FrameRecord& record, int index) { return record.index < index; });
-  if (found == records.end() || found->index != frame_index) return std::nullopt;
-  return static_cast<std::size_t>(found - records.begin());
+      std::lower_bound(frames.begin(), frames.end(), frame_index,
+                       [](const FrameOutline& frame, int index) { return frame.index < index; });
+  if (found == frames.end() || found->index != frame_index) return std::nullopt;
+  return static_cast<std::size_t>(found - frames.begin());
 }
 
 std::optional<int> frame_at(const SessionView& session, double seconds) {
-  const auto& records = session.run->records;
-  if (records.empty()) return std::nullopt;
+  const FrameOutlines frames = session.run->records.outlines();
+  if (frames.empty()) return std::nullopt;
   const double time = seconds + series_start(session);
   const auto after =
-      std::lower_bound(records.begin(), records.end(), time,
-                       [](const FrameRecord& record, double t) { return record.timestamp < t; });
-  if (after == records.end()) return records.back().index;
-  if (after == records.begin()) return after->index;
+      std::lower_bound(frames.begin(), frames.end(), time,
+                       [](const FrameOutline& frame, double t) { return frame.timestamp < t; });
+  if (after == frames.end()) return frames.back().index;
+  if (after == frames.begin()) return after->index;
   const auto before = after - 1;
   return time - before->timestamp < after->timestamp - time ? before->index : after->index;
-}
-
-bool is_lost(const FrameRecord& record) {
-  return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
 }
 
 }  // namespace stillpoint

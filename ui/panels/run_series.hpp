@@ -7,7 +7,6 @@
 
 namespace stillpoint {
 
-struct FrameRecord;
 struct RelativePoseError;
 struct RunView;
 struct SessionView;
@@ -38,8 +37,5 @@ struct Series {
 
 /// The index of the frame nearest to a time; nothing where there are no records.
 [[nodiscard]] std::optional<int> frame_at(const SessionView& session, double seconds);
-
-/// Whether a record's frame has no pose of its own.
-[[nodiscard]] bool is_lost(const FrameRecord& record);
 
 }  // namespace stillpoint

@@ -31,8 +31,9 @@ Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<
 /// The part of the ground truth the run has come by.
 ScenePath truth_path(const SessionView& session) {
   ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
-  if (session.run->records.empty()) return path;
-  const double from = session.run->records.front().timestamp, to = session.run->records.back().timestamp;
+  const FrameOutlines frames = session.run->records.outlines();
+  if (frames.empty()) return path;
+  const double from = frames.front().timestamp, to = frames.back().timestamp;
   double before = -1.0;
   for (const StampedPose& pose : *session.ground_truth) {
     if (pose.timestamp < from - 0.05 || pose.timestamp > to + 0.05) continue;
@@ -51,17 +52,18 @@ void add_run(const SessionView& session, const RunView& run, const Pose& world_f
   std::size_t error = 0;
   const auto& errors = run.evaluation.ate.errors;
   std::optional<PathFrame> before;
-  for (const FrameRecord& record : run.records) {
-    if (!record.estimated) continue;
-    if (before && record.index != before->index + 1) {
+  for (const FrameOutline& one : run.records.outlines()) {
+    if (!one.estimated) continue;
+    if (before && one.index != before->index + 1) {
       path.positions.push_back(broken());
       frames.push_back(*before);
     }
-    before = PathFrame{record.index, record.timestamp - start, {}};
-    path.positions.push_back((world_from_estimate * record.world_from_camera.translation()).cast<float>());
+    before = PathFrame{one.index, one.timestamp - start, {}};
+    const Eigen::Vector3d position(one.position.data());
+    path.positions.push_back((world_from_estimate * position).cast<float>());
     PathFrame frame = *before;
-    while (error < errors.size() && errors[error].timestamp < record.timestamp - 1e-6) ++error;
-    if (error < errors.size() && std::abs(errors[error].timestamp - record.timestamp) < 1e-6)
+    while (error < errors.size() && errors[error].timestamp < one.timestamp - 1e-6) ++error;
+    if (error < errors.size() && std::abs(errors[error].timestamp - one.timestamp) < 1e-6)
       frame.error_m = errors[error].translation_m;
     frames.push_back(frame);
   }

@@ -110,15 +110,15 @@ void TimelineModel::update(const SessionView& session, const std::vector<int>& w
   const auto read = [](const RunView& one, std::vector<int>& indices, std::vector<double>& worst) {
     indices.clear();
     worst.clear();
-    for (const FrameRecord& record : one.records) {
-      indices.push_back(record.index);
-      worst.push_back(badness_of(record.status));
+    for (const FrameOutline& frame : one.records.outlines()) {
+      indices.push_back(frame.index);
+      worst.push_back(badness_of(frame.status));
     }
   };
   read(run, frames, badness);
   keyframes.clear();
-  for (const FrameRecord& record : run.records)
-    if (record.keyframe) keyframes.push_back(record.index);
+  for (const FrameOutline& frame : run.records.outlines())
+    if (frame.keyframe) keyframes.push_back(frame.index);
   const auto& ghosts = session.debug.ghosts;
   ghost_frames.resize(ghosts.size());
   ghost_badness.resize(ghosts.size());

@@ -101,7 +101,7 @@ class TimelinePanel final : public NamedPanel {
     }
     for (std::size_t i = 0; i < model_.frames.size(); ++i) {
       std::vector<std::string> row{fmt::format("{}", model_.frames[i]),
-                                   std::string(to_string(session.run->records[i].status))};
+                                   std::string(to_string(status_of_badness(model_.badness[i])))};
       for (const TimelineLane& lane : model_.lanes)
         row.push_back(std::isfinite(lane.values[i]) ? fmt::format("{}", lane.values[i]) : std::string());
       table.rows.push_back(std::move(row));

@@ -126,7 +126,8 @@ Footer timeline_footer(const UiFrame& frame, const SessionView& session, const F
   const ThemeName theme = frame.theme.name;
   Footer footer;
   std::array<int, 5> counts{};
-  for (const FrameRecord& record : session.run->records) ++counts[static_cast<std::size_t>(record.status)];
+  for (const FrameOutline& one : session.run->records.outlines())
+    ++counts[static_cast<std::size_t>(one.status)];
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
     LegendEntry entry = look_of(static_cast<FrameStatus>(i), theme);

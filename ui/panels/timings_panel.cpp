@@ -138,31 +138,38 @@ class TimingsPanel final : public NamedPanel {
   [[nodiscard]] static Rgb colour_of(std::size_t stage) { return kSeriesColours[stage]; }
 
   void collect(const SessionView& session) {
-    if (run_ == session.run.get() && revision_ == session.revision &&
-        index_.size() == session.run->records.size())
-      return;
+    const FrameRecords& records = session.run->records;
+    if (run_ == session.run.get() && revision_ == session.revision && index_.size() == records.size()) return;
+    // The same run, grown: what was read of it before stays.
+    const bool goes_on =
+        columns_ != nullptr && columns_ == session.run->columns && index_.size() <= records.size();
     run_ = session.run.get();
+    columns_ = session.run->columns;
     revision_ = session.revision;
-    index_.clear();
-    total_.clear();
-    for (auto& one : tops_) one.clear();
-    std::array<std::vector<double>, kStages.size()> values;
-    std::vector<double> stereo;
-    for (const FrameRecord& record : session.run->records) {
-      stereo.push_back(record.ms.stereo);
+    if (!goes_on) {
+      index_.clear();
+      total_.clear();
+      stereo_.clear();
+      for (auto* all : {&tops_, &values_})
+        for (auto& one : *all) one.clear();
+    }
+    const auto end = records.end();
+    for (auto at = records.begin() + static_cast<std::ptrdiff_t>(index_.size()); at != end; ++at) {
+      const FrameRecord& record = *at;
+      stereo_.push_back(record.ms.stereo);
       index_.push_back(record.index);
       total_.push_back(record.ms.total);
       double sum = 0.0;
       for (std::size_t i = 0; i < kStages.size(); ++i) {
         const double one = record.ms.*kStages[i].value;
-        values[i].push_back(one);
+        values_[i].push_back(one);
         sum += one;
         tops_[i].push_back(sum);
       }
     }
-    for (std::size_t i = 0; i < kStages.size(); ++i) figures_[i] = figures_of(values[i]);
+    for (std::size_t i = 0; i < kStages.size(); ++i) figures_[i] = figures_of(values_[i]);
     whole_ = figures_of(total_);
-    stereo_ms_ = figures_of(std::move(stereo)).median;
+    stereo_ms_ = figures_of(stereo_).median;
   }
 
   void collect_ghosts(const SessionView& session) {
@@ -270,12 +277,15 @@ class TimingsPanel final : public NamedPanel {
 
   std::vector<double> index_, total_;
   double stereo_ms_ = 0.0;
-  std::array<std::vector<double>, kStages.size()> tops_;  // ms, each stage added to those before
+  std::array<std::vector<double>, kStages.size()> tops_;    // ms, each stage added to those before
+  std::array<std::vector<double>, kStages.size()> values_;  // ms, of each stage
+  std::vector<double> stereo_;                              // ms
   std::array<Figures, kStages.size()> figures_;
   Figures whole_;
   std::vector<GhostTimes> ghosts_;
   PlotView view_;
   const void* run_ = nullptr;
+  std::shared_ptr<const FigureColumns> columns_;  // by which a run is known as it grows
   std::uint64_t revision_ = 0;
 };
 

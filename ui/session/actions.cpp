@@ -19,11 +19,11 @@ bool is_function_key(Key key) { return key >= Key::kF1 && key <= Key::kF12; }
 
 template <typename Wanted>
 std::optional<int> next_frame(const SessionView& session, Wanted wanted) {
-  const auto& records = session.run->records;
+  const FrameOutlines frames = session.run->records.outlines();
   const auto last = std::min(static_cast<std::ptrdiff_t>(session.current->index) + 1,
-                             static_cast<std::ptrdiff_t>(records.size()));
-  const auto found = std::find_if(records.begin() + last, records.end(), wanted);
-  return found == records.end() ? std::nullopt : std::optional(static_cast<int>(found - records.begin()));
+                             static_cast<std::ptrdiff_t>(frames.size()));
+  const auto found = std::find_if(frames.begin() + last, frames.end(), wanted);
+  return found == frames.end() ? std::nullopt : std::optional(static_cast<int>(found - frames.begin()));
 }
 
 }  // namespace
@@ -110,22 +110,20 @@ std::optional<int> match_score(std::string_view title, std::string_view query) {
 }
 
 std::optional<int> next_keyframe(const SessionView& session) {
-  return next_frame(session, [](const FrameRecord& record) { return record.keyframe; });
+  return next_frame(session, [](const FrameOutline& frame) { return frame.keyframe; });
 }
 
 std::optional<int> previous_keyframe(const SessionView& session) {
-  const auto& records = session.run->records;
-  auto at = records.begin() + std::min(static_cast<std::ptrdiff_t>(session.current->index),
-                                       static_cast<std::ptrdiff_t>(records.size()));
-  while (at != records.begin())
-    if ((--at)->keyframe) return static_cast<int>(at - records.begin());
+  const FrameOutlines frames = session.run->records.outlines();
+  auto at = frames.begin() + std::min(static_cast<std::ptrdiff_t>(session.current->index),
+                                      static_cast<std::ptrdiff_t>(frames.size()));
+  while (at != frames.begin())
+    if ((--at)->keyframe) return static_cast<int>(at - frames.begin());
   return std::nullopt;
 }
 
 std::optional<int> next_lost_frame(const SessionView& session) {
-  return next_frame(session, [](const FrameRecord& record) {
-    return record.status == FrameStatus::lost || record.status == FrameStatus::unreadable;
-  });
+  return next_frame(session, [](const FrameOutline& frame) { return is_lost(frame.status); });
 }
 
 }  // namespace stillpoint

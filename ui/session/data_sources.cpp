@@ -31,7 +31,7 @@ std::vector<int> hit_frames(const DebugView& debug) {
 
 std::vector<int> hurt_frames(const DebugView& debug) {
   std::vector<int> frames;
-  for (const RemovalError& one : debug.removal)
+  for (const RemovalError& one : *debug.removal)
     if (one.hurt) frames.push_back(one.frame);
   return frames;
 }

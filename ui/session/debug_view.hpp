@@ -10,6 +10,7 @@
 #include "core/config.hpp"
 #include "core/inspect/marks.hpp"
 #include "core/parameter.hpp"
+#include "core/shared_value.hpp"
 
 namespace stillpoint {
 
@@ -89,11 +90,11 @@ struct DebugView {
   std::optional<FrameSpan> span;  ///< the frames selected
   bool loop = false;              ///< play goes round in the span
   std::vector<GhostView> ghosts;
-  std::vector<WaitingGhost> waiting;         ///< ghosts to come, once the run is where they begin
-  std::vector<RemovalError> removal;         ///< by frame; empty where there is no truth
-  std::optional<Config> preview_config;      ///< what the sliders say while it is not run with
-  std::shared_ptr<const FrameView> preview;  ///< the frame shown, motion stages under preview_config
-  std::optional<Config> previewed;           ///< the config `preview` was made with
+  std::vector<WaitingGhost> waiting;               ///< ghosts to come, once the run is where they begin
+  SharedValue<std::vector<RemovalError>> removal;  ///< by frame; empty where there is no truth
+  std::optional<Config> preview_config;            ///< what the sliders say while it is not run with
+  std::shared_ptr<const FrameView> preview;        ///< the frame shown, motion stages under preview_config
+  std::optional<Config> previewed;                 ///< the config `preview` was made with
   bool preview_whole = false;              ///< false: its features' matches and its pose are the run's still
   double preview_ms = 0.0;                 ///< what computing it took
   std::optional<OtherFrame> other_is;      ///< nothing until it is asked for (request::StandBeside)

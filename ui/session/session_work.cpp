@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <set>
 
 #include "core/check/findings.hpp"
 #include "core/inspect/run_view.hpp"
+#include "core/run/frame_figures.hpp"
 #include "core/run/sweep.hpp"
 #include "core/sequence/fingerprint.hpp"
 #include "core/stopwatch.hpp"
@@ -169,8 +171,11 @@ void Session::preview_step() {
 
 void Session::update_breakpoints() {
   if (!breakpoints_due_ || breakpoints_.empty()) return;
-  const auto run = run_->run_view();
-  breakpoints_.update(FrameFigures(run->measured(), breakpoints_.figures()));
+  const std::set<int> figures = breakpoints_.figures();
+  // All poses are evaluated anew only where a condition is about their errors.
+  const bool of_errors = std::any_of(figures.begin(), figures.end(), needs_evaluation);
+  breakpoints_.update(
+      FrameFigures(of_errors ? run_->run_view()->measured() : run_->track().measured(), figures));
   breakpoints_due_ = false;
 }
 

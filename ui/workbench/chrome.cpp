@@ -175,11 +175,11 @@ void Workbench::draw_frame_slider(float width) {
                        to_u32(mix(theme.raised, theme.accent, 0.45F)), half);
   const ImU32 keyframe = to_u32(mix(theme.accent, theme.text, 0.3F)),
               lost = to_u32(role_colour(Role::kRemoved, theme.name));
-  for (const FrameRecord& record : session_->run->records) {
-    const float x = x_of(record.index);
-    if (record.keyframe)
+  for (const FrameOutline& frame : session_->run->records.outlines()) {
+    const float x = x_of(frame.index);
+    if (frame.keyframe)
       list.AddLine({x, middle - 2.6F * half}, {x, middle - 1.3F * half}, keyframe, frame_->scale);
-    if (record.status == FrameStatus::lost || record.status == FrameStatus::unreadable)
+    if (is_lost(frame.status))
       list.AddRectFilled({x - frame_->scale, middle - half}, {x + frame_->scale, middle + 2.4F * half}, lost);
   }
   const ImVec2 handle{x_of(session_->current->index), middle};
@@ -215,7 +215,12 @@ void Workbench::draw_verdict() {
     x += ImGui::CalcTextSize(text.c_str()).x + 16.0F * scale;
   };
   if (const auto row = record_of(*session_, session_->current->index)) {
-    const FrameVerdict verdict = frame_verdict(*session_->run, *row, hurt_frames(session_->debug));
+    const VerdictKey key{session_->run.get(), session_->revision, session_->run->records.size(), *row};
+    if (!(key == verdict_key_)) {  // it asks all frames what is usual
+      verdict_ = frame_verdict(*session_->run, *row, hurt_frames(session_->debug));
+      verdict_key_ = key;
+    }
+    const FrameVerdict& verdict = verdict_;
     const Rgb bad = role_colour(Role::kRemoved, theme.name), good = role_colour(Role::kKept, theme.name);
     for (const FrameVerdict::Part& part : verdict.parts) {
       if (x < right)

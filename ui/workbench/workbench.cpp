@@ -12,6 +12,7 @@
 #include "core/run/sweep.hpp"
 #include "ui/panels/panel_kit.hpp"
 #include "ui/panels/run_pictures.hpp"
+#include "ui/panels/run_series.hpp"
 #include "ui/shell/event_log.hpp"
 #include "ui/theme/fonts.hpp"
 #include "ui/theme/icons.hpp"
@@ -227,8 +228,7 @@ void Workbench::draw_alone(UiFrame& frame, const SessionView& session, Panel& pa
                to_u32(frame.theme.text), panel.title().c_str());
   const float title_width =
       frame.fonts.strong->CalcTextSizeA(frame.fonts.strong->FontSize, 1e6F, 0.0F, panel.title().c_str()).x;
-  const auto& records = session.run->records;
-  const double seconds = records.empty() ? 0.0 : session.current->frame.timestamp - records.front().timestamp;
+  const double seconds = session.current->frame.timestamp - series_start(session);
   const float room = rect.width - title_width - 4.0F * margin;
   ImGui::PushFont(frame.fonts.small);
   const auto wide = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };

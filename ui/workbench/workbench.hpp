@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/inspect/frame_verdict.hpp"
 #include "ui/panels/panel.hpp"
 #include "ui/panels/panel_choices.hpp"
 #include "ui/panels/panel_command.hpp"
@@ -218,6 +219,15 @@ class Workbench {
     int figure = 0;
     bool operator==(const WorstKey&) const = default;
   };
+  // The verdict drawn last, and of what.
+  struct VerdictKey {
+    const RunView* run = nullptr;
+    std::uint64_t revision = 0;
+    std::size_t records = 0, row = 0;
+    bool operator==(const VerdictKey&) const = default;
+  };
+  VerdictKey verdict_key_;
+  FrameVerdict verdict_;
   std::optional<int> worst_by_;
   WorstKey worst_key_;
   std::vector<int> worst_;
