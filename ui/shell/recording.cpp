@@ -28,7 +28,7 @@ class Words {
       : file_(file), line_(line), text_(std::move(text)) {}
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw InputError(fmt::format("{}, line {}: {}", file_, line_, why));
+    throw InputError(fmt::format("{}:{}: {}", file_, line_, why));
   }
 
   [[nodiscard]] bool more() {
