@@ -84,7 +84,8 @@ class Readings {
  private:
   void weigh(Reading& reading, const std::vector<double>& truth_s) const {
     const auto stamps = estimate(reading);
-    reading.met = meetings(stamps, truth_s, options_.tolerance_s);
+    reading.met = std::min(meetings(stamps, truth_s, options_.tolerance_s),
+                           meetings(truth_s, stamps, options_.tolerance_s));
     const double a = span_of(truth_s), b = span_of(stamps);
     reading.span_mismatch = a > 0 && b > 0 ? std::abs(std::log(a / b)) : 0.0;
   }

@@ -20,10 +20,10 @@ class StatisticsTable {
   }
   void row(const std::string& name, const char* unit, const ErrorStatistics& s, const std::string& why) {
     if (s.count == 0) {
-      text_ += fmt::format("{:<27}{:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
+      text_ += fmt::format("{:<26} {:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
       return;
     }
-    text_ += fmt::format("{:<27}{:<5}{:>7}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}\n", name,
+    text_ += fmt::format("{:<26} {:<5}{:>7} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f}\n", name,
                          unit, s.count, s.rmse, s.mean, s.median, s.stddev, s.min, s.max);
   }
   void rows(const RelativePoseError& rpe) {

@@ -116,8 +116,8 @@ void count_columns(const std::vector<TextLine>& lines, std::size_t from, Traject
   };
   if (parted.empty()) return;
   const auto is_known = [](int columns) {
-    return columns == kTumColumns || columns == kKittiColumns || columns == kStampedKittiColumns ||
-           columns == kEurocColumns || columns == kReplicaColumns;
+    return columns == kTumColumns || columns == kKittiColumns || columns == kEurocColumns ||
+           columns == kReplicaColumns;
   };
   const int plain_count = most(parted)->first, comma_count = most(with_commas)->first;
   // Eight numbers with decimal commas are sixteen where commas part them.

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <regex>
+#include <sstream>
 
 #include "tests/cli/run_cli.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -14,6 +15,28 @@ namespace {
 
 using ::testing::HasSubstr;
 using Line = std::vector<std::string>;
+
+TEST(Usage, ColumnsOfATableDoNotRunTogether) {
+  const SmallSequence sequence(4);
+  // A trajectory in micrometres, and the widest name of an error.
+  std::string far;
+  for (int i = 0; i < 4; ++i)
+    far += std::to_string(sequence.stamp(i)) + " " + std::to_string(1e5 * i * i) + " 0 " +
+           std::to_string(2e5 * i) + " 0 0 0 1\n";
+  sequence.folder.write("far.txt", far);
+  const CliResult table =
+      run_cli({"evaluate", sequence.path(), sequence.path("far.txt"), "--protocol", "tum"});
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("RPE random pairs translation m "));
+  std::istringstream lines(table.out);
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("ATE ") || line.starts_with("RPE random")) {
+      ++rows;
+      EXPECT_TRUE(std::regex_search(line, std::regex(R"( +\d+( +\d+\.\d{5}){6}$)"))) << line;
+    }
+  EXPECT_EQ(rows, 4);
+}
 
 class WrongByItself : public ::testing::TestWithParam<Line> {};
 

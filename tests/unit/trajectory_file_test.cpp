@@ -36,6 +36,7 @@ TEST_F(TrajectoryFiles, AreReadWithAnySeparator) {
   expect_the_pose(read("1.5,0.25,-1.5,2,0.6,0,0,0.8\n"), 1.5);
   expect_the_pose(read("1.5, 0.25, -1.5, 2, 0.6, 0, 0, 0.8\r\n"), 1.5);
   expect_the_pose(read("1.5;0.25;-1.5;2;0.6;0;0;0.8\n"), 1.5);
+  expect_the_pose(read("\"1.5\",\"0.25\",\"-1.5\",\"2\",\"0.6\",\"0\",\"0\",\"0.8\"\n"), 1.5);
   expect_the_pose(read("1.5\t+0.25\t-1.5e0\t2\t0.6\t0\t0\t0.8"), 1.5);
 }
 
