@@ -70,7 +70,7 @@ TEST_F(ExportedMap, IsRefusedInOneSentence) {
   expect_one_sentence(exported("map.ply"), "map_keyframes.ply: is there already; --force replaces it");
   EXPECT_FALSE(std::filesystem::exists(sequence_.path("map.ply")));
   EXPECT_EQ(exported("map.ply", {"--force"}).exit_code, 0);
-  expect_one_sentence(exported("other.ply", {"--layers", "difference"}), "--layers: go into an .mcap file");
+  expect_usage_error(exported("other.ply", {"--layers", "difference"}), "--layers: go into an .mcap file");
   expect_one_sentence(exported("no/map.ply"), "no/map.ply: there is no folder ");
   const auto dense = [this](std::vector<std::string> more) {
     more.insert(more.begin(), {"export", sequence_.path("run"), "--dense"});

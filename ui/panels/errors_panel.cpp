@@ -139,11 +139,12 @@ class ErrorsPanel final : public NamedPanel {
                            figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta),
                            figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta));
       }
-      const ErrorStatistics& ate = evaluation.ate.translation_m;
+      const AbsoluteTrajectoryError& ate = evaluation.ate;
       return fmt::format("{}: RMSE {}, {}, ATE {}", name,
                          figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta),
                          figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
-                         ate.count > 0 ? fmt::format("{:.3g} mm", 1000.0 * ate.rmse) : std::string("–"));
+                         ate.why_none.empty() ? fmt::format("{:.3g} mm", 1000.0 * ate.translation_m.rmse)
+                                              : std::string("–"));
     };
     std::string text = figures(*session.run, session.run->name);
     if (session.baseline) text += ".  " + figures(*session.baseline, baseline_name(session));

@@ -234,8 +234,8 @@ class TrajectoryPanel final : public NamedPanel {
 
   /// "12.3 mm"; of poses too few to be aligned there is none.
   [[nodiscard]] static std::string ate_text(const TrajectoryEvaluation& evaluation) {
-    const ErrorStatistics& ate = evaluation.ate.translation_m;
-    return ate.count > 0 ? fmt::format("{:.1f} mm", 1000.0 * ate.rmse) : "–";
+    const AbsoluteTrajectoryError& ate = evaluation.ate;
+    return ate.why_none.empty() ? fmt::format("{:.1f} mm", 1000.0 * ate.translation_m.rmse) : "–";
   }
 
   [[nodiscard]] static std::string alignment_text(const SessionView& session) {
@@ -253,7 +253,7 @@ class TrajectoryPanel final : public NamedPanel {
         "°). ATE {}{}",
         poses, poses == 1 ? "" : "s", evaluation.matched.size(),
         session.alignment.truth_from_estimate.translation().norm(), degrees, ate_text(evaluation),
-        evaluation.ate.translation_m.count > 0 ? " RMSE" : "");
+        evaluation.ate.why_none.empty() ? " RMSE" : "");
     if (session.baseline && !session.baseline->evaluation.matched.empty())
       text += fmt::format(", {} {}", baseline_name(session), ate_text(session.baseline->evaluation));
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
