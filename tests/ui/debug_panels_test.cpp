@@ -71,12 +71,12 @@ TEST(DebugPanels, PosesTooFewToAlignHaveNoAbsoluteError) {
   const std::string why = "2 matched poses, and an alignment needs 3";
   for (const char* name : {"errors", "trajectory"}) {
     const auto picture = [name](double rmse_m, const std::string& why_none) {
-      PanelStage stage(name, {ThemeName::kDark, 1.0F}, kSheetWidth, kSheetHeight);
       SessionView example = handmade_example();
       auto run = std::make_shared<RunView>(*example.run);
       run->evaluation.ate.translation_m.rmse = rmse_m;
       run->evaluation.ate.why_none = why_none;
       example.run = run;
+      PanelStage stage(name, {ThemeName::kDark, 1.0F}, kSheetWidth, kSheetHeight);
       return stage.render(example).clone();
     };
     const cv::Mat none = picture(0.0, why);
