@@ -72,7 +72,8 @@ TEST(DebugPanels, PosesTooFewToAlignHaveNoAbsoluteError) {
   for (const char* name : {"errors", "trajectory"}) {
     const auto picture = [name](double rmse_m, const std::string& why_none) {
       SessionView example = handmade_example();
-      auto run = std::make_shared<RunView>(*example.run);
+      const auto original = example.run;  // the view points into its records
+      auto run = std::make_shared<RunView>(*original);
       run->evaluation.ate.translation_m.rmse = rmse_m;
       run->evaluation.ate.why_none = why_none;
       example.run = run;
