@@ -69,6 +69,8 @@ Config ConfigArguments::config() const {
   return config;
 }
 
+void throw_usage(const std::string& what) { throw CLI::ValidationError(what); }
+
 void throw_if_no_pair(const Config& config) {
   if (const std::string why = why_no_pair(config); !why.empty()) throw InputError(why);
   if (const std::string why = why_no_outside_masks(config); !why.empty()) throw InputError(why);
@@ -245,6 +247,8 @@ void SequenceArguments::tell_what_is_of_no_use(const std::string& where, const F
     if (inverted_masks && lacks(FramePart::masks, source.has_masks())) tell("--invert-masks", "true masks");
     if (!truth.empty() && lacks(FramePart::truth, !source.ground_truth().empty()))
       tell("--truth", "ground truth");
+    if (frame_rate > 0 && !source.contents().empty())
+      tell("--frame-rate", "frame numbers in place of stamps");
     if (depth_scale > 0 && source.camera().is_stereo()) tell("--depth-scale", "depth images");
     return;
   }

@@ -32,6 +32,10 @@ struct ConfigArguments {
   [[nodiscard]] Config config() const;
 };
 
+/// Refuses a command line whose options do not go together: one sentence, and status 2 as for an option that
+/// is missing, unknown or out of range. What an option names, a file or a method, is refused by InputError.
+[[noreturn]] void throw_usage(const std::string& what);
+
 /// @throws InputError where the config's method cannot stand in front of its odometry, or lacks masks
 void throw_if_no_pair(const Config& config);
 

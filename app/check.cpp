@@ -10,6 +10,7 @@
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "core/check/check_sequence.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
@@ -104,7 +105,7 @@ void check(const CheckArguments& arguments) {
     if (arguments.estimate.empty())
       for (const std::string& line : to_lines(times, camera)) fmt::print("  time      {}\n", line);
     for (const Finding& finding : findings) fmt::print("  {:<9} {}\n", finding.about, finding.sentence);
-    fmt::print("{}\n", findings.empty() ? "no findings" : fmt::format("{} finding(s)", findings.size()));
+    fmt::print("{}\n", findings.empty() ? "no findings" : counted(findings.size(), "finding"));
   }
   if (!findings.empty()) throw ExitStatus{kFindingsStatus};
 }

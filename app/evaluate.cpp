@@ -12,6 +12,7 @@
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/clocks.hpp"
 #include "core/evaluation/evaluation_json.hpp"
@@ -127,15 +128,19 @@ Compared read_both(const EvaluateArguments& arguments, EvaluationOptions& option
 
 /// What makes the figures doubtful.
 void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& arguments,
-              std::vector<std::string>& warnings) {
+              Compared& compared) {
+  std::vector<std::string>& warnings = compared.warnings;
   const int matched = static_cast<int>(evaluation.matched.size());
   if (2 * matched < evaluation.estimated_poses)
     warnings.push_back(
         fmt::format("{}: only {} of {} poses meet the ground truth in time; the figures are of these alone",
                     arguments.estimate, matched, evaluation.estimated_poses));
   if (evaluation.expected_frames > 0 && evaluation.estimated_poses > evaluation.expected_frames)
-    warnings.push_back(fmt::format("{}: holds {} poses, more than the {} frames", arguments.estimate,
-                                   evaluation.estimated_poses, evaluation.expected_frames));
+    warnings.push_back(fmt::format("{}: holds {}, more than the {}", arguments.estimate,
+                                   counted(evaluation.estimated_poses, "pose"),
+                                   counted(evaluation.expected_frames, "frame")));
+  if (const std::string held = held_pose_sentence(evaluation.matched); !held.empty())
+    warnings.push_back(fmt::format("{}: {}", arguments.estimate, held));
   const bool by_positions = arguments.options.align == AlignBy::rigid ||
                             arguments.options.align == AlignBy::similarity ||
                             arguments.options.align == AlignBy::first;
@@ -143,6 +148,10 @@ void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& a
     warnings.push_back(fmt::format("{}: {}", arguments.estimate, open));
   if (const auto suspicion = suspect_convention(evaluation.matched, true))
     warnings.push_back(suspicion->sentence());
+  else if (const std::string clock = clock_sentence(compared.truth, compared.estimate, evaluation);
+           by_positions && !clock.empty())
+    warnings.push_back(
+        fmt::format("{}: {} (`--time-offset auto` finds how much)", arguments.estimate, clock));
   else if (const std::string scale = scale_sentence(evaluation);
            !scale.empty() && arguments.options.align == AlignBy::rigid)
     warnings.push_back(fmt::format("{}: {} (`--align sim3` does so)", arguments.estimate, scale));
@@ -193,9 +202,14 @@ void settle_options(EvaluateArguments& arguments) {
 /// Shifts the estimate to where it fits the truth best, and tells by how much.
 void fit_time(const EvaluateArguments& arguments, Compared& compared) {
   const auto found = estimate_time_offset(compared.truth, compared.estimate);
-  if (!found)
+  if (!found) {
+    const bool apart = match_trajectories(compared.truth, compared.estimate).empty();
     throw InputError(fmt::format(
-        "{}: the two paths do not tell a time offset; give it as --time-offset SECONDS", arguments.estimate));
+        "{}: the two paths do not tell a time offset, which is sought up to half a second to both sides; {}",
+        arguments.estimate,
+        apart ? why_apart(compared.truth, compared.estimate, compared.clocks)
+              : "give it as --time-offset SECONDS"));
+  }
   for (StampedPose& pose : compared.estimate) pose.timestamp += found->offset_s;
   compared.warnings.push_back(fmt::format(
       "{}: {:+.6f} s were added to its stamps, which lowers the ATE against interpolated truth from "
@@ -218,7 +232,7 @@ void evaluate(EvaluateArguments arguments) {
                                  arguments.estimate, span_of(compared.estimate), options.max_difference_s,
                                  arguments.truth, span_of(compared.truth),
                                  why_apart(compared.truth, compared.estimate, compared.clocks)));
-  question(evaluation, arguments, compared.warnings);
+  question(evaluation, arguments, compared);
   tell(compared.warnings);
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::json(evaluation);

@@ -9,6 +9,7 @@
 #include "app/export_map.hpp"
 #include "app/export_mcap.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/media/stored_depth.hpp"
@@ -41,7 +42,7 @@ void export_sequence(const ExportArguments& arguments) {
       throw_if_interrupted("stopped before it was done; nothing was written");
     });
   }
-  fmt::print("{} frames written to {}\n", exported.written, arguments.out);
+  fmt::print("{} written to {}\n", counted(exported.written, "frame"), arguments.out);
   if (!exported.unreadable.empty())
     fmt::print("cannot be read, and have places without images: {}\n", frames_text(exported.unreadable));
   if (exported.too_far > 0) fmt::print("{}\n", too_far_told(exported.too_far, exported.depth_units));
@@ -53,7 +54,7 @@ void throw_if_of_no_use(const CLI::App& command, const ExportArguments& argument
              images = !arguments.dense.images.empty(), of_run = to || map || images;
   const auto refuse = [&command](const char* option, bool useful, const char* goes_with) {
     if (command.count(option) > 0 && !useful)
-      throw InputError(fmt::format("{}: goes with {}, and is of no use here", option, goes_with));
+      throw_usage(fmt::format("{}: goes with {}, and is of no use here", option, goes_with));
   };
   refuse("--out", !of_run, "a sequence, whose frames it takes");
   refuse("--frames", !of_run, "--out");
@@ -62,7 +63,7 @@ void throw_if_of_no_use(const CLI::App& command, const ExportArguments& argument
   refuse("--every", of_run, "--to, --dense and --without-movers");
   refuse("--sequence", of_run, "--to, --dense and --without-movers");
   if (of_run && arguments.source.given())
-    throw InputError(
+    throw_usage(
         fmt::format("{}: a finished run has its own frames; options that change them go with its "
                     "sequence",
                     arguments.sequence));
@@ -118,7 +119,7 @@ void add_export_command(CLI::App& app) {
       throw InputError(
           fmt::format("{}: expected a name that ends in .mcap, or in .ply for its map", arguments->to));
     if (map && !arguments->layers.empty())
-      throw InputError("--layers: go into an .mcap file, not into a .ply file");
+      throw_usage("--layers: go into an .mcap file, not into a .ply file");
     if (map)
       export_map({arguments->sequence, arguments->sequence_now, arguments->to, arguments->dense.every,
                   arguments->force});

@@ -9,6 +9,7 @@
 
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/media/image_codec.hpp"
 #include "core/out_folder.hpp"
@@ -25,7 +26,7 @@ std::string stopped_text(const DenseExport& wanted, bool has_map, int images) {
   std::string left = "stopped before it was done; ";
   if (has_map) left += "the map was written";
   if (wanted.images.empty()) return left + (has_map ? "" : "nothing was written");
-  return left + fmt::format("{}{} images are in {}", has_map ? ", and " : "", images, wanted.images);
+  return left + fmt::format("{}{} in {}", has_map ? ", and " : "", counted(images, "image"), wanted.images);
 }
 
 /// Calls `visit(frame, world_from_camera, mask)` for every `every`-th frame that has a pose.
@@ -82,7 +83,7 @@ void export_dense(const DenseExport& wanted) {
   if (!wanted.map.empty()) {
     const std::vector<DensePoint> points = map.points();
     write_dense_ply(wanted.map, points);
-    fmt::print("{} points written to {}\n", points.size(), wanted.map);
+    fmt::print("{} written to {}\n", counted(points.size(), "point"), wanted.map);
   }
   if (wanted.images.empty()) return;
   int count = 0;
@@ -100,8 +101,8 @@ void export_dense(const DenseExport& wanted) {
       },
       [&] { return stopped_text(wanted, !wanted.map.empty(), count); });
   write_text_file(fs::path(wanted.images) / "unknown.csv", table);
-  fmt::print("{} frames without what moved written to {}; what no frame saw behind it is black\n", count,
-             wanted.images);
+  fmt::print("{} without what moved written to {}; what no frame saw behind it is black\n",
+             counted(count, "frame"), wanted.images);
 }
 
 }  // namespace stillpoint

@@ -7,6 +7,7 @@
 
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/export/map_export.hpp"
 #include "core/out_folder.hpp"
@@ -50,8 +51,8 @@ void export_map(const MapExport& wanted) {
   files.keep();
   const auto known =
       std::count_if(normals.begin(), normals.end(), [](const auto& n) { return !n.isZero(0.0F); });
-  fmt::print("{} points, {} of them with a normal, written to {}; {} keyframes to {}\n", run.points.size(),
-             known, map.string(), run.keyframes.size(), keyframes.string());
+  fmt::print("{}, {} of them with a normal, written to {}; {} to {}\n", counted(run.points.size(), "point"),
+             known, map.string(), counted(run.keyframes.size(), "keyframe"), keyframes.string());
   if (normals.empty())
     fmt::print("no normals: {}\n", opened.no_images.empty() ? "the sequence has no depth" : opened.no_images);
 }

@@ -7,6 +7,7 @@
 #include "app/layered_frames.hpp"
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/export/mcap_export.hpp"
 #include "core/inspect/run_view.hpp"
@@ -57,7 +58,8 @@ void export_mcap(const std::string& run_folder, const std::string& sequence, con
   }
   file.finish(run.recorded->run, run.recorded->ground_truth);
   name.finish();
-  fmt::print("{} frames, {} messages written to {}\n", records.size(), file.messages(), to);
+  fmt::print("{}, {} written to {}\n", counted(records.size(), "frame"), counted(file.messages(), "message"),
+             to);
   if (!file.too_far().empty()) fmt::print("{}\n", file.too_far());
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/rgbd/rgbd_recording.hpp"
@@ -54,7 +55,8 @@ void generate(const GenerateOptions& options) {
   write.progress = [&progress](int, int) { progress.advance("rendered"); };
   write.stop = &stop_requested();
   const int written = write_sequence(*sequence, options.out, write).frames;
-  fmt::print("{}: {} frames of {}, seed {}\n", options.out, written, sequence->name(), options.seed);
+  fmt::print("{}: {} of {}, seed {}\n", options.out, counted(written, "frame"), sequence->name(),
+             options.seed);
   throw_if_interrupted(written > 0 ? "stopped early; what was rendered is a sequence"
                                    : "stopped early; nothing was rendered");
 }

@@ -5,6 +5,8 @@
 #include <exception>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <string>
+#include <string_view>
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
@@ -23,6 +25,17 @@ bool output_arrived() {
   return false;
 }
 
+/// `--out "$FOLDER"` with a variable that is not set would be as good as none.
+void throw_if_empty_value(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i], before = argv[i - 1];
+    const bool is_value = i > 1 && before.starts_with("--") && before.find('=') == before.npos;
+    if (word.empty() && is_value) throw CLI::ValidationError(std::string(before), "its value is empty");
+    if (word.starts_with("--") && word.find('=') == word.size() - 1)
+      throw CLI::ValidationError(std::string(word.substr(0, word.size() - 1)), "its value is empty");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,6 +52,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", stillpoint::version_text());
   stillpoint::add_commands(app);
   try {
+    throw_if_empty_value(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) stillpoint::view_demo();
   } catch (const CLI::ParseError& error) {

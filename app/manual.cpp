@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/manual/command_help.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
 #include "core/version.hpp"
@@ -21,7 +22,7 @@ void write_all(const std::string& folder, const std::vector<TextFile>& files) {
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(fmt::format("{}: cannot be made ({})", folder, error.message()));
   for (const auto& [name, text] : files) write_text_file(std::filesystem::path(folder) / name, text);
-  fmt::print("{} files written to {}\n", files.size(), folder);
+  fmt::print("{} written to {}\n", counted(files.size(), "file"), folder);
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void add_manual_command(CLI::App& app) {
                       "Folder for the completions: stillpoint (bash), _stillpoint (zsh), stillpoint.fish");
   command->callback([arguments, &app] {
     if (arguments->man.empty() && arguments->completions.empty())
-      throw InputError("--man or --completions must say where files go");
+      throw CLI::RequiredError("--man or --completions");
     const ProgramHelp help = help_of(app);
     if (!arguments->man.empty()) write_all(arguments->man, man_pages(help, STILLPOINT_VERSION));
     if (!arguments->completions.empty()) write_all(arguments->completions, completions(help));

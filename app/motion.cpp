@@ -15,6 +15,7 @@
 #include "app/motion_output.hpp"
 #include "app/progress.hpp"
 #include "core/config.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/inspect/motion_replay.hpp"
@@ -87,8 +88,9 @@ void print_frame(const JudgedFrame& frame) {
   const MotionResult& result = frame.result;
   const bool judged = !result.mask.empty();
   if (judged)
-    line += fmt::format("{:.1f} % dynamic, {} regions", 100.0 * result.mask_share, frame.regions.size());
-  if (judged && result.rounds > 0) line += fmt::format(", {} rounds", result.rounds);
+    line += fmt::format("{:.1f} % dynamic, {}", 100.0 * result.mask_share,
+                        counted(frame.regions.size(), "region"));
+  if (judged && result.rounds > 0) line += ", " + counted(result.rounds, "round");
   if (!frame.note().empty()) line += (judged ? "; " : "") + frame.note();
   if (!judged && frame.note().empty()) line += "no mask";
   std::printf("%s\n", line.c_str());
@@ -132,7 +134,7 @@ void run_pair(const MotionOptions& options, const Config& config, const MethodIn
   if (method.needs.depth)
     throw InputError(fmt::format("--method {} needs depth: give it a sequence that has it", method.name));
   if (!options.frames.empty())
-    throw InputError("--frames chooses among a sequence's frames, and two images were given");
+    throw_usage("--frames chooses among a sequence's frames, and two images were given");
   const cv::Mat reference = read_whole_image(options.first), target = read_whole_image(options.second);
   if (reference.size() != target.size())
     throw InputError(fmt::format("{} is {}x{} and {} is {}x{}: the two images must be of one size",
@@ -250,7 +252,8 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
   output.finish(config);
   std::printf("%d frames, %d of them without a mask; figures in %s\n", output.frames(), output.without_mask(),
               (fs::path(options.out) / "motion.csv").c_str());
-  throw_if_interrupted(fmt::format("stopped after {} frames; what was done is kept", output.frames()));
+  throw_if_interrupted(
+      fmt::format("stopped after {}; what was done is kept", counted(output.frames(), "frame")));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "app/replaying.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
@@ -88,8 +89,8 @@ void ReplayPlan::play(const ReplayShell& shell, std::function<void()> wake) {
   if (place_) desk.show(*place_, where_);
   const ReplayResult result =
       replay(recording_, desk, shell, {.out = out_, .between = [] { throw_if_interrupted(); }});
-  fmt::print("{} events of {} replayed, {} screenshots\n", result.events, recording_.file,
-             result.screenshots);
+  fmt::print("{} of {} replayed, {}\n", counted(result.events, "event"), recording_.file,
+             counted(result.screenshots, "screenshot"));
   const UiPace& pace = shell.canvas->pace();
   if (pace.busy_frames > 0)
     fmt::print(

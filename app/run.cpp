@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/export_mcap.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/export/mcap_export.hpp"
 #include "core/motion/methods.hpp"
@@ -55,7 +56,8 @@ bool tell_frames(const Condition& condition, const RunResult& result, const RunR
     const std::string reach = condition.reach(figures, all);
     fmt::print("at no frame{}{}\n", reach.empty() ? "" : "; ", reach);
   } else {
-    fmt::print("at {} of {} frames: {}\n", frames.size(), result.records.size(), frames_text(frames));
+    fmt::print("at {} of {}: {}\n", frames.size(), counted(result.records.size(), "frame"),
+               frames_text(frames));
   }
   return !frames.empty();
 }
@@ -108,8 +110,8 @@ void run(const RunArguments& arguments) {
     fmt::print("  written to    {}\n", arguments.mcap);
   }
   if (result.interrupted)
-    throw_if_interrupted(fmt::format("stopped after {} of {} frames{}", report.frames,
-                                     frames_of(*source, options.count),
+    throw_if_interrupted(fmt::format("stopped after {} of {}{}", report.frames,
+                                     counted(frames_of(*source, options.count), "frame"),
                                      arguments.out.empty() ? "" : "; what was done is kept"));
   if (const std::string gone = why_gone(arguments.sequence, result); !gone.empty()) throw InputError(gone);
   const bool held = condition && tell_frames(*condition, result, report);

@@ -10,11 +10,13 @@
 #include <memory>
 #include <optional>
 
+#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/open_source.hpp"
 #include "app/painter.hpp"
 #include "app/progress.hpp"
 #include "app/video_file.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/inspect/run_view.hpp"
@@ -127,7 +129,8 @@ class FramesWithout {
   void tell(std::size_t of) const {
     if (count_ == 0) return;
     if (count_ == of) throw InputError(why_);
-    fmt::print(stderr, "stillpoint: warning: {} of {} frames are left out: {}\n", count_, of, why_);
+    fmt::print(stderr, "stillpoint: warning: {} of {} are left out: {}\n", count_, counted(of, "frame"),
+               why_);
   }
 
  private:
@@ -180,13 +183,17 @@ class Pictures {
       // What was drawn, and the sign that this folder is ours.
       write_text_file(folder_ / "snapshots.txt", "# frame, timestamp in s, status\n" + list_);
       const std::string plots =
-          plot_kinds_.empty() ? "" : fmt::format(", and {} files of plots and tables,", plot_files_);
-      told =
-          fmt::format("{} images{} of {} frames written to {}\n", files_, plots, frames_, folder_.string());
+          plot_kinds_.empty() ? ""
+                              : fmt::format(", and {} of plots and tables,", counted(plot_files_, "file"));
+      told = fmt::format(
+          "{}{} of {} written to {}
+          ", counted(files_, " image "), plots,
+          counted(frames_, "frame"),
+          folder_.string());
     }
     if (video_ && frames_ > 0) {
       video_->finish();
-      told += fmt::format("video of {} frames written to {}\n", frames_, video_name);
+      told += fmt::format("video of {} written to {}\n", counted(frames_, "frame"), video_name);
     }
     return told;
   }
@@ -244,8 +251,9 @@ std::vector<int> frames_where(const Condition& condition, const RunView& run,
     if (std::binary_search(frames.begin(), frames.end(), frame)) chosen.push_back(frame);
   if (chosen.empty()) {
     const std::string reach = condition.reach(figures, frames);
-    throw InputError(fmt::format("--when '{}': holds at none of {} frames, and nothing is drawn{}{}",
-                                 condition.text(), frames.size(), reach.empty() ? "" : "; ", reach));
+    throw InputError(fmt::format("--when '{}': holds at none of {}, and nothing is drawn{}{}",
+                                 condition.text(), counted(frames.size(), "frame"), reach.empty() ? "" : "; ",
+                                 reach));
   }
   if (const auto unknown = condition.unknown_figures(figures); !unknown.empty())
     fmt::print(stderr, "stillpoint: warning: --when: no frame has {}\n", fmt::join(unknown, ", "));
@@ -279,15 +287,14 @@ class EarlySession {
   std::future<std::unique_ptr<Session>> making_;  // last: it ends before what it works with
 };
 
-/// @throws InputError for what goes together with no sequence
+/// @throws CLI::Error for what goes together with no sequence
 PictureChoice asked_for(const SnapshotArguments& arguments, const PainterOptions& options) {
   PictureChoice chosen = choose_pictures(options);
-  if (arguments.out.empty() && arguments.video.empty())
-    throw InputError("--out or --video must say where the images go");
+  if (arguments.out.empty() && arguments.video.empty()) throw CLI::RequiredError("--out or --video");
   if (!arguments.plots.empty() && arguments.out.empty())
-    throw InputError("--plots: goes with --out, and is of no use here");
+    throw_usage("--plots: goes with --out, and is of no use here");
   if (arguments.fps > 0 && arguments.video.empty())
-    throw InputError("--fps: goes with --video, and is of no use here");
+    throw_usage("--fps: goes with --video, and is of no use here");
   if (!arguments.video.empty() && chosen.count() != 1)
     throw InputError(
         fmt::format("--video takes one picture of each frame, and --panels names {}", chosen.count()));
@@ -355,8 +362,10 @@ void snapshot(const SnapshotArguments& arguments) {
                fmt::join(left, ", "));
   without.tell(frames.size());
   fmt::print("{}", pictures.finish(arguments.video));
-  throw_if_interrupted(fmt::format("stopped after {}{} frames; what was drawn is kept", pictures.frames(),
-                                   chosen_all ? fmt::format(" of {}", frames.size()) : std::string()));
+  throw_if_interrupted(
+      fmt::format("stopped after {}; what was drawn is kept",
+                  chosen_all ? fmt::format("{} of {}", pictures.frames(), counted(frames.size(), "frame"))
+                             : counted(pictures.frames(), "frame")));
 }
 
 }  // namespace

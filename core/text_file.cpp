@@ -26,11 +26,17 @@ std::string_view without_comment(std::string_view text) {
   return text;
 }
 
+/// Without the quotes that spreadsheets put about cells.
+std::string_view unquoted(std::string_view cell) {
+  const bool quoted = cell.size() >= 2 && cell.front() == '"' && cell.back() == '"';
+  return quoted ? cell.substr(1, cell.size() - 2) : cell;
+}
+
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> columns;
   for (auto first = text.find_first_not_of(separators); first != std::string_view::npos;) {
     const auto end = std::min(text.find_first_of(separators, first), text.size());
-    columns.push_back(text.substr(first, end - first));
+    columns.push_back(unquoted(text.substr(first, end - first)));
     first = text.find_first_not_of(separators, end);
   }
   return columns;

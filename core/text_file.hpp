@@ -30,7 +30,7 @@ struct TextLine {
 /// @throws InputError when it cannot be read, or holds more.
 [[nodiscard]] std::string read_text(const std::string& path, std::size_t most = std::size_t{1} << 30);
 
-/// The columns of a line, parted by blanks, tabs, commas or semicolons.
+/// The columns of a line, parted by blanks, tabs, commas or semicolons, without quotes about them.
 [[nodiscard]] std::vector<std::string_view> split_columns(std::string_view text);
 
 /// The columns of a line of numbers with decimal commas, parted by blanks, tabs or semicolons. Nothing when

@@ -224,7 +224,9 @@ std::string pictures_text(const LivePictures& pictures) {
   if (!pictures.why_none.empty()) return "No pictures: " + pictures.why_none;
   const std::size_t count = pictures.pictures.size();
   if (static_cast<int>(count) == pictures.frames)
-    return fmt::format("Pictures of all {} frames, {} px wide.", count, pictures.size.width);
+    return fmt::format("Pictures of {}, {} px wide.",
+                       count == 1 ? "its one frame" : fmt::format("all {} frames", count),
+                       pictures.size.width);
   if (pictures.every == 1)
     return fmt::format("Pictures of {} of {} frames, {} px wide.", count, pictures.frames,
                        pictures.size.width);

@@ -17,6 +17,7 @@
 #include "app/report/report_pictures.hpp"
 #include "app/report/report_run.hpp"
 #include "app/report/report_sections.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/out_folder.hpp"
@@ -96,7 +97,7 @@ void report(const ReportArguments& arguments) {
   const std::string page =
       page_html(title_of(groups), body, arguments.interactive ? live_style() : std::string());
   write_text_file(arguments.out, page);
-  fmt::print("{} runs, {:.1f} MB, written to {}\n{}", arguments.runs.size(),
+  fmt::print("{}, {:.1f} MB, written to {}\n{}", counted(arguments.runs.size(), "run"),
              static_cast<double>(page.size()) / 1e6, arguments.out, told);
 }
 

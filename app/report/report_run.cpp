@@ -66,7 +66,9 @@ std::vector<ReportGroup> open_report_runs(const std::vector<std::string>& folder
       groups.push_back({run.report.sequence, {}, {}});
     }
     ReportGroup& group = groups[place];
-    for (const std::string& warning : {run.opened.no_images, run.recorded().cut_short})
+    const std::string& no_images = run.opened.no_images;
+    for (const std::string& warning :
+         {no_images.empty() ? no_images : "Without images: " + no_images, run.recorded().cut_short})
       if (!warning.empty() &&
           std::find(group.warnings.begin(), group.warnings.end(), warning) == group.warnings.end())
         group.warnings.push_back(warning);

@@ -67,7 +67,8 @@ std::string gain_text(const ReportRun& run, const ReportRun* baseline) {
   if (baseline == nullptr || baseline == &run) return "–";
   const auto before = figures_of(baseline->report).rpe_m, after = figures_of(run.report).rpe_m;
   if (!before || !after || *before <= 0.0) return "–";
-  return fmt::format("{:.0f} %", 100.0 * (1.0 - *after / *before));
+  const double gain = std::round(100.0 * (1.0 - *after / *before));
+  return fmt::format("{:.0f} %", gain == 0.0 ? 0.0 : gain);  // none is not "-0 %"
 }
 
 std::string hex_of(Rgb colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b); }
@@ -172,8 +173,11 @@ std::string summary_table(const ReportGroup& group, int worst) {
     if (run.result().interrupted)
       html += fmt::format("<p class=\"warning\">{} was stopped after {} of {} frames.</p>\n",
                           escaped(run.label), run.report.frames, run.result().frames_in_sequence);
+  for (const ReportRun& run : group.runs)
+    if (!run.report.doubt.empty())
+      html += fmt::format("<p class=\"warning\">{}: {}</p>\n", escaped(run.label), escaped(run.report.doubt));
   for (const std::string& warning : group.warnings)
-    html += fmt::format("<p class=\"warning\">Without images: {}</p>\n", escaped(warning));
+    html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
   return html;
 }
 
@@ -222,8 +226,9 @@ std::string configurations(const std::vector<ReportGroup>& groups) {
   std::vector<Column> columns;
   for (const ReportGroup& group : groups)
     for (const ReportRun& run : group.runs)
-      columns.push_back({groups.size() > 1 ? fmt::format("{}: {}", group.sequence, run.label) : run.label,
-                         run.result().config});
+      if (run.recorded().outside.empty())  // another program went by no configuration of ours
+        columns.push_back({groups.size() > 1 ? fmt::format("{}: {}", group.sequence, run.label) : run.label,
+                           run.result().config});
   Config defaults;
   const std::vector<Parameter> standard = parameters(defaults);
   std::vector<std::vector<HtmlCell>> rows;
@@ -238,6 +243,8 @@ std::string configurations(const std::vector<ReportGroup>& groups) {
     }
     if (differs) rows.push_back(std::move(row));
   }
+  if (columns.empty())
+    return "<h2 id=\"configuration\">Configuration</h2>\n<p>None: these runs are other programs'.</p>\n";
   std::vector<std::string> header = {"Parameter", "Default"};
   for (const Column& column : columns) header.push_back(column.name);
   std::string html = "<h2 id=\"configuration\">Configuration</h2>\n";

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/check/findings.hpp"
+#include "core/counted.hpp"
 #include "core/median.hpp"
 #include "core/sequence/frame.hpp"
 #include "core/sequence/source.hpp"
@@ -39,10 +40,9 @@ void check_gaps(const FrameSource& source, std::vector<Finding>& findings) {
   if (*longest <= limit) return;
   const auto gaps = std::count_if(steps.begin(), steps.end(), [limit](double step) { return step > limit; });
   findings.push_back(
-      {"stamps",
-       fmt::format("{} gap(s) in time are longer than {:.2f} s where a step is {:.3f} s; the longest, "
-                   "{:.3f} s, follows frame {}: the odometry will be lost there",
-                   gaps, limit, usual, *longest, longest - steps.begin())});
+      {"stamps", fmt::format("{} in time longer than {:.2f} s where a step is {:.3f} s; the longest, "
+                             "{:.3f} s, follows frame {}: the odometry will be lost there",
+                             counted(gaps, "gap"), limit, usual, *longest, longest - steps.begin())});
 }
 
 bool are_same(const cv::Mat& a, const cv::Mat& b) {

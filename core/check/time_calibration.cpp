@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/check/timed_adjustment.hpp"
+#include "core/counted.hpp"
 #include "core/media/stored_depth.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/with_camera.hpp"
@@ -290,7 +291,8 @@ TimeCalibration calibrate_time(const FrameSource& source, const Config& config, 
     if (result.readout.told) return result;
   }
   if (result.frames == 0)
-    result.why_not = fmt::format("{} frames are too few: {} are needed", source.size(), kFewestFrames);
+    result.why_not = fmt::format("{} {} too few: {} are needed", counted(source.size(), "frame"),
+                                 source.size() == 1 ? "is" : "are", kFewestFrames);
   return result;
 }
 

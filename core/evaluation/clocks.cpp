@@ -43,6 +43,7 @@ void set_stamps(Trajectory& trajectory, const std::vector<double>& stamps) {
 struct Reading {
   StampUnit truth = StampUnit::seconds, estimate = StampUnit::seconds;
   bool by_index = false;  ///< the estimate's stamps are indices of the sequence's frames
+  int first_index = 0;    ///< the first frame's
   int met = 0;
   double span_mismatch = 0.0;  ///< |log| of the ratio of what both last
 };
@@ -62,7 +63,9 @@ class Readings {
           (lasts_as_long && 2 * as_seconds.met >= best.met && as_seconds.met > 0))
         best = as_seconds;
     }
-    if (const Reading index = by_index(truth); index.met > best.met) best = index;
+    // From 1 where from 0 there would be no frame of the last number, or fewer would meet.
+    for (const int first : {0, 1})
+      if (const Reading index = by_index(truth, first); index.met > best.met) best = index;
     return best;
   }
 
@@ -73,7 +76,7 @@ class Readings {
     std::vector<double> stamps = in_seconds(estimate_, reading.estimate, options_.frame_rate);
     if (reading.by_index)
       for (std::size_t i = 0; i < stamps.size(); ++i)
-        stamps[i] = options_.frame_stamps[static_cast<std::size_t>(estimate_[i])];
+        stamps[i] = options_.frame_stamps[static_cast<std::size_t>(estimate_[i] - reading.first_index)];
     for (double& stamp : stamps) stamp += options_.estimate_offset_s;
     return stamps;
   }
@@ -81,7 +84,8 @@ class Readings {
  private:
   void weigh(Reading& reading, const std::vector<double>& truth_s) const {
     const auto stamps = estimate(reading);
-    reading.met = meetings(stamps, truth_s, options_.tolerance_s);
+    reading.met = std::min(meetings(stamps, truth_s, options_.tolerance_s),
+                           meetings(truth_s, stamps, options_.tolerance_s));
     const double a = span_of(truth_s), b = span_of(stamps);
     reading.span_mismatch = a > 0 && b > 0 ? std::abs(std::log(a / b)) : 0.0;
   }
@@ -97,11 +101,11 @@ class Readings {
     return reading;
   }
 
-  [[nodiscard]] Reading by_index(StampUnit truth_unit) const {
-    Reading reading{.truth = truth_unit, .by_index = true};
+  [[nodiscard]] Reading by_index(StampUnit truth_unit, int first) const {
+    Reading reading{.truth = truth_unit, .by_index = true, .first_index = first};
     for (const double stamp : estimate_)
-      if (stamp != std::floor(stamp) || stamp < 0 ||
-          stamp >= static_cast<double>(options_.frame_stamps.size()))
+      if (stamp != std::floor(stamp) || stamp < first ||
+          stamp - first >= static_cast<double>(options_.frame_stamps.size()))
         return reading;
     weigh(reading, truth(truth_unit));
     return reading;
@@ -120,10 +124,14 @@ std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate, 
   if (reading.truth != StampUnit::seconds)
     notes.push_back(sentence(options.truth_name, reading.truth, options.frame_rate));
   if (reading.by_index)
-    notes.push_back(fmt::format("{}: the stamps are frame numbers; each was given its frame's time",
-                                options.estimate_name));
+    notes.push_back(fmt::format("{}: the stamps are frame numbers{}; each was given its frame's time",
+                                options.estimate_name, reading.first_index == 1 ? " from 1" : ""));
   else if (reading.estimate != StampUnit::seconds)
     notes.push_back(sentence(options.estimate_name, reading.estimate, options.frame_rate));
+  if (options.frame_rate != kFrameNumberRate && reading.truth != StampUnit::frames &&
+      (reading.by_index || reading.estimate != StampUnit::frames))
+    notes.push_back(fmt::format("{}: has no frame numbers to be given times, so --frame-rate changes nothing",
+                                options.estimate_name));
   set_stamps(truth, readings.truth(reading.truth));
   set_stamps(estimate, readings.estimate(reading));
   return notes;

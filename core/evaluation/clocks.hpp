@@ -22,7 +22,8 @@ struct ClockOptions {
 
 /// Converts the stamps of both to seconds of one clock, by unit_of and unit_beside, and tells each conversion
 /// in a sentence. Whole numbers may be frames or seconds: what lets more poses meet is chosen, then what
-/// makes both last equally long, then frames.
+/// makes both last equally long, then frames. Numbers of a sequence's frames count from 0, or from 1 where
+/// only that lets all meet.
 [[nodiscard]] std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate,
                                                      const ClockOptions& options);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.hpp"
 #include "core/evaluation/trajectory_metrics.hpp"
 
 namespace stillpoint {
@@ -19,10 +20,10 @@ class StatisticsTable {
   }
   void row(const std::string& name, const char* unit, const ErrorStatistics& s, const std::string& why) {
     if (s.count == 0) {
-      text_ += fmt::format("{:<27}{:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
+      text_ += fmt::format("{:<26} {:<5}{:>7}{:>10}  {}\n", name, unit, s.count, "–", why);
       return;
     }
-    text_ += fmt::format("{:<27}{:<5}{:>7}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}{:>10.5f}\n", name,
+    text_ += fmt::format("{:<26} {:<5}{:>7} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f} {:>9.5f}\n", name,
                          unit, s.count, s.rmse, s.mean, s.median, s.stddev, s.min, s.max);
   }
   void rows(const RelativePoseError& rpe) {
@@ -105,10 +106,10 @@ std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& opti
     text += fmt::format("Protocol  {}\n", options.protocol == Protocol::evo
                                               ? "evo's: evo_ape and evo_rpe without options"
                                               : "the TUM benchmark's scripts without options");
-  text += fmt::format("Matched   {} of {} estimated poses, to {} of ground truth: {}\n", e.matched.size(),
-                      e.estimated_poses, e.truth_poses, association_text(options));
-  text += e.coverage ? fmt::format("Coverage  {:.1f} %: {} poses for {} frames\n", 100.0 * *e.coverage,
-                                   e.estimated_poses, e.expected_frames)
+  text += fmt::format("Matched   {} of {}, to {} of ground truth: {}\n", e.matched.size(),
+                      counted(e.estimated_poses, "estimated pose"), e.truth_poses, association_text(options));
+  text += e.coverage ? fmt::format("Coverage  {:.1f} %: {} for {}\n", 100.0 * *e.coverage,
+                                   counted(e.estimated_poses, "pose"), counted(e.expected_frames, "frame"))
                      : "Coverage  not known without the number of frames (--frames, --sequence)\n";
   if (e.truth_span_s > 0)
     text += fmt::format("Time      matched poses span {:.3f} s of the truth's {:.3f} s ({:.1f} %)\n",
@@ -129,9 +130,9 @@ std::string to_text(const TrajectoryEvaluation& e, const EvaluationOptions& opti
   if (options.protocol == Protocol::stillpoint)
     text += fmt::format(
         "\nRPE {}: each matched pose with the one nearest {} later; {} without one within {} s dropped\n"
-        "RPE {}: each matched pose with the next; {} gaps above {:.3f} s ({} times the median) dropped\n",
+        "RPE {}: each matched pose with the next; {} above {:.3f} s ({} times the median) dropped\n",
         e.rpe_time.delta, e.rpe_time.delta, e.rpe_time.dropped, e.rpe_time.limit_s, e.rpe_frame.delta,
-        e.rpe_frame.dropped, e.rpe_frame.limit_s, options.neighbour_gap);
+        counted(e.rpe_frame.dropped, "gap"), e.rpe_frame.limit_s, options.neighbour_gap);
   if (!e.by_length.empty()) text += lengths_text(e.by_length);
   return text;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/evaluation/time_offset.hpp"
 #include "core/geometry/normal_equations.hpp"
 #include "core/geometry/rotation_fit.hpp"
 #include "core/median.hpp"
@@ -18,7 +19,8 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;  // degrees a radian
 constexpr double kShareLeft = 0.4;                     // of the error, for a reading to be suspected
 constexpr double kFarBetter =
     0.5;  // of the error a convention leaves, for six free numbers to be preferred to it
-constexpr double kWorthAWord = 0.02;  // m, combined: what fits as well leaves no doubt about its convention
+constexpr double kWorthAWord = 0.02;    // m, combined: what fits as well leaves no doubt about its convention
+constexpr double kShareOfMotion = 0.4;  // of the true motions, that a reading which tells them may err by
 constexpr std::size_t kFewestPoses = 8;  // below, anything fits
 
 /// Pairs of poses some time apart: (i, i + step).
@@ -189,9 +191,12 @@ std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matc
     consider(Suspicion::Of::truth, convention);
     if (estimate_may_err && convention != PoseConvention::bonn) consider(Suspicion::Of::estimate, convention);
   }
-  const auto is_worth_it = [](const Suspicion& s) {
-    return s.mended.combined_m() < kShareLeft * s.as_is.combined_m();
-  };
+  // Where the clocks are apart no reading tells the motions, and the least wrong one means nothing.
+  std::vector<MatchedPose> still = matched;
+  for (MatchedPose& pose : still) pose.estimate = Pose::Identity();
+  const double most =
+      std::min(kShareLeft * best.as_is.combined_m(), kShareOfMotion * motion_fit(still).combined_m());
+  const auto is_worth_it = [most](const Suspicion& s) { return s.mended.combined_m() < most; };
   if (const auto body = suspect_body(matched, best.as_is);
       body && is_worth_it(*body) && body->mended.combined_m() < kFarBetter * best.mended.combined_m())
     return body;
@@ -222,6 +227,60 @@ std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
   return fmt::format(
       "the estimate fits {:.4f} m instead of {:.4f} m when its lengths are multiplied by {:.3f}",
       similarity->rmse_m, evaluation.ate.translation_m.rmse, similarity->scale);
+}
+
+std::string clock_sentence(const Trajectory& truth, const Trajectory& estimate,
+                           const TrajectoryEvaluation& evaluation) {
+  constexpr double kShareExplained = 0.3;  // of the squared errors, by speed times one delay: worth a search
+  constexpr std::size_t kMost = 400;       // poses that are searched by
+  constexpr double kRemarkable = 0.005;    // s
+  constexpr double kMostLeft = 0.5;        // of the error
+  const auto& matched = evaluation.matched;
+  if (matched.size() < kFewestPoses) return "";
+  // An estimate that is late lies behind, along the truth's velocity.
+  double along = 0, speeds = 0, errors = 0;
+  for (std::size_t i = 1; i + 1 < matched.size(); ++i) {
+    const double dt = matched[i + 1].truth_timestamp - matched[i - 1].truth_timestamp;
+    if (!(dt > 0)) continue;
+    const Eigen::Vector3d velocity =
+        (matched[i + 1].truth.translation() - matched[i - 1].truth.translation()) / dt;
+    const Eigen::Vector3d error =
+        (evaluation.ate.alignment.truth_from_estimate * matched[i].estimate).translation() -
+        matched[i].truth.translation();
+    along += error.dot(velocity), speeds += velocity.squaredNorm(), errors += error.squaredNorm();
+  }
+  if (!(along * along > kShareExplained * speeds * errors)) return "";
+  Trajectory thinned;
+  const std::size_t step = estimate.size() / kMost + 1;
+  for (std::size_t i = 0; i < estimate.size(); i += step) thinned.push_back(estimate[i]);
+  const auto found = estimate_time_offset(truth, thinned);
+  if (!found || std::abs(found->offset_s) < kRemarkable ||
+      found->rmse_after_m > kMostLeft * found->rmse_before_m)
+    return "";
+  return fmt::format("the estimate fits {:.4f} m instead of {:.4f} m when {:+.3f} s are added to its stamps",
+                     found->rmse_after_m, found->rmse_before_m, found->offset_s);
+}
+
+std::string held_pose_sentence(const std::vector<MatchedPose>& matched) {
+  constexpr int kFewest = 3;           // poses: one may be a frame that was read twice
+  constexpr double kMovedM = 1e-3;     // m; a camera that stands still may well be told to
+  constexpr double kTurnedRad = 2e-3;  // rad, a tenth of a degree
+  int held = 0;
+  double from = 0, to = 0;
+  for (std::size_t i = 1; i < matched.size(); ++i) {
+    const Pose moved = relative(matched[i - 1].truth, matched[i].truth);
+    if (matched[i].estimate.matrix() != matched[i - 1].estimate.matrix() ||
+        (moved.translation().norm() < kMovedM && rotation_angle(moved.linear()) < kTurnedRad))
+      continue;
+    if (held++ == 0) from = matched[i].timestamp;
+    to = matched[i].timestamp;
+  }
+  if (held < kFewest) return "";
+  return fmt::format(
+      "{} of its poses are the same number for number as the one before, while the truth moves ({:.3f} s to "
+      "{:.3f} s): a program that lost the camera may write so, and they count as poses until they are taken "
+      "out",
+      held, from, to);
 }
 
 std::string open_rotation_sentence(const TrajectoryEvaluation& evaluation) {

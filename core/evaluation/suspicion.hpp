@@ -47,6 +47,16 @@ struct Suspicion {
 /// so (8 poses, 4 standard errors): one sentence.
 [[nodiscard]] std::string scale_sentence(const TrajectoryEvaluation& evaluation);
 
+/// The time by which the estimate's stamps are off, when it explains more than half of the absolute error and
+/// is 5 ms or more: one sentence. Searched for, as estimate_time_offset does, only where the errors lie along
+/// the truth's velocity.
+/// @param truth,estimate what `evaluation` was made of, in seconds of one clock
+[[nodiscard]] std::string clock_sentence(const Trajectory& truth, const Trajectory& estimate,
+                                         const TrajectoryEvaluation& evaluation);
+
+/// That poses repeat the one before to the last digit while the truth moves, three or more: one sentence.
+[[nodiscard]] std::string held_pose_sentence(const std::vector<MatchedPose>& matched);
+
 /// That the alignment's rotation is not told by the positions, which lie too near a line for how much they
 /// miss, where all orientations are off by the same large angle: one sentence.
 [[nodiscard]] std::string open_rotation_sentence(const TrajectoryEvaluation& evaluation);

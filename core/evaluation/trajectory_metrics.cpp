@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/counted.hpp"
 #include "core/geometry/rotation_fit.hpp"
 #include "core/sequence/association.hpp"
 
@@ -137,7 +138,7 @@ AbsoluteTrajectoryError absolute_error(const std::vector<MatchedPose>& matched, 
                              to_degrees(rotation_angle(pose.truth.linear().transpose() * aligned.linear()))});
   }
   if (count < needed) {
-    result.why_none = fmt::format("{} matched pose(s), and an alignment needs {}", count, needed);
+    result.why_none = fmt::format("{}, and an alignment needs {}", counted(count, "matched pose"), needed);
     return result;
   }
   result.translation_m = statistics_of(column(result.errors, &AbsoluteError::translation_m));

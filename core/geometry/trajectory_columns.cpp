@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -11,6 +12,8 @@ namespace {
 constexpr std::size_t kRowsLookedAt = 64;  // rows: enough to tell a layout
 // A stamp and a pose's 7 numbers; 3x4 of a matrix; a stamp, 7 and 9 more of the IMU's; a 4x4 matrix.
 constexpr int kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17, kReplicaColumns = 16;
+constexpr int kStampedKittiColumns = kKittiColumns + 1, kStampedReplicaColumns = kReplicaColumns + 1;
+constexpr double kRowLength = 0.02;  // of a matrix's row, how far from 1 its squared length may be
 
 /// A header's cell in small letters, without its unit in brackets and blanks about it.
 std::string plain(std::string_view cell) {
@@ -44,7 +47,7 @@ bool has(const std::string& text, std::string_view part) { return text.find(part
 
 /// What a header says: the first column of each role, -1 where none has it.
 struct Header {
-  int count = 0, time = -1;
+  int count = 0, time = -1, nanoseconds = -1;
   std::array<int, 3> position = {-1, -1, -1};
   std::array<int, 4> quaternion = {-1, -1, -1, -1};
 
@@ -56,8 +59,15 @@ struct Header {
   }
 };
 
+bool ends_in(const std::string& text, std::initializer_list<std::string_view> ends) {
+  return std::any_of(ends.begin(), ends.end(), [&text](std::string_view end) { return text.ends_with(end); });
+}
+
 Header read_header(const std::string& text) {
   Header header;
+  // Of a message its header's stamp, and not the time at which it was recorded, which comes first in ROS's
+  // tables: "%time, …, field.header.stamp", "Time, …, header.stamp.secs, header.stamp.nsecs".
+  int stamp = -1, seconds = -1, nanoseconds = -1;
   const auto cells = header_cells(text);
   header.count = static_cast<int>(cells.size());
   const auto first = [](int& column, std::size_t at) {
@@ -67,6 +77,11 @@ Header read_header(const std::string& text) {
     const std::string& cell = cells[i];
     if (cell.empty()) continue;
     const auto axis = std::string_view("xyzw").find(cell.back());
+    if (ends_in(cell, {"stamp"})) first(stamp, i);
+    if (has(cell, "stamp") && ends_in(cell, {"nsec", "nsecs", "nanosec", "nanosecs"}))
+      first(nanoseconds, i);
+    else if (has(cell, "stamp") && ends_in(cell, {".sec", ".secs", "_sec", "_secs"}))
+      first(seconds, i);
     if (has(cell, "time") || has(cell, "stamp") || cell == "t" || cell == "sec") {
       first(header.time, i);
     } else if (axis != std::string_view::npos) {
@@ -80,6 +95,10 @@ Header read_header(const std::string& text) {
         first(header.position[axis], i);
     }
   }
+  if (stamp >= 0)
+    header.time = stamp;
+  else if (seconds >= 0 && nanoseconds >= 0)
+    header.time = seconds, header.nanoseconds = nanoseconds;
   return header;
 }
 
@@ -109,7 +128,8 @@ void count_columns(const std::vector<TextLine>& lines, std::size_t from, Traject
 
 void apply(const Header& header, TrajectoryLayout& layout) {
   if (header.names_all() && header.count == layout.columns) {
-    layout.time = header.time, layout.position = header.position, layout.quaternion = header.quaternion;
+    layout.time = header.time, layout.nanoseconds = header.nanoseconds;
+    layout.position = header.position, layout.quaternion = header.quaternion;
   } else if (!header.names_quaternion()) {
     return;
   }
@@ -118,7 +138,29 @@ void apply(const Header& header, TrajectoryLayout& layout) {
   if (!header.names_all() || header.count != layout.columns) layout.set_order(layout.order);
 }
 
+/// Whether rows hold a matrix behind their first column: EuRoC's have as many numbers as a stamp and a 4x4
+/// matrix, and what has 13 may be anything. The first row that has all its numbers tells.
+bool holds_stamped_matrices(const std::vector<TextLine>& lines, const TrajectoryLayout& layout) {
+  const std::size_t end = std::min(lines.size(), layout.header_rows + kRowsLookedAt);
+  for (auto at = static_cast<std::size_t>(layout.header_rows); at < end; ++at) {
+    std::vector<double> n;
+    for (const std::string_view column : layout.split(lines[at].text))
+      if (const auto value = layout.number(column); value && std::isfinite(*value)) n.push_back(*value);
+    if (static_cast<int>(n.size()) != layout.columns) continue;
+    for (std::size_t row = 1; row < kKittiColumns; row += 4)
+      if (std::abs(n[row] * n[row] + n[row + 1] * n[row + 1] + n[row + 2] * n[row + 2] - 1) > kRowLength)
+        return false;
+    return layout.columns == kStampedKittiColumns ||
+           (n[13] == 0 && n[14] == 0 && n[15] == 0 && std::abs(n[16] - 1) < kRowLength);
+  }
+  return false;
+}
+
 }  // namespace
+
+bool TrajectoryLayout::has_stamps() const {
+  return !is_matrix || columns == kStampedKittiColumns || columns == kStampedReplicaColumns;
+}
 
 void TrajectoryLayout::set_order(QuaternionOrder wanted_order) {
   const int first = *std::min_element(quaternion.begin(), quaternion.end());
@@ -142,18 +184,23 @@ std::optional<double> TrajectoryLayout::number(std::string_view text) const {
 std::vector<int> TrajectoryLayout::wanted() const {
   if (is_matrix) {
     std::vector<int> all(kKittiColumns);
-    std::iota(all.begin(), all.end(), 0);
+    std::iota(all.begin(), all.end(), has_stamps() ? 1 : 0);
+    if (has_stamps()) all.push_back(time);
     return all;
   }
   std::vector<int> columns_wanted = {time};
   columns_wanted.insert(columns_wanted.end(), position.begin(), position.end());
   columns_wanted.insert(columns_wanted.end(), quaternion.begin(), quaternion.end());
+  if (nanoseconds >= 0) columns_wanted.push_back(nanoseconds);
   return columns_wanted;
 }
 
 std::string TrajectoryLayout::expected() const {
-  if (is_matrix)
-    return columns == kReplicaColumns ? "the 16 numbers of a 4x4 matrix" : "the 12 numbers of a 3x4 matrix";
+  if (is_matrix) {
+    const bool whole = columns == kReplicaColumns || columns == kStampedReplicaColumns;
+    return (has_stamps() ? "a stamp and " : "") +
+           std::string(whole ? "the 16 numbers of a 4x4 matrix" : "the 12 numbers of a 3x4 matrix");
+  }
   const bool w_first = order == QuaternionOrder::wxyz;
   const std::string tum = w_first ? "timestamp tx ty tz qw qx qy qz" : "timestamp tx ty tz qx qy qz qw";
   return columns == kTumColumns ? "the 8 numbers " + tum
@@ -175,7 +222,11 @@ TrajectoryLayout find_layout(const std::vector<TextLine>& lines, const std::vect
     apply(*header, layout);
     if (header->names_all() && header->count == layout.columns) return layout;
   }
-  if (layout.columns == kEurocColumns) {
+  const bool may_be_stamped =
+      layout.columns == kStampedKittiColumns || layout.columns == kStampedReplicaColumns;
+  if (may_be_stamped && holds_stamped_matrices(lines, layout)) {
+    layout.is_matrix = true;
+  } else if (layout.columns == kEurocColumns) {
     layout.order_is_named = true;
     layout.set_order(QuaternionOrder::wxyz);
   } else if (layout.columns == kKittiColumns || layout.columns == kReplicaColumns) {

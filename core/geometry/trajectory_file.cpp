@@ -35,6 +35,11 @@ struct ReadPose {
   int line = 0;
 };
 
+/// A row's numbers as TrajectoryLayout::wanted has them: 8 and perhaps nanoseconds, or a matrix's 12 and
+/// perhaps a stamp.
+using Numbers = std::array<double, 13>;
+constexpr std::size_t kMatrixStamp = 12, kNanoseconds = 8;  // where those stand
+
 /// Why a row holds no pose.
 enum class Fault { none, columns, number, not_finite, absurd, quaternion };
 
@@ -52,7 +57,7 @@ class TrajectoryReader {
   [[nodiscard]] TrajectoryFile read() {
     file_.rows = static_cast<int>(lines_.size());
     file_.order = layout_.order, file_.order_is_named = layout_.order_is_named;
-    file_.has_stamps = !layout_.is_matrix;
+    file_.has_stamps = layout_.has_stamps();
     std::vector<ReadPose> poses;
     for (const TextLine& line : lines_) read_row(line, poses);
     judge(poses);
@@ -103,7 +108,7 @@ class TrajectoryReader {
       finite = finite && (!value || std::isfinite(*value));
       return value;
     };
-    std::array<double, 12> n{};
+    Numbers n{};
     const std::vector<int> wanted = layout_.wanted();
     bool whole = true;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -115,7 +120,8 @@ class TrajectoryReader {
     if (!finite) return Fault::not_finite;
     const std::array<std::size_t, 3> position =
         layout_.is_matrix ? std::array<std::size_t, 3>{3, 7, 11} : std::array<std::size_t, 3>{1, 2, 3};
-    if ((!layout_.is_matrix && !is_stamp(n[0])) ||
+    const double stamp = n[layout_.is_matrix ? kMatrixStamp : 0];
+    if ((layout_.has_stamps() && !is_stamp(stamp)) ||
         std::any_of(position.begin(), position.end(),
                     [&n](std::size_t i) { return std::abs(n[i]) > kFarthest; })) {
       fault(line, "found a stamp or a position beyond all measure");
@@ -124,7 +130,7 @@ class TrajectoryReader {
     return layout_.is_matrix ? from_matrix(line, row, n, pose) : from_quaternion(line, n, pose);
   }
 
-  Fault from_quaternion(const TextLine& line, const std::array<double, 12>& n, StampedPose& pose) {
+  Fault from_quaternion(const TextLine& line, const Numbers& n, StampedPose& pose) {
     const Eigen::Quaterniond q(n[7], n[4], n[5], n[6]);
     const double length = q.norm();
     if (!(std::abs(length - 1.0) < kLengthTolerance)) {
@@ -132,13 +138,13 @@ class TrajectoryReader {
       return Fault::quaternion;
     }
     if (std::abs(length - 1.0) > kLengthRemarkable) normalised_.note(line.number);
-    pose.timestamp = n[0];
+    pose.timestamp = n[0] + (layout_.nanoseconds >= 0 ? 1e-9 * n[kNanoseconds] : 0.0);
     pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
     pose.world_from_camera.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
     return Fault::none;
   }
 
-  Fault from_matrix(const TextLine& line, int row, const std::array<double, 12>& n, StampedPose& pose) {
+  Fault from_matrix(const TextLine& line, int row, const Numbers& n, StampedPose& pose) {
     Eigen::Matrix3d rotation;
     rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
     if (!((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 10 * kLengthTolerance) ||
@@ -147,7 +153,7 @@ class TrajectoryReader {
                               layout_.expected()));
       return Fault::quaternion;
     }
-    pose.timestamp = row;
+    pose.timestamp = layout_.has_stamps() ? n[kMatrixStamp] : row;
     pose.world_from_camera.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
     pose.world_from_camera.translation() = Eigen::Vector3d(n[3], n[7], n[11]);
     return Fault::none;

@@ -28,8 +28,10 @@ struct TrajectoryFile {
 /// - TUM: `timestamp tx ty tz qx qy qz qw`;
 /// - EuRoC's and TUM-VI's csv: a stamp, a position, a quaternion with w first, then whatever follows;
 /// - any table of 8 or more columns whose header names them (`timestamp, x, y, z, qw, qx, qy, qz`, …), in any
-///   order;
-/// - KITTI: the 12 numbers of a 3x4 matrix, no stamps; Replica: the 16 of a 4x4 matrix.
+///   order; of a ROS message's columns its header's stamp, whole or as seconds and nanoseconds, goes before
+///   the time of recording;
+/// - KITTI: the 12 numbers of a 3x4 matrix, no stamps; Replica: the 16 of a 4x4 matrix; either behind a stamp
+///   or a frame's number, where rows have 13 or 17.
 /// Columns are parted by blanks, tabs, commas or semicolons; decimal commas are read where blanks, tabs or
 /// semicolons part columns.
 ///

@@ -8,6 +8,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/evaluation/mask_scores.hpp"
 #include "core/inspect/mask_carrying.hpp"
@@ -195,7 +196,8 @@ std::vector<DrawnFrame> with_drawn(std::vector<DrawnFrame> drawn, DrawnFrame fra
 }
 
 std::string CarriedTruth::told() const {
-  std::string text = fmt::format("{} masks: {} drawn, {} carried", drawn + carried, drawn, carried);
+  std::string text =
+      fmt::format("{}: {} drawn, {} carried", counted(drawn + carried, "mask"), drawn, carried);
   if (!unreadable.empty())
     text += fmt::format("; frames {} cannot be read, and have none", frames_text(unreadable));
   if (scores.empty()) return text;

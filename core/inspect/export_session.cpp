@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/media/stored_depth.hpp"
 #include "core/odometry/frame_result.hpp"
@@ -83,7 +84,8 @@ std::string export_selection(const FrameSource& source, const std::vector<int>& 
     remove_sequence(folder);
     return stopped(folder);
   }
-  return fmt::format("{} frames written to {}{}", exported.written, folder.string(), told_missing(exported));
+  return fmt::format("{} written to {}{}", counted(exported.written, "frame"), folder.string(),
+                     told_missing(exported));
 }
 
 std::string export_session(const SessionToExport& session, const fs::path& folder,
@@ -112,8 +114,8 @@ std::string export_session(const SessionToExport& session, const fs::path& folde
     fs::remove(folder, ignored);
     return stopped(folder);
   }
-  std::string told = fmt::format("{} frames, their run and the marks written to {}{}", exported.written,
-                                 folder.string(), told_missing(exported));
+  std::string told = fmt::format("{}, their run and the marks written to {}{}",
+                                 counted(exported.written, "frame"), folder.string(), told_missing(exported));
   if (!session.run_hash.empty() && *hash != session.run_hash)
     told += fmt::format("; the run over them is another one: {} instead of {}", *hash, session.run_hash);
   return told;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/counted.hpp"
 #include "core/inspect/feature_trail.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -40,7 +41,7 @@ void add_margins(const StageLog& log, const PairGeometry& pair, FeatureExplanati
       const auto value = place ? value_at(layer, place->pixel) : std::nullopt;
       if (!value) continue;
       std::string name = side.name.empty() ? layer.name : fmt::format("{}: {}", layer.name, side.name);
-      if (stage.reference >= 0) name += fmt::format(", {} frames back", stage.frames_back);
+      if (stage.reference >= 0) name += fmt::format(", {} back", counted(stage.frames_back, "frame"));
       explanation.margins.push_back({std::move(name), *value, *layer.limit, layer.unit});
     }
   }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/run/open_run.hpp"
 #include "core/sequence/image_file.hpp"
@@ -107,12 +108,12 @@ std::vector<OpenPlace> places_in(const fs::path& folder) {
 std::vector<SequenceFact> sequence_facts(const FrameSource& source) {
   const Camera& camera = source.camera();
   const double seconds = source.size() > 0 ? source.timestamp(source.size() - 1) - source.timestamp(0) : 0.0;
-  return {{"Frames", fmt::format("{} frames, {:.3f} s", source.size(), seconds)},
+  return {{"Frames", fmt::format("{}, {:.3f} s", counted(source.size(), "frame"), seconds)},
           {"Camera", fmt::format("{} ({}x{} px)", camera.name, camera.width, camera.height)},
           {"Depth", source.has_depth() ? depth_words(camera) : "none"},
           {"Masks", source.has_masks() ? "yes" : "none"},
           {"Ground truth",
-           source.ground_truth().empty() ? "none" : fmt::format("{} poses", source.ground_truth().size())}};
+           source.ground_truth().empty() ? "none" : counted(source.ground_truth().size(), "pose")}};
 }
 
 }  // namespace stillpoint

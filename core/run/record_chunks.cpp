@@ -10,6 +10,8 @@
 #include <new>
 #include <string_view>
 
+#include "core/counted.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -123,11 +125,11 @@ bool ChunkFile::ends_at(std::uint64_t at) const {
 }
 
 std::string ChunkFile::cut_short(std::size_t frames) const {
-  return fmt::format("{}: is cut short after {} frames", path_.string(), frames);
+  return fmt::format("{}: is cut short after {}", path_.string(), counted(frames, "frame"));
 }
 
 InputError ChunkFile::damaged(std::size_t frames) const {
-  return InputError(fmt::format("{}: is damaged after {} frames", path_.string(), frames));
+  return InputError(fmt::format("{}: is damaged after {}", path_.string(), counted(frames, "frame")));
 }
 
 }  // namespace stillpoint

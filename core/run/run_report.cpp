@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.hpp"
 #include "core/evaluation/evaluation_json.hpp"
 #include "core/evaluation/suspicion.hpp"
 #include "core/motion/methods.hpp"
@@ -131,7 +132,7 @@ std::string gaps_text(const RunResult& run, const std::vector<Lacking>& lacking)
     if (at == kinds.end()) at = kinds.insert(kinds.end(), {kind, {}});
     at->second.push_back(one);
   }
-  std::string text = fmt::format("{} of {} frames: ", lacking.size(), run.records.size());
+  std::string text = fmt::format("{} of {}: ", lacking.size(), counted(run.records.size(), "frame"));
   for (std::size_t k = 0; k < std::min(kinds.size(), kMostReasons); ++k) {
     const std::vector<Lacking>& of_kind = kinds[k].second;
     // In order of frames, as they were found.
@@ -181,8 +182,15 @@ std::string mask_gaps(const RunResult& run) {
 }
 
 /// What lets truth and estimate fit far better. @param ours whether we made the estimate, from its depth
-std::string doubt_of(const TrajectoryEvaluation& evaluation, const FrameSource& source, bool ours) {
+std::string doubt_of(const TrajectoryEvaluation& evaluation, const RunResult& run, const FrameSource& source,
+                     bool ours) {
   if (const auto suspicion = suspect_convention(evaluation.matched, !ours)) return suspicion->sentence();
+  if (!ours) {
+    if (std::string held = held_pose_sentence(evaluation.matched); !held.empty()) return held;
+    if (const std::string clock = clock_sentence(source.ground_truth(), run.trajectory, evaluation);
+        !clock.empty())
+      return clock + " (`--time-offset` does so)";
+  }
   const std::string scale = scale_sentence(evaluation);
   if (scale.empty()) return {};
   if (!ours) return scale + " (`stillpoint evaluate --align sim3` does so)";
@@ -225,7 +233,7 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   report.without_pose = pose_gaps(run);
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.measured = parts_of(run);
-  if (report.evaluation) report.doubt = doubt_of(*report.evaluation, source, report.measured.solving);
+  if (report.evaluation) report.doubt = doubt_of(*report.evaluation, run, source, report.measured.solving);
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();
@@ -288,20 +296,22 @@ nlohmann::ordered_json to_summary(const RunReport& report, const RunResult& run,
 
 std::string to_text(const RunReport& report) {
   std::string text =
-      fmt::format("{}, method {}, odometry {}: {} of {} frames tracked ({:.1f} %)", report.sequence,
-                  report.method, report.odometry, report.tracked, report.frames, 100.0 * report.coverage);
-  if (report.measured.keyframes) text += fmt::format(", {} keyframes", report.keyframes);
-  if (report.measured.points) text += fmt::format(", {} map points", report.map_points);
+      fmt::format("{}, method {}, odometry {}: {} of {} tracked ({:.1f} %)", report.sequence, report.method,
+                  report.odometry, report.tracked, counted(report.frames, "frame"), 100.0 * report.coverage);
+  if (report.measured.keyframes) text += ", " + counted(report.keyframes, "keyframe");
+  if (report.measured.points) text += ", " + counted(report.map_points, "map point");
   text += "\n";
   if (report.evaluation && !report.evaluation->matched.empty()) {
     const TrajectoryEvaluation& e = *report.evaluation;
-    text += e.ate.translation_m.count > 0 ? fmt::format("  ATE           {:.4f} m RMSE over {} poses\n",
-                                                        e.ate.translation_m.rmse, e.ate.translation_m.count)
-                                          : fmt::format("  ATE           – ({})\n", e.ate.why_none);
+    text += e.ate.translation_m.count > 0
+                ? fmt::format("  ATE           {:.4f} m RMSE over {}\n", e.ate.translation_m.rmse,
+                              counted(e.ate.translation_m.count, "pose"))
+                : fmt::format("  ATE           – ({})\n", e.ate.why_none);
     for (const RelativePoseError* rpe : {&e.rpe_time, &e.rpe_frame})
       text += rpe->translation_m.count > 0
-                  ? fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {} pairs\n", rpe->delta,
-                                rpe->translation_m.rmse, rpe->rotation_deg.rmse, rpe->translation_m.count)
+                  ? fmt::format("  RPE {:<9} {:.4f} m, {:.3f} deg RMSE over {}\n", rpe->delta,
+                                rpe->translation_m.rmse, rpe->rotation_deg.rmse,
+                                counted(rpe->translation_m.count, "pair"))
                   : fmt::format("  RPE {:<9} – ({})\n", rpe->delta, rpe->why_none);
     if (!report.doubt.empty()) text += fmt::format("  doubt         {}\n", report.doubt);
   } else if (!report.truth_why_not.empty()) {

@@ -220,6 +220,10 @@ void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUni
   else if (!known && lists.unit != StampUnit::seconds)
     lists.warnings.push_back(fmt::format("{}: the stamps are {}; they were read as such", lists.colours.path,
                                          to_string(lists.unit)));
+  if (lists.unit != StampUnit::frames && frame_rate != kFrameNumberRate)
+    lists.warnings.push_back(
+        fmt::format("{}: the stamps are {} and no frame numbers, so --frame-rate changes nothing",
+                    lists.colours.path, to_string(lists.unit)));
   const auto reference = stamps_of(lists.colours);
   for (std::optional<ImageList>* list : {&lists.depths, &lists.masks}) {
     if (!*list) continue;

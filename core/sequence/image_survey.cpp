@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <set>
 
+#include "core/counted.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -45,8 +47,9 @@ std::string fault_of_depth(const std::string& path, const ImageRead& read, const
   const cv::Mat& image = read.image;
   if (image.type() != CV_16UC1 && !read.in_metres) {
     const bool is_float = image.depth() == CV_32F || image.depth() == CV_64F;
-    return fmt::format("{} holds {} channel(s) of {} bits{}, expected depth as 1 channel of 16 bits", path,
-                       image.channels(), 8 * image.elemSize1(), is_float ? " (floating point)" : "");
+    return fmt::format("{} holds {} of {} bits{}, expected depth as 1 channel of 16 bits", path,
+                       counted(image.channels(), "channel"), 8 * image.elemSize1(),
+                       is_float ? " (floating point)" : "");
   }
   if (image.size() != expected.size)
     return fmt::format("{} is {}x{} px, but {} {}x{} px", path, image.cols, image.rows, expected.whose,

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <functional>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 
@@ -64,7 +65,8 @@ std::vector<T> read_lines(const std::string& path, std::string_view text, const 
   if (cut_short)
     warnings.push_back(fmt::format("{}; the last line was cut short and skipped", fault));
   else if (faults > 0)
-    warnings.push_back(fmt::format("{}; {} such line(s) of {} were skipped", fault, faults, lines.size()));
+    warnings.push_back(
+        fmt::format("{}; {} of {} such were skipped", fault, faults, counted(lines.size(), "line")));
   return entries;
 }
 
@@ -92,8 +94,8 @@ void put_in_order(std::vector<T>& entries, const Key& key, const std::string& pa
     throw InputError(fmt::format(
         "{}:{}: {} of {} stamps are there before: they were written with too few digits to tell frames apart",
         path, line, repeats, before));
-  warnings.push_back(
-      fmt::format("{}:{}: the stamp was there before; {} such line(s) were dropped", path, line, repeats));
+  warnings.push_back(fmt::format("{}:{}: the stamp was there before; {} dropped", path, line,
+                                 counted(repeats, "such line")));
 }
 
 /// Whether a name lies in a folder of depth: `depth/`, `aligned_depth/`, ….
@@ -121,8 +123,12 @@ std::vector<ListEntry> read_list(const std::string& path, std::string_view text,
       throw MalformedLine(
           fmt::format("{}:{}: found {}, expected {}", path, line.number, in_quotes(line.text), kExpected));
     const double stamp = read_stamp(path, line.number, columns[0], kExpected);
-    const auto name_at = static_cast<std::size_t>(columns[1].data() - line.text.data());
-    return ListEntry{stamp, line.text.substr(name_at), line.number};
+    // A name may hold blanks: it goes on to the end of the line, or to the end of its quotes.
+    auto name_at = static_cast<std::size_t>(columns[1].data() - line.text.data());
+    if (line.text[name_at - 1] == '"') --name_at;
+    std::string name = line.text.substr(name_at);
+    if (name.size() > 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    return ListEntry{stamp, std::move(name), line.number};
   });
   put_in_order(
       entries, [](const ListEntry& e) -> const ListEntry& { return e; }, path, warnings);

@@ -106,6 +106,9 @@ MaskFiles::MaskFiles(const std::string& where, const MaskReading& reading)
     throw InputError(fmt::format("{}: there is no such folder or list of masks", where));
   if (fs::is_directory(where, none))
     read_folder(where);
+  else if (is_image_name(where))
+    throw InputError(
+        fmt::format("{}: is one image, expected a folder with a mask a frame, or a list of them", where));
   else
     read_list_file(where);
   settle_numbers();
@@ -173,6 +176,7 @@ void MaskFiles::settle_numbers() {
 }
 
 void MaskFiles::survey() {
+  constexpr double kMostMoving = 0.7;  // of the masks' pixels; more look inverted
   if (!reading_.labels.empty()) return;
   ImagePaths sample;
   const std::size_t step = std::max<std::size_t>(1, by_name_.size() / kSample);
@@ -189,6 +193,12 @@ void MaskFiles::survey() {
                   where_, found.labels)
             : fmt::format("{}: the masks hold 0 and {:g}; what is {:g} is taken out", where_, found.largest,
                           found.largest));
+  const double moving = reading_.inverted ? 1.0 - found.moving_share : found.moving_share;
+  if (found.read > 0 && moving > kMostMoving)
+    warnings_.push_back(fmt::format(
+        "{}: {:.0f} % of the masks' pixels are said to move; if white is what is static, masks.inverted={} "
+        "reads them so",
+        where_, 100.0 * moving, reading_.inverted ? "false" : "true"));
 }
 
 const MaskFiles::Files* MaskFiles::files_named(const std::string& name) const {

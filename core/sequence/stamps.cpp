@@ -115,7 +115,9 @@ StampUnit unit_beside(const std::vector<double>& stamps, const std::vector<doubl
     if (unit == StampUnit::frames && !whole) continue;
     std::vector<double> seconds = stamps;
     for (double& stamp : seconds) stamp *= seconds_per(unit, frame_rate);
-    const int met = meetings(seconds, reference_s, tolerance);
+    // Both ways: squeezed into a moment, all stamps would find that moment's reference.
+    const int met =
+        std::min(meetings(seconds, reference_s, tolerance), meetings(reference_s, seconds, tolerance));
     if (met > most) best = unit, most = met;
   }
   return best;

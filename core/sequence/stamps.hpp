@@ -25,8 +25,8 @@ enum class StampUnit { seconds, milliseconds, microseconds, nanoseconds, frames 
 [[nodiscard]] StampUnit unit_of(std::vector<double> stamps);
 
 /// The unit of stamps that belong beside others, which are in seconds already: of the reference's own unit,
-/// what unit_of says, and all others, the one under which most stamps find a reference closer than
-/// `tolerance` seconds; the first of these in case of a draw. Frame numbers are considered only for whole
+/// what unit_of says, and all others, the one under which most stamps and references find one another closer
+/// than `tolerance` seconds (the fewer of both count); the first of these in case of a draw. Frame numbers are considered only for whole
 /// numbers.
 /// @param reference_s in increasing order, s; @param stamps in increasing order
 [[nodiscard]] StampUnit unit_beside(const std::vector<double>& stamps, const std::vector<double>& reference_s,

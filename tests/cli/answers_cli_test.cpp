@@ -71,11 +71,22 @@ TEST(Answers, OptionsOfNoUseAreTold) {
   EXPECT_THAT(warnings({"--seed", "3"}), HasSubstr("--seed is of no use here: it goes with generated"));
   EXPECT_THAT(warnings({"--invert-masks"}), HasSubstr("--invert-masks is of no use here"));
   EXPECT_THAT(warnings({"--depth-scale", "5000"}), Not(HasSubstr("of no use here")));
-  expect_one_sentence(run_cli({"snapshot", sequence.path(), "--method", "none", "--panels", "input", "--fps",
-                               "10", "--out", sequence.path("o")}),
-                      "--fps: goes with --video");
+  EXPECT_THAT(
+      warnings({"--frame-rate", "15"}),
+      HasSubstr("rgb.txt: the stamps are seconds and no frame numbers, so --frame-rate changes nothing"));
+  EXPECT_THAT(warnings({"--frame-rate", "30"}), Not(HasSubstr("--frame-rate")));
+  expect_usage_error(run_cli({"snapshot", sequence.path(), "--method", "none", "--panels", "input", "--fps",
+                              "10", "--out", sequence.path("o")}),
+                     "--fps: goes with --video");
   const std::string truth = sequence.path("truth.txt");
   sequence.folder.write("truth.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 1 0 0 0 0 1\n");
+  EXPECT_THAT(run_cli({"evaluate", truth, truth, "--frame-rate", "15"}).err,
+              Not(HasSubstr("changes nothing")));
+  sequence.folder.write("seconds.txt", "1.5 0 0 0 0 0 0 1\n2.6 1 0 0 0 0 0 1\n3.7 1 1 0 0 0 0 1\n");
+  const std::string seconds = sequence.path("seconds.txt");
+  EXPECT_THAT(
+      run_cli({"evaluate", seconds, seconds, "--frame-rate", "15"}).err,
+      HasSubstr("seconds.txt: has no frame numbers to be given times, so --frame-rate changes nothing"));
   const CliResult both = run_cli({"evaluate", truth, truth, "--scale", "--align", "se3"});
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_THAT(both.err, HasSubstr("excludes"));

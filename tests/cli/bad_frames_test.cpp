@@ -54,7 +54,7 @@ const std::vector<Fault> kFaults = {
     {"ZeroDepth", [](const SmallSequence& s) { s.folder.write(s.depth(kFault), image(CV_16UC1, 0)); },
      "tracked", "depth/4.png is zero everywhere"},
     {"EightBitDepth", [](const SmallSequence& s) { s.folder.write(s.depth(kFault), image(CV_8UC1, 80)); },
-     "tracked", "depth/4.png holds 1 channel(s) of 8 bits, expected depth as 1 channel of 16 bits"},
+     "tracked", "depth/4.png holds 1 channel of 8 bits, expected depth as 1 channel of 16 bits"},
     {"DepthOfOtherSize",
      [](const SmallSequence& s) {
        s.folder.write(s.depth(kFault), image(CV_16UC1, 7500, {64, 48}));
@@ -172,7 +172,7 @@ TEST_F(Frames, DepthOfAWrongKindThroughoutIsAFailureThatSaysSo) {
   const CliResult result = run(sequence);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err,
-              HasSubstr("depth/0.png holds 1 channel(s) of 8 bits, expected depth as 1 channel of 16 bits"));
+              HasSubstr("depth/0.png holds 1 channel of 8 bits, expected depth as 1 channel of 16 bits"));
 }
 
 TEST_F(Frames, UnsortedAndRepeatedStampsAreMendedWithAWarning) {

@@ -73,7 +73,7 @@ TEST_F(DebugCli, SnapshotsOfTheFramesWhereAConditionHolds) {
   const CliResult fewer =
       run_cli({"snapshot", sequence_.path(), "--method", "none", "--when", "frame == 2 || frame == 5",
                "--frames", "0:4", "--panels", "input", "--out", sequence_.path("fewer")});
-  EXPECT_THAT(fewer.out, HasSubstr("1 images of 1 frames"));
+  EXPECT_THAT(fewer.out, HasSubstr("1 image of 1 frame written"));
   const CliResult none = run_cli({"snapshot", sequence_.path(), "--method", "none", "--when", "lost",
                                   "--panels", "input", "--out", sequence_.path("none")});
   EXPECT_EQ(none.exit_code, 1);
@@ -111,7 +111,7 @@ TEST_F(DebugCli, WhenKnowsTheTrueMasks) {
     return run_cli({"snapshot", "generated:cup", "--length", "2", "--method", "oracle", "--when", when,
                     "--panels", "union_mask", "--out", sequence_.path(out), "--no-baseline"});
   };
-  EXPECT_THAT(generated("frame == 1 && !(mask_iou < 99%)", "true").out, HasSubstr("of 1 frames"));
+  EXPECT_THAT(generated("frame == 1 && !(mask_iou < 99%)", "true").out, HasSubstr("of 1 frame "));
   EXPECT_THAT(generated("mask_iou < 99%", "wrong").err, HasSubstr("; mask_iou is 100.00 % throughout"));
   const CliResult unknown = run({"--break", "mask_iou < 50%"});
   EXPECT_EQ(unknown.exit_code, 0);

@@ -125,7 +125,7 @@ TEST_F(Input, FramesThatLackedDepthAreToldAtTheEnd) {
   const CliResult result = run();
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out, HasSubstr("no depth      2 of 8 frames: 4-5 ("));
-  EXPECT_THAT(result.out, HasSubstr("depth/4.png holds 1 channel(s) of 8 bits"));
+  EXPECT_THAT(result.out, HasSubstr("depth/4.png holds 1 channel of 8 bits"));
 }
 
 TEST_F(Input, MillimetresAreQuestionedBeforeAndTheScaleIsNamedAfter) {

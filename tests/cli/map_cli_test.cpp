@@ -70,7 +70,7 @@ TEST_F(ExportedMap, IsRefusedInOneSentence) {
   expect_one_sentence(exported("map.ply"), "map_keyframes.ply: is there already; --force replaces it");
   EXPECT_FALSE(std::filesystem::exists(sequence_.path("map.ply")));
   EXPECT_EQ(exported("map.ply", {"--force"}).exit_code, 0);
-  expect_one_sentence(exported("other.ply", {"--layers", "difference"}), "--layers: go into an .mcap file");
+  expect_usage_error(exported("other.ply", {"--layers", "difference"}), "--layers: go into an .mcap file");
   expect_one_sentence(exported("no/map.ply"), "no/map.ply: there is no folder ");
   const auto dense = [this](std::vector<std::string> more) {
     more.insert(more.begin(), {"export", sequence_.path("run"), "--dense"});
@@ -82,12 +82,12 @@ TEST_F(ExportedMap, IsRefusedInOneSentence) {
   expect_one_sentence(dense({sequence_.path("folder.ply"), "--force"}), "folder.ply: is a folder");
   // What would be passed over in silence.
   const std::string room = sequence_.path("room.ply");
-  expect_one_sentence(dense({room, "--out", sequence_.path("x")}), "--out: goes with a sequence");
-  expect_one_sentence(dense({room, "--frames", "1:3"}), "--frames: goes with --out");
-  expect_one_sentence(dense({room, "--layers", "difference"}), "--layers: goes with --to");
-  expect_one_sentence(dense({room, "--length", "3"}), "a finished run has its own frames");
-  expect_one_sentence(run_cli({"export", sequence_.path(), "--out", sequence_.path("x"), "--voxel", "0.1"}),
-                      "--voxel: goes with --dense");
+  expect_usage_error(dense({room, "--out", sequence_.path("x")}), "--out: goes with a sequence");
+  expect_usage_error(dense({room, "--frames", "1:3"}), "--frames: goes with --out");
+  expect_usage_error(dense({room, "--layers", "difference"}), "--layers: goes with --to");
+  expect_usage_error(dense({room, "--length", "3"}), "a finished run has its own frames");
+  expect_usage_error(run_cli({"export", sequence_.path(), "--out", sequence_.path("x"), "--voxel", "0.1"}),
+                     "--voxel: goes with --dense");
   EXPECT_FALSE(std::filesystem::exists(sequence_.path("x")) || std::filesystem::exists(room));
   // What would take a recording away.
   expect_one_sentence(

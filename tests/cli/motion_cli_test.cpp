@@ -248,7 +248,7 @@ TEST_F(MotionCommand, BadInputIsToldInOneSentence) {
   expect_one_sentence(pair("a.png", "b.png", {"--set", "motion.max_rounds=0"}), "motion.max_rounds");
   expect_one_sentence(pair("a.png", "b.png", {"--set", "paper.max_rounds=0"}), "paper.max_rounds");
   expect_one_sentence(pair("a.png", "b.png", {"--config", "nosuchpreset"}), "nosuchpreset");
-  expect_one_sentence(pair("a.png", "b.png", {"--frames", "1:2"}), "--frames");
+  expect_usage_error(pair("a.png", "b.png", {"--frames", "1:2"}), "--frames");
   EXPECT_FALSE(fs::exists(folder_.path("out")));
   for (const char* out : {"file", "file/below"})
     expect_one_sentence(motion({folder_.path("a.png"), folder_.path("b.png"), "--out", folder_.path(out)}),

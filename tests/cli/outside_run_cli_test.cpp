@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/csv_rows.hpp"
 #include "tests/cli/run_cli.hpp"
@@ -80,6 +81,32 @@ TEST_F(OutsideRunCli, AsOurOwnRunIs) {
                         .at("runs");
   EXPECT_EQ(runs.at(1).at("name"), "theirs");
   EXPECT_NE(runs.at(0).at("colours"), runs.at(1).at("colours"));
+}
+
+TEST_F(OutsideRunCli, AReportTellsItsDoubtAndNoConfiguration) {
+  // Three poses are held while the truth goes on.
+  std::string held, line;
+  std::istringstream poses(sequence.folder.read("own/trajectory.txt"));
+  for (int i = 0; std::getline(poses, line); ++i)
+    held += line.substr(0, line.find(' ')) +
+            (i < 20 || i > 25 ? line.substr(line.find(' ')) : " 0 0 0 0 0 0 1") + "\n";
+  sequence.folder.write("held.txt", held);
+  ASSERT_EQ(run_cli({"import", sequence.path(), "theirs=" + sequence.path("held.txt"), "--out",
+                     sequence.path("theirs")})
+                .exit_code,
+            0);
+  const auto page = [this](const std::vector<std::string>& runs) {
+    std::vector<std::string> words = {"report", "--worst", "0", "--force", "--out", sequence.path("r.html")};
+    for (const std::string& run : runs) words.push_back(sequence.path(run));
+    const CliResult report = run_cli(words);
+    EXPECT_EQ(report.exit_code, 0) << report.err;
+    return sequence.folder.read("r.html");
+  };
+  const std::string both = page({"own", "theirs"});
+  EXPECT_THAT(both, HasSubstr("theirs: 5 of its poses are the same number for number as the one before"));
+  EXPECT_THAT(both, HasSubstr("All of none, as TOML"));
+  EXPECT_THAT(both, Not(HasSubstr("All of theirs, as TOML")));
+  EXPECT_THAT(page({"theirs"}), HasSubstr("None: these runs are other programs'."));
 }
 
 TEST_F(OutsideRunCli, IsDrawnBesideOrByItself) {

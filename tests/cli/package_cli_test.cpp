@@ -113,7 +113,7 @@ TEST_F(Manual, ZshReadsItsCompletions) {
 }
 
 TEST(ManualCommand, SaysWhereItCannotWrite) {
-  expect_one_sentence(run_cli({"manual"}), "--man or --completions must say where files go");
+  expect_usage_error(run_cli({"manual"}), "--man or --completions is required");
   expect_one_sentence(run_cli({"manual", "--man", "/dev/null/man"}), "/dev/null/man: cannot be made");
 }
 

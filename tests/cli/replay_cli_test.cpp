@@ -41,7 +41,7 @@ TEST_F(ReplayCli, PlaysWithoutADisplay) {
       recording("key Right\nidle\nexpect frame 2\nexpect method paper\nscreenshot two.png\n");
   const CliResult result = run_cli({"replay", file, "--out", out("shots")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("1 screenshots"));
+  EXPECT_THAT(result.out, HasSubstr("replayed, 1 screenshot\n"));
   EXPECT_EQ(cv::imread(out("shots") + "/two.png").size(), cv::Size(800, 600));
   expect_one_sentence(run_cli({"replay", file, "--out", out("shots")}), "--force");
   EXPECT_EQ(run_cli({"replay", file, "--out", out("shots"), "--force"}).exit_code, 0);
@@ -50,9 +50,9 @@ TEST_F(ReplayCli, PlaysWithoutADisplay) {
 TEST_F(ReplayCli, SaysWhatIsWrongInOneSentence) {
   expect_one_sentence(run_cli({"replay", out("none.txt")}), "cannot be read");
   expect_one_sentence(run_cli({"replay", recording("expect frame 5\n"), "--out", out("a")}),
-                      "recording.txt, line 9: expected frame '5', found '1'");
+                      "recording.txt:9: expected frame '5', found '1'");
   expect_one_sentence(run_cli({"replay", recording("jump\n"), "--out", out("a")}),
-                      "line 9: 'jump' is nothing");
+                      "recording.txt:9: 'jump' is nothing");
   expect_one_sentence(run_cli({"replay", recording("idle\n", 7), "--out", out("a")}), "was recorded of");
   sequence_.folder.write("old.txt", std::string("stillpoint recording 0\n"));
   expect_one_sentence(run_cli({"replay", out("old.txt")}), "another version");

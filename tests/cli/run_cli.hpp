@@ -81,4 +81,13 @@ inline void expect_one_sentence(const CliResult& result, const std::string& part
   EXPECT_EQ(result.err.find('\n'), result.err.size() - 1) << result.err;
 }
 
+/// Expects a command line that is wrong by itself: exit status 2, nothing on standard output, a sentence that
+/// holds `part`, and where to read on.
+inline void expect_usage_error(const CliResult& result, const std::string& part) {
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("Run with --help for more information."), std::string::npos) << result.err;
+}
+
 }  // namespace stillpoint

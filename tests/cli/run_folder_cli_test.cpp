@@ -271,7 +271,8 @@ TEST(Video, HoldsAFrameForEachFrame) {
         "H.264 takes even sides alone, and the pictures are 401x301; --size 402x302");
   EXPECT_FALSE(fs::exists(sequence.path("odd.mp4")));
   wrong({"--video", sequence.path("two.mp4"), "--panels", "input,errors"}, "--panels names 2");
-  wrong({}, "--out or --video");
+  expect_usage_error(run_cli({"snapshot", sequence.path(), "--frames", "1:3"}),
+                     "--out or --video is required");
 }
 
 TEST(Video, ShowsFramesAtTheirOwnTimes) {

@@ -67,6 +67,25 @@ TEST(DebugPanels, GoldenImages) {
   }
 }
 
+TEST(DebugPanels, PosesTooFewToAlignHaveNoAbsoluteError) {
+  const std::string why = "2 matched poses, and an alignment needs 3";
+  for (const char* name : {"errors", "trajectory"}) {
+    const auto picture = [name](double rmse_m, const std::string& why_none) {
+      SessionView example = handmade_example();
+      const auto original = example.run;  // the view points into its records
+      auto run = std::make_shared<RunView>(*original);
+      run->evaluation.ate.translation_m.rmse = rmse_m;
+      run->evaluation.ate.why_none = why_none;
+      example.run = run;
+      PanelStage stage(name, {ThemeName::kDark, 1.0F}, kSheetWidth, kSheetHeight);
+      return stage.render(example).clone();
+    };
+    const cv::Mat none = picture(0.0, why);
+    EXPECT_EQ(cv::norm(none, picture(0.004, why), cv::NORM_INF), 0) << name;
+    EXPECT_GT(cv::norm(none, picture(0.0, ""), cv::NORM_INF), 0) << name << ": none is not 0 mm";
+  }
+}
+
 /// The workbench over the example, with all that it asks for written down.
 class DebugKeys : public ::testing::Test {
  protected:

@@ -254,12 +254,12 @@ TEST_F(Replay, TwoReplaysGiveTheSameScreenshots) {
 }
 
 TEST_F(Replay, SaysInWhichLineWhatDidNotHold) {
-  EXPECT_EQ(play("expect frame 6\n"), "recording.txt, line 3: expected frame '6', found '1'");
-  EXPECT_THAT(play("expect mood good\n"), HasSubstr("line 3: there is no fact 'mood'; there are frame,"));
-  EXPECT_THAT(play("action fly\n"), HasSubstr("line 3: there is no action 'fly'"));
-  EXPECT_THAT(play("action next_lost\n"), HasSubstr("line 3: the action 'next_lost' is not possible now"));
-  EXPECT_THAT(play("point log 0 0\n"), HasSubstr("line 3: the panel 'log' is not shown"));
-  EXPECT_THAT(play("frame 8\n"), HasSubstr("line 3: there is no frame 8; the sequence has frames 0 to 7"));
+  EXPECT_EQ(play("expect frame 6\n"), "recording.txt:3: expected frame '6', found '1'");
+  EXPECT_THAT(play("expect mood good\n"), HasSubstr(":3: there is no fact 'mood'; there are frame,"));
+  EXPECT_THAT(play("action fly\n"), HasSubstr(":3: there is no action 'fly'"));
+  EXPECT_THAT(play("action next_lost\n"), HasSubstr(":3: the action 'next_lost' is not possible now"));
+  EXPECT_THAT(play("point log 0 0\n"), HasSubstr(":3: the panel 'log' is not shown"));
+  EXPECT_THAT(play("frame 8\n"), HasSubstr(":3: there is no frame 8; the sequence has frames 0 to 7"));
   EXPECT_THAT(play("screenshot ../a.png\n"), HasSubstr("expected a screenshot's name"));
 }
 
@@ -275,7 +275,7 @@ TEST_F(Replay, OfAnotherSequenceIsRefused) {
   };
   EXPECT_EQ(complaint("sequence 8 " + source->name() + "\n"), "");
   EXPECT_EQ(complaint(""), "");
-  EXPECT_THAT(complaint("sequence 9 " + source->name() + "\n"), HasSubstr("a.txt, line 2: was recorded of"));
+  EXPECT_THAT(complaint("sequence 9 " + source->name() + "\n"), HasSubstr("a.txt:2: was recorded of"));
   EXPECT_THAT(complaint("sequence 8 another\n"), HasSubstr("'another' with 8 frames"));
 }
 

@@ -30,9 +30,9 @@ TEST(FolderImages, DepthOfAnotherKindIsKnownBeforeTheFirstFrame) {
     };
   };
   const auto half = [](const cv::Mat& depth) { return depth(cv::Rect(0, 0, 32, 24)).clone(); };
-  for (const Kind& kind : {Kind{as(CV_8UC1), "png", "holds 1 channel(s) of 8 bits, expected depth"},
-                           Kind{as(CV_8UC3), "png", "holds 3 channel(s) of 8 bits, expected depth"},
-                           Kind{as(CV_32FC1), "tiff", "1 channel(s) of 32 bits (floating point)"},
+  for (const Kind& kind : {Kind{as(CV_8UC1), "png", "holds 1 channel of 8 bits, expected depth"},
+                           Kind{as(CV_8UC3), "png", "holds 3 channels of 8 bits, expected depth"},
+                           Kind{as(CV_32FC1), "tiff", "1 channel of 32 bits (floating point)"},
                            Kind{half, "png", "is 32x24 px, but its colour image is 64x48 px"}}) {
     const InputFolder folder;
     folder.each_depth(kind.make, kind.file);

@@ -158,6 +158,20 @@ TEST(MaskFiles, LabelsAsColours) {
   EXPECT_THAT(input_error_of([&] { MaskFiles(folder.path(), reading); }), HasSubstr("'person' is no label"));
 }
 
+TEST(MaskFiles, WhatIsNearlyAllWhiteIsToldWithTheSwitch) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 4; ++i) folder.write(std::to_string(i) + ".png", cv::Mat(255 - column(i)));
+  EXPECT_THAT(MaskFiles(folder.path(), {}).warnings(),
+              ElementsAre(HasSubstr("94 % of the masks' pixels are said to move; if white is what is static, "
+                                    "masks.inverted=true reads them so")));
+  MaskReading inverted;
+  inverted.inverted = true;
+  EXPECT_THAT(MaskFiles(folder.path(), inverted).warnings(), IsEmpty());
+  // One image in place of a folder.
+  EXPECT_THAT(input_error_of([&] { MaskFiles(folder.path("0.png"), {}); }),
+              HasSubstr("0.png: is one image, expected a folder with a mask a frame, or a list of them"));
+}
+
 TEST(MaskFiles, WhatIsWrongIsSaid) {
   const TemporaryFolder folder;
   EXPECT_THAT(input_error_of([&] { MaskFiles(folder.path("none"), {}); }),

@@ -54,6 +54,16 @@ TEST(Association, IsStrictlyCloserThanTheTolerance) {
   EXPECT_THAT(associate({}, {1.0}), IsEmpty());
 }
 
+TEST(ListFile, NamesMayStandInQuotes) {
+  std::vector<std::string> warnings;
+  const auto entries = read_list(
+      "rgb.csv", "timestamp,filename\n\"1.5\",\"rgb/1.png\"\n2.5,\"rgb/with blanks.png\"\n", warnings);
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[0].timestamp, 1.5);
+  EXPECT_EQ(entries[0].file, "rgb/1.png");
+  EXPECT_EQ(entries[1].file, "rgb/with blanks.png");
+}
+
 TEST(ListFile, ReadsNamesWithBlanksAndMendsOrder) {
   const TemporaryFolder folder;
   folder.write(
@@ -291,7 +301,7 @@ TEST(TumFolder, BadDepthIsRejectedForItsFrameAlone) {
   folder.write("depth/2.png", cv::Mat(24, 32, CV_16UC1, cv::Scalar(9)));
   folder.truncate("depth/3.png", 0.5);
   const auto source = open_sequence(folder.path());
-  const char* problems[] = {"1 channel(s) of 8 bits", "zero everywhere",
+  const char* problems[] = {"1 channel of 8 bits", "zero everywhere",
                             "is 32x24 px, but its colour image is 64x48", "3.png is truncated", ""};
   for (int i = 0; i < 5; ++i) {
     const Frame frame = source->read(i);

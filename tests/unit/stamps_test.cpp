@@ -101,6 +101,30 @@ TEST(Clocks, AreSettledAlikeForTruthAndEstimate) {
   EXPECT_EQ(settled(options.frame_stamps, numbers, options).second, options.frame_stamps[20]);
 }
 
+TEST(Clocks, FramesMayBeNumberedFromOne) {
+  ClockOptions options;
+  options.truth_in_seconds = true;
+  options.frame_stamps = written(1.7e9, 30, 1);
+  const auto count = static_cast<int>(options.frame_stamps.size());
+  const auto numbered = [&](int first, int last) {
+    std::vector<double> numbers;
+    for (int i = first; i <= last; ++i) numbers.push_back(i);
+    Trajectory truth = at(options.frame_stamps), estimate = at(numbers);
+    const auto notes = settle_clocks(truth, estimate, options);
+    return std::pair(estimate.front().timestamp, notes.empty() ? std::string() : notes.front());
+  };
+  const auto [from_one, note] = numbered(1, count);
+  EXPECT_EQ(from_one, options.frame_stamps[0]);
+  EXPECT_NE(note.find("frame numbers from 1;"), std::string::npos) << note;
+  // Frame 0 may have been lost: what can be read from 0 is.
+  EXPECT_EQ(numbered(1, count - 1).first, options.frame_stamps[1]);
+  EXPECT_EQ(numbered(1, count - 1).second.find("from 1"), std::string::npos);
+  // Beside frames that are numbers themselves, too: a frame off they would meet as well, all but one.
+  options.frame_stamps.clear();
+  for (int i = 0; i < count; ++i) options.frame_stamps.push_back(i / 30.0);
+  EXPECT_EQ(numbered(1, count).first, 0.0);
+}
+
 TEST(Clocks, OfAnotherOriginAreToldWithTheWayOn) {
   Trajectory truth = at(written(1.7e9, 30, 1)), estimate = at(written(0, 30, 1));
   ClockOptions options;

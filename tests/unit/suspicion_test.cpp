@@ -120,6 +120,63 @@ TEST(Suspicion, ABodyThatCarriesTheCameraIsFoundWithItsTurn) {
   EXPECT_THAT(suspicion->sentence(), HasSubstr("173.0 deg"));
 }
 
+/// A camera that is waved to and fro with a period of 2.6 s while it is carried on, 30 poses a second.
+Pose waved(double t) {
+  const double phase = 2 * std::numbers::pi * t / 2.6;
+  Pose pose;
+  pose.linear() = so3_exp({0.05 * std::sin(phase), 0.08 * std::sin(0.9 * t), 0.03 * std::sin(1.7 * t)});
+  pose.translation() = Eigen::Vector3d(0.2 * std::sin(phase), 0.05 * std::sin(1.9 * t), 0.02 * t);
+  return pose;
+}
+
+/// Waved about for so many seconds, by an estimate whose clock is late.
+std::pair<Trajectory, Trajectory> waved_about(double seconds, double late_s) {
+  Trajectory truth, estimate;
+  for (int i = 0; i < static_cast<int>(30 * seconds); ++i) {
+    truth.push_back({i / 30.0, waved(i / 30.0)});
+    estimate.push_back({i / 30.0 + late_s, waved(i / 30.0)});
+  }
+  return {truth, estimate};
+}
+
+TEST(Suspicion, NoConventionIsBlamedForAClockHalfAPeriodOff) {
+  const auto [truth, estimate] = waved_about(9, 1.3);
+  const auto matched = match_trajectories(truth, estimate);
+  ASSERT_GT(matched.size(), 200U);
+  // Read the wrong way round the motions do fit better, and still not at all.
+  auto reversed = matched;
+  for (MatchedPose& pose : reversed) pose.estimate = pose.estimate.inverse();
+  ASSERT_LT(motion_fit(reversed).combined_m(), 0.4 * motion_fit(matched).combined_m());
+  EXPECT_FALSE(suspect_convention(matched, true)) << suspect_convention(matched, true)->sentence();
+}
+
+TEST(Clock, IsToldWhereItExplainsTheError) {
+  const auto told = [](double late_s, double noise_m = 0.0) {
+    auto [truth, estimate] = waved_about(9, late_s);
+    for (std::size_t i = 0; i < estimate.size(); ++i)
+      estimate[i].world_from_camera.translation().z() += noise_m * std::sin(0.37 * static_cast<double>(i));
+    return clock_sentence(truth, estimate, evaluate_trajectory(truth, estimate, {}));
+  };
+  EXPECT_THAT(told(0.05), HasSubstr("when -0.050 s are added to its stamps"));
+  EXPECT_THAT(told(-0.2), HasSubstr("when +0.200 s are added to its stamps"));
+  EXPECT_EQ(told(0.0), "");
+  EXPECT_EQ(told(0.003), "");
+  EXPECT_EQ(told(0.0, 0.05), "");
+  EXPECT_EQ(told(0.02, 0.05), "") << "most of the error is not the clock's";
+  EXPECT_EQ(clock_sentence({}, {}, {}), "");
+}
+
+TEST(HeldPoses, AreToldWhereTheTruthGoesOn) {
+  auto matched = sound();
+  EXPECT_EQ(held_pose_sentence(matched), "");
+  for (std::size_t i = 40; i < 52; ++i) matched[i].estimate = Pose::Identity();
+  // Eleven repeat the one before; pose 40 was the first to be none.
+  EXPECT_THAT(held_pose_sentence(matched), HasSubstr("11 of its poses"));
+  EXPECT_THAT(held_pose_sentence(matched), HasSubstr("(1.367 s to 1.700 s)"));
+  for (std::size_t i = 40; i < 52; ++i) matched[i].truth = matched[40].truth;
+  EXPECT_EQ(held_pose_sentence(matched), "") << "a camera that stands still may repeat its pose";
+}
+
 TEST(Scale, IsToldWhereItExplainsTheError) {
   Trajectory truth, estimate;
   for (const MatchedPose& pose : sound()) {

@@ -39,6 +39,11 @@ TEST(TextFile, EveryLineEndEndsALine) {
   EXPECT_THAT(texts_of(text_lines("1 a.png\r\r\n2 b.png\r\r\n")), two);
 }
 
+TEST(TextFile, QuotesAboutCellsAreNoPartOfThem) {
+  EXPECT_EQ(split_columns("\"1.5\",\"rgb/1.png\""), (std::vector<std::string_view>{"1.5", "rgb/1.png"}));
+  EXPECT_EQ(split_columns("\"1,5\" \""), (std::vector<std::string_view>{"\"1", "5\"", "\""}));
+}
+
 TEST(TextFile, Utf16WithAByteOrderMarkIsRead) {
   for (const bool big_endian : {false, true}) {
     EXPECT_THAT(texts_of(text_lines(utf16(u"# head\r\n1.5 rgb/a.png\r\n2 b\r\n", big_endian))),

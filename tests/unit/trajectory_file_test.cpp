@@ -36,6 +36,7 @@ TEST_F(TrajectoryFiles, AreReadWithAnySeparator) {
   expect_the_pose(read("1.5,0.25,-1.5,2,0.6,0,0,0.8\n"), 1.5);
   expect_the_pose(read("1.5, 0.25, -1.5, 2, 0.6, 0, 0, 0.8\r\n"), 1.5);
   expect_the_pose(read("1.5;0.25;-1.5;2;0.6;0;0;0.8\n"), 1.5);
+  expect_the_pose(read("\"1.5\",\"0.25\",\"-1.5\",\"2\",\"0.6\",\"0\",\"0\",\"0.8\"\n"), 1.5);
   expect_the_pose(read("1.5\t+0.25\t-1.5e0\t2\t0.6\t0\t0\t0.8"), 1.5);
 }
 
@@ -79,6 +80,40 @@ TEST_F(TrajectoryFiles, KittisMatricesHaveNoStamps) {
   EXPECT_EQ(file.poses[1].timestamp, 1.0);
   EXPECT_THAT(input_error_of([&] { (void)read("1 2 3 4 5 6 7 8 9 10 11 12\n"); }),
               HasSubstr("no rotation and translation"));
+}
+
+TEST_F(TrajectoryFiles, MatricesMayStandBehindAStamp) {
+  const std::string rows = "1 0 0 0.25 0 0.28 -0.96 -1.5 0 0.96 0.28 2";
+  const TrajectoryFile kitti = read("1.5 " + rows + "\n2.5 " + rows + "\n");
+  expect_the_pose(kitti, 1.5);
+  EXPECT_TRUE(kitti.has_stamps);
+  EXPECT_EQ(kitti.poses.size(), 2U);
+  // As many columns as EuRoC's, whose last nine are velocity and biases.
+  const TrajectoryFile whole = read("1.5 " + rows + " 0 0 0 1\n2.5 " + rows + " 0 0 0 1\n");
+  expect_the_pose(whole, 1.5);
+  EXPECT_TRUE(whole.has_stamps);
+  expect_the_pose(read("1.5, 0.25, -1.5, 2, 0.8, 0.6, 0, 0, 1, 2, 3, 0, 0, 0, 0, 0, 0\n"), 1.5);
+  // A first row that is cut off tells nothing.
+  const TrajectoryFile cut = read("0.5 1 0\n1.5 " + rows + " 0 0 0 1\n2.5 " + rows + " 0 0 0 1\n");
+  expect_the_pose(cut, 1.5);
+  EXPECT_THAT(cut.warnings, ElementsAre(HasSubstr("expected a stamp and the 16 numbers of a 4x4 matrix")));
+  // Thirteen numbers that are no matrix are none.
+  EXPECT_THROW(read("1 2 3 4 5 6 7 8 9 10 11 12 13\n"), InputError);
+}
+
+TEST_F(TrajectoryFiles, AMessagesStampGoesBeforeTheTimeOfRecording) {
+  expect_the_pose(
+      read("%time,field.header.seq,field.header.stamp,field.pose.position.x,field.pose.position.y,"
+           "field.pose.position.z,field.pose.orientation.x,field.pose.orientation.y,"
+           "field.pose.orientation.z,field.pose.orientation.w\n"
+           "1505000000,7,1500000000,0.25,-1.5,2,0.6,0,0,0.8\n"),
+      1500000000);
+  expect_the_pose(read("Time,header.seq,header.stamp.secs,header.stamp.nsecs,header.frame_id,pose.position.x,"
+                       "pose.position.y,pose.position.z,pose.orientation.x,pose.orientation.y,"
+                       "pose.orientation.z,pose.orientation.w\n"
+                       "1.505,7,1,500000000,world,0.25,-1.5,2,0.6,0,0,0.8\n"),
+                  1.5);
+  expect_the_pose(read("time,x,y,z,qx,qy,qz,qw\n1.5,0.25,-1.5,2,0.6,0,0,0.8\n"), 1.5);
 }
 
 TEST_F(TrajectoryFiles, ABadMatrixKeepsItsRowsPlace) {

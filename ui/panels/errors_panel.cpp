@@ -139,10 +139,12 @@ class ErrorsPanel final : public NamedPanel {
                            figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta),
                            figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta));
       }
-      return fmt::format("{}: RMSE {}, {}, ATE {:.3g} mm", name,
+      const AbsoluteTrajectoryError& ate = evaluation.ate;
+      return fmt::format("{}: RMSE {}, {}, ATE {}", name,
                          figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta),
                          figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
-                         1000.0 * evaluation.ate.translation_m.rmse);
+                         ate.why_none.empty() ? fmt::format("{:.3g} mm", 1000.0 * ate.translation_m.rmse)
+                                              : std::string("–"));
     };
     std::string text = figures(*session.run, session.run->name);
     if (session.baseline) text += ".  " + figures(*session.baseline, baseline_name(session));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/counted.hpp"
 #include "core/geometry/pixel_conventions.hpp"
 #include "core/inspect/feature_selection.hpp"
 #include "core/inspect/frame_view.hpp"
@@ -159,7 +160,7 @@ class FeaturesPanel final : public FramePanel {
     if (moment_ == FeatureMoment::kBefore) {
       add(FeatureFate::unmatched, record.features_kept);
       add(FeatureFate::removed, record.features_removed);
-      footer.caption = fmt::format("{}: {} features found", where, record.features_found);
+      footer.caption = fmt::format("{}: {} found", where, counted(record.features_found, "feature"));
       // Another program's own mask, if it has one, need not be what took its features out.
       if (record.measured.solving)
         footer.caption += fmt::format("; method {} removes those in its mask, {:.1f} % of the image.",

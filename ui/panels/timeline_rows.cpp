@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/counted.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/motion/figure_info.hpp"
@@ -65,12 +66,11 @@ void TimelineRows::marks(float top, float bottom) const {
                0.3F * height);
   paint_.signs(bookmarked_frames(session_.debug), Sign::kFlag, role_colour(Role::kWarning, theme), middle,
                0.42F * height);
-  paint_.value(
-      top,
-      hits.empty()
-          ? (tells_keyframes(session_) ? fmt::format("{} keyframes", model_.keyframes.size()) : std::string())
-          : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
-      frame_.theme.text);
+  paint_.value(top,
+               hits.empty() ? (tells_keyframes(session_) ? counted(model_.keyframes.size(), "keyframe")
+                                                         : std::string())
+                            : fmt::format("{} hit{}", hits.size(), hits.size() == 1 ? "" : "s"),
+               frame_.theme.text);
 }
 
 void TimelineRows::ghost(std::size_t index, float top, float bottom) const {

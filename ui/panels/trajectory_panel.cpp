@@ -232,6 +232,12 @@ class TrajectoryPanel final : public NamedPanel {
     if (clicked && which.index < session.frame_count) actions.go_to_frame = which.index;
   }
 
+  /// "12.3 mm"; of poses too few to be aligned there is none.
+  [[nodiscard]] static std::string ate_text(const TrajectoryEvaluation& evaluation) {
+    const AbsoluteTrajectoryError& ate = evaluation.ate;
+    return ate.why_none.empty() ? fmt::format("{:.1f} mm", 1000.0 * ate.translation_m.rmse) : "–";
+  }
+
   [[nodiscard]] static std::string alignment_text(const SessionView& session) {
     const std::size_t poses = session.run->trajectory.size();
     const auto& evaluation = session.run->evaluation;
@@ -244,13 +250,12 @@ class TrajectoryPanel final : public NamedPanel {
     std::string text = fmt::format(
         "{} pose{}, laid over the truth by a rigid motion without scale (Umeyama, {} pairs; moved {:.2f} m, "
         "turned {:.1f} "
-        "°). ATE {:.1f} mm RMSE",
+        "°). ATE {}{}",
         poses, poses == 1 ? "" : "s", evaluation.matched.size(),
-        session.alignment.truth_from_estimate.translation().norm(), degrees,
-        1000.0 * evaluation.ate.translation_m.rmse);
+        session.alignment.truth_from_estimate.translation().norm(), degrees, ate_text(evaluation),
+        evaluation.ate.why_none.empty() ? " RMSE" : "");
     if (session.baseline && !session.baseline->evaluation.matched.empty())
-      text += fmt::format(", {} {:.1f} mm", baseline_name(session),
-                          1000.0 * session.baseline->evaluation.ate.translation_m.rmse);
+      text += fmt::format(", {} {}", baseline_name(session), ate_text(session.baseline->evaluation));
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
     const auto& ghosts = session.debug.ghosts;
     const auto outside = std::count_if(ghosts.begin(), ghosts.end(), [](const auto& g) { return g.outside; });

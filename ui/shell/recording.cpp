@@ -28,7 +28,7 @@ class Words {
       : file_(file), line_(line), text_(std::move(text)) {}
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw InputError(fmt::format("{}, line {}: {}", file_, line_, why));
+    throw InputError(fmt::format("{}:{}: {}", file_, line_, why));
   }
 
   [[nodiscard]] bool more() {
@@ -248,9 +248,8 @@ void read_head(const std::string& line, const std::string& file) {
   const std::string head = fmt::format("{} {}", kHead, Recording::kVersion);
   if (line == head) return;
   if (line.rfind(kHead, 0) == 0)
-    throw InputError(
-        fmt::format("{}, line 1: is of another version ('{}'); expected '{}'", file, line, head));
-  throw InputError(fmt::format("{}, line 1: is no recording; expected '{}'", file, head));
+    throw InputError(fmt::format("{}:1: is of another version ('{}'); expected '{}'", file, line, head));
+  throw InputError(fmt::format("{}:1: is no recording; expected '{}'", file, head));
 }
 
 struct LineOf {

@@ -11,6 +11,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/run/removal_errors.hpp"
 #include "core/run/sweep.hpp"
@@ -268,7 +269,7 @@ void AppController::take_opened() {
     tell_recent();
     const FrameSource& source = *opened.place->source;
     fit_layout(source.camera().is_stereo());
-    workbench_.say(fmt::format("{}: {} frames", source.name(), source.size()));
+    workbench_.say(fmt::format("{}: {}", source.name(), counted(source.size(), "frame")));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
     for (const std::string& run : opened.place->runs_missing) workbench_.say(run, true);
     if (const auto& recorded = opened.place->options.recorded; recorded && !recorded->cut_short.empty())

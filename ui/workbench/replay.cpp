@@ -39,7 +39,7 @@ class Player {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw InputError(fmt::format("{}, line {}: {}", recording_.file, line_, why));
+    throw InputError(fmt::format("{}:{}: {}", recording_.file, line_, why));
   }
 
   void draw() {
@@ -183,7 +183,7 @@ void require_same_sequence(const Recording& recording, const FrameSource& source
   const bool name = start.sequence_name.empty() || start.sequence_name == source.name();
   const bool frames = start.sequence_frames == 0 || start.sequence_frames == source.size();
   if (name && frames) return;
-  throw InputError(fmt::format("{}, line {}: was recorded of '{}' with {} frames; this is '{}' with {}",
+  throw InputError(fmt::format("{}:{}: was recorded of '{}' with {} frames; this is '{}' with {}",
                                recording.file, start.sequence_line, start.sequence_name,
                                start.sequence_frames, source.name(), source.size()));
 }

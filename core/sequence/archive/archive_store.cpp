@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/sequence/archive/archive_index.hpp"
 #include "core/sequence/bag/byte_reader.hpp"
@@ -54,8 +55,8 @@ class Archive final : public FileStore {
     auto index = is_zip ? read_zip_index(file_) : read_tar_index(file_);
     if (!index) throw InputError(fmt::format("{}: is no archive that can be read", original_));
     if (index->is_cut)
-      warnings_.push_back(fmt::format("{}: is cut off or damaged; the {} files before that were read",
-                                      original_, index->files.size()));
+      warnings_.push_back(fmt::format("{}: is cut off or damaged; the {} before that were read", original_,
+                                      counted(index->files.size(), "file")));
     if (index->files.empty()) throw InputError(fmt::format("{}: is an archive without files", original_));
     files_ = std::move(index->files);
     for (const auto& [name, file] : files_) add_folders(name);

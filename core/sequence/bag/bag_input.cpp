@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/sequence/bag/bag_camera.hpp"
 #include "core/sequence/bag/bag_image.hpp"
@@ -148,8 +149,8 @@ class BagInput final : public SequenceInput {
     const std::size_t before = list.entries.size();
     list.entries.erase(std::unique(list.entries.begin(), list.entries.end(), same), list.entries.end());
     if (before > list.entries.size())
-      warnings.push_back(fmt::format("{}: {} message(s) repeat an earlier stamp and were dropped", list.path,
-                                     before - list.entries.size()));
+      warnings.push_back(fmt::format("{}: {} with an earlier one's stamp dropped", list.path,
+                                     counted(before - list.entries.size(), "message")));
   }
 
   /// The camera that a topic of images is said to be of.

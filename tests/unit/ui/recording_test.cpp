@@ -94,12 +94,12 @@ TEST(Recording, SizeIsAStartBeforeTheFirstEventAndOneAfterIt) {
 }
 
 TEST(Recording, SaysWhatIsWrongAndWhere) {
-  EXPECT_THAT(recording_complaint(""), HasSubstr("line 1: is no recording"));
-  EXPECT_THAT(recording_complaint("hello\nidle\n"), HasSubstr("line 1: is no recording"));
-  EXPECT_THAT(recording_complaint("stillpoint recording 7\n"), HasSubstr("line 1: is of another version"));
+  EXPECT_THAT(recording_complaint(""), HasSubstr(":1: is no recording"));
+  EXPECT_THAT(recording_complaint("hello\nidle\n"), HasSubstr(":1: is no recording"));
+  EXPECT_THAT(recording_complaint("stillpoint recording 7\n"), HasSubstr(":1: is of another version"));
   const auto of_line = [](const std::string& line) { return recording_complaint(kHead + ("idle\n" + line)); };
-  EXPECT_THAT(of_line("jump"), HasSubstr("a.txt, line 3: 'jump' is nothing that can happen"));
-  EXPECT_THAT(of_line("wait soon"), HasSubstr("line 3: expected seconds"));
+  EXPECT_THAT(of_line("jump"), HasSubstr("a.txt:3: 'jump' is nothing that can happen"));
+  EXPECT_THAT(of_line("wait soon"), HasSubstr(":3: expected seconds"));
   EXPECT_THAT(of_line("wait -1"), HasSubstr("found '-1'"));
   EXPECT_THAT(of_line("wait inf"), HasSubstr("found 'inf'"));
   EXPECT_THAT(of_line("wait"), HasSubstr("expected seconds after 'wait'"));
@@ -114,9 +114,9 @@ TEST(Recording, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(of_line("text \"\xC3\""), HasSubstr("not UTF-8"));
   EXPECT_THAT(of_line("size 0 0"), HasSubstr("a width from 16"));
   EXPECT_THAT(recording_complaint(std::string(kHead) + "look pink 1\n"),
-              HasSubstr("line 2: expected dark or light"));
+              HasSubstr(":2: expected dark or light"));
   EXPECT_THAT(recording_complaint(std::string(kHead) + "sequence many x\n"),
-              HasSubstr("line 2: expected a number of frames"));
+              HasSubstr(":2: expected a number of frames"));
 }
 
 class RecorderTest : public ::testing::Test {
