@@ -185,11 +185,8 @@ class Pictures {
       const std::string plots =
           plot_kinds_.empty() ? ""
                               : fmt::format(", and {} of plots and tables,", counted(plot_files_, "file"));
-      told = fmt::format(
-          "{}{} of {} written to {}
-          ", counted(files_, " image "), plots,
-          counted(frames_, "frame"),
-          folder_.string());
+      told = fmt::format("{}{} of {} written to {}\n", counted(files_, "image"), plots,
+                         counted(frames_, "frame"), folder_.string());
     }
     if (video_ && frames_ > 0) {
       video_->finish();
