@@ -13,6 +13,7 @@
 #include <set>
 
 #include "core/config.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/out_folder.hpp"
 #include "core/text_file.hpp"
@@ -92,10 +93,6 @@ std::vector<int> submissions(const fs::path& jobs) {
   for (const fs::directory_entry& entry : fs::directory_iterator(jobs, none))
     if (entry.path().extension() == ".sbatch") numbers.insert(std::atoi(entry.path().filename().c_str()));
   return {numbers.begin(), numbers.end()};
-}
-
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 /// The user's own options, which stand last, so that they have the last word.

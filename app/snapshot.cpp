@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 #include <future>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -15,14 +13,13 @@
 #include "app/open_source.hpp"
 #include "app/painter.hpp"
 #include "app/progress.hpp"
-#include "app/video_file.hpp"
+#include "app/snapshot_files.hpp"
 #include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/inspect/frame_ranges.hpp"
 #include "core/inspect/run_view.hpp"
 #include "core/median.hpp"
 #include "core/motion/methods.hpp"
-#include "core/out_folder.hpp"
 #include "core/run/condition.hpp"
 #include "core/run/method_needs.hpp"
 #include "ui/session/session.hpp"
@@ -32,8 +29,6 @@
 
 namespace stillpoint {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct SnapshotArguments {
   SourceArguments place;
@@ -144,82 +139,6 @@ bool show_stages(const PictureChoice& chosen) {
   return std::any_of(kShow.begin(), kShow.end(), [&](const char* name) { return chosen.draws(name); });
 }
 
-/// Where images go: files one by one, a video, or both.
-class Pictures {
- public:
-  /// @param size of a video's pictures @param step_s s between frames, mostly
-  Pictures(const SnapshotArguments& arguments, std::pair<int, int> size, double step_s)
-      : folder_(arguments.out), plot_kinds_(arguments.plots) {
-    if (!arguments.video.empty())
-      video_.emplace(arguments.video, cv::Size(size.first, size.second), arguments.fps, step_s,
-                     arguments.force);
-    if (arguments.out.empty()) return;
-    made_.emplace(folder_);
-    prepare_out_folder(folder_, {"snapshots.txt"}, arguments.force);
-  }
-
-  /// Packed and written beside the drawing of the next one.
-  void add(const SessionView& view, Painter& painter) {
-    painter.paint(view, [&](const Painter::Picture& picture) {
-      if (video_) video_->add(picture.image, view.current->frame.timestamp);
-      if (folder_.empty()) return;
-      const std::string frame = fmt::format("{:06d}_", view.current->index);
-      writer_.write(folder_ / (frame + picture.name + ".png"), picture.image);
-      ++files_;
-      write_plots(frame, picture);
-    });
-    list_ += fmt::format("{:06d} {:.6f} {}\n", view.current->index, view.current->frame.timestamp,
-                         to_string(view.current->record->status));
-    ++frames_;
-  }
-
-  [[nodiscard]] int frames() const { return frames_; }
-
-  /// Ends what was begun. @returns what was written, in a sentence
-  [[nodiscard]] std::string finish(const std::string& video_name) {
-    std::string told;
-    writer_.finish();
-    if (!folder_.empty()) {
-      // What was drawn, and the sign that this folder is ours.
-      write_text_file(folder_ / "snapshots.txt", "# frame, timestamp in s, status\n" + list_);
-      const std::string plots =
-          plot_kinds_.empty() ? ""
-                              : fmt::format(", and {} of plots and tables,", counted(plot_files_, "file"));
-      told = fmt::format("{}{} of {} written to {}\n", counted(files_, "image"), plots,
-                         counted(frames_, "frame"), folder_.string());
-    }
-    if (video_ && frames_ > 0) {
-      video_->finish();
-      told += fmt::format("video of {} written to {}\n", counted(frames_, "frame"), video_name);
-    }
-    return told;
-  }
-
- private:
-  /// A picture's plots and tables by its name and their own, in those kinds of file that each can be.
-  void write_plots(const std::string& frame, const Painter::Picture& picture) {
-    std::map<std::string, int> taken;  // how often a name was met in this picture
-    for (const FileOffer& offer : picture.offers) {
-      std::string name = fs::path(offer.name).stem().string();
-      if ((name + '_').rfind(picture.name + '_', 0) != 0) name = picture.name + '_' + name;
-      if (const int before = taken[name]++; before > 0) name += fmt::format("_{}", before + 1);
-      for (const std::string& kind : plot_kinds_) {
-        if (offer.endings.find('.' + kind) == std::string::npos) continue;
-        offer.write((folder_ / fmt::format("{}{}.{}", frame, name, kind)).string());
-        ++plot_files_;
-      }
-    }
-  }
-
-  fs::path folder_;
-  std::vector<std::string> plot_kinds_;  // "svg"
-  std::optional<NewFolders> made_;       // gone again where nothing comes to lie in them
-  std::optional<VideoFile> video_;
-  std::string list_;
-  int files_ = 0, plot_files_ = 0, frames_ = 0;
-  ImageWriter writer_;
-};
-
 /// The median time between two frames, s.
 double usual_step(const FrameSource& source) {
   std::vector<double> steps;
@@ -318,8 +237,9 @@ void snapshot(const SnapshotArguments& arguments) {
   place.options.catch_up = method_named(method).needs.keeps_state && show_stages(chosen);
   options.method = method;
   options.stereo = place.source->camera().is_stereo();
-  Pictures pictures(arguments, chosen.workbench ? options.workbench_size : options.panel_size,
-                    usual_step(*place.source));
+  SnapshotFiles pictures({arguments.out, arguments.plots, arguments.video, arguments.fps, arguments.force},
+                         chosen.workbench ? options.workbench_size : options.panel_size,
+                         usual_step(*place.source));
   const auto prepare = [&](Session& session) {
     if (!arguments.beside.empty()) session.request(request::StagesBeside{arguments.beside});
     add_compared(session, arguments, place.config);
@@ -358,7 +278,7 @@ void snapshot(const SnapshotArguments& arguments) {
     fmt::print(stderr, "stillpoint: warning: {}: no control could take {}\n", arguments.layout,
                fmt::join(left, ", "));
   without.tell(frames.size());
-  fmt::print("{}", pictures.finish(arguments.video));
+  fmt::print("{}", pictures.finish());
   throw_if_interrupted(
       fmt::format("stopped after {}; what was drawn is kept",
                   chosen_all ? fmt::format("{} of {}", pictures.frames(), counted(frames.size(), "frame"))

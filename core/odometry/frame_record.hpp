@@ -203,9 +203,11 @@ struct FrameOutline {
   int index = 0;
   FrameStatus status = FrameStatus::lost;
   bool estimated = false, keyframe = false;
-  bool remarked = false;         ///< remarks_on() the frame says something
-  bool removal_checked = false;  ///< FrameRecord::removal_check holds a pose
+  bool remarked = false;                 ///< remarks_on() the frame says something
+  bool removal_checked = false;          ///< FrameRecord::removal_check holds a pose
+  std::array<std::uint8_t, 7> unused{};  ///< so that no byte of what is put by was left unwritten
 };
+static_assert(sizeof(FrameOutline) == 48);
 using FrameOutlines = ChunkedList<FrameOutline>;
 
 [[nodiscard]] FrameOutline outline_of(const FrameRecord& record);
