@@ -231,6 +231,7 @@ void ablate(const AblateArguments& arguments) {
   const std::string& method = config.run.method;
   const std::vector<std::optional<Ingredient>> variants = variants_of(arguments, method_of(config));
   const auto sequences = open_all(arguments, config);
+  throw_if_among_data(arguments.out, arguments.sequences);
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"ablation.csv", kPlanName}, arguments.force || arguments.resume);
   if (arguments.work.given() || arguments.resume)

@@ -71,6 +71,19 @@ Config ConfigArguments::config() const {
 
 void throw_usage(const std::string& what) { throw CLI::ValidationError(what); }
 
+void throw_if_among_data(const std::string& out, const std::vector<std::string>& sequences) {
+  std::error_code none;
+  for (const std::string& sequence : sequences)
+    if (std::filesystem::equivalent(out, sequence, none) && !is_run_folder(sequence))
+      throw InputError(
+          fmt::format("--out {}: is the sequence itself; results need a folder of their own", out));
+}
+
+void throw_if_among_results(const std::string& out) {
+  if (is_run_folder(out))
+    throw InputError(fmt::format("{}: holds a finished run; a sequence needs a folder of its own", out));
+}
+
 void throw_if_no_pair(const Config& config) {
   if (const std::string why = why_no_pair(config); !why.empty()) throw InputError(why);
   if (const std::string why = why_no_outside_masks(config); !why.empty()) throw InputError(why);

@@ -36,6 +36,13 @@ struct ConfigArguments {
 /// is missing, unknown or out of range. What an option names, a file or a method, is refused by InputError.
 [[noreturn]] void throw_usage(const std::string& what);
 
+/// Results are kept apart from the data they are of. @param out empty = none are written
+/// @throws InputError where it is the folder of one of the sequences
+void throw_if_among_data(const std::string& out, const std::vector<std::string>& sequences);
+
+/// @throws InputError where a sequence is to be written into a finished run's folder
+void throw_if_among_results(const std::string& out);
+
 /// @throws InputError where the config's method cannot stand in front of its odometry, or lacks masks
 void throw_if_no_pair(const Config& config);
 

@@ -82,6 +82,7 @@ std::vector<OpenedSequence> open_all(const BenchmarkArguments& arguments, Config
          reading.open(where, config, {.depth = true, .oracle = wants_masks, .questioned = true}),
          reading.options(config)});
   }
+  throw_if_among_data(arguments.out, arguments.sequences);
   if (!arguments.out.empty())
     prepare_out_folder(arguments.out, {"table1.csv", "details.csv", "repeats.csv", kPlanName},
                        arguments.force || arguments.resume);

@@ -33,6 +33,7 @@ void export_sequence(const ExportArguments& arguments) {
   if (std::filesystem::equivalent(arguments.sequence, arguments.out, none))
     throw InputError(fmt::format(
         "--out {}: is the sequence itself, of which only the frames chosen would be left", arguments.out));
+  throw_if_among_results(arguments.out);
   const std::vector<int> frames = parse_frame_ranges(arguments.frames, source->size());
   ExportedFrames exported;
   {

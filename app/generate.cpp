@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "core/counted.hpp"
@@ -46,6 +47,7 @@ void choose_layout(const GenerateOptions& options, WriteOptions& write) {
 void generate(const GenerateOptions& options) {
   WriteOptions write;
   choose_layout(options, write);
+  throw_if_among_results(options.out);
   std::string kind = options.kind;
   if (options.stereo) kind += kStereoEnding;
   const auto sequence = make_generated_sequence(kind, options.frames, options.seed);

@@ -46,6 +46,7 @@ void import(const ImportArguments& arguments) {
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());
   throw_if_interrupted(stopped);
+  throw_if_among_data(arguments.out, {arguments.sequence});
   prepare_run_folder(arguments.out, arguments.force);
   write_outside_run(arguments.out, run, *source);
   RunReport report = report_on(run.run, *source);

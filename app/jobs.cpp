@@ -134,6 +134,7 @@ void throw_if_read_otherwise(const CellPlan& plan, const fs::path& folder) {
 void run_by_cells(const JobArguments& arguments, const CellPlan& plan, const fs::path& where, bool anew) {
   const fs::path folder = fs::absolute(where).lexically_normal();
   throw_if_queued(folder);
+  if (arguments.slurm) throw_if_no_jobs(folder);
   if (anew) remove_plan(folder);
   throw_if_read_otherwise(plan, folder);
   write_plan(folder, plan);

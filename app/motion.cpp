@@ -238,6 +238,7 @@ void run_sequence(const MotionOptions& options, const Config& config, const Meth
   if (frames.empty())
     throw InputError(fmt::format("{}: of its {} frames none of those chosen has a reference {} frames back",
                                  options.first, source->size(), gap));
+  throw_if_among_data(options.out, {options.first});
   MotionOutput output(options.out, options.force, options.all_rounds, method, judge.frames_back());
   describe_stand_in(options, method);
   int seen = 0;  // frames that a method with state has been shown

@@ -139,7 +139,7 @@ std::set<std::string> layer_ids(const StageLog& log) {
 MotionOutput::MotionOutput(const fs::path& folder, bool force, bool all_rounds, const MethodInfo& method,
                            int frames_back)
     : folder_(folder), all_rounds_(all_rounds), method_(method), frames_back_(frames_back) {
-  prepare_out_folder(folder, {"motion.csv", "motion.json"}, force);
+  prepare_out_folder(folder, {"motion.csv", "motion.json", "config.toml"}, force);
   if (fs::exists(folder / "motion.csv")) clear_earlier(folder, earlier_pictures(folder));
   csv_.open(folder / "motion.csv");
   csv_ << csv_heading(method) << '\n' << std::flush;

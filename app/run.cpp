@@ -80,6 +80,7 @@ void run(const RunArguments& arguments) {
   std::optional<SequenceOrigin> origin;
   std::optional<RecordsWriter> records;
   if (!arguments.out.empty()) {
+    throw_if_among_data(arguments.out, {arguments.sequence});
     prepare_run_folder(arguments.out, arguments.force);
     origin = origin_of(*source, arguments.sequence, reading.options(config));
     records.emplace(arguments.out, *origin, config);

@@ -177,9 +177,13 @@ int slurm_minutes(const std::string& time) {
   return minutes;
 }
 
+void throw_if_no_jobs(const fs::path& folder) {
+  throw_if_not_plain(folder);
+  (void)max_array_size();
+}
+
 void submit_cells(const fs::path& folder, const CellPlan& plan, const std::vector<int>& cells,
                   const SlurmOptions& options) {
-  throw_if_not_plain(folder);
   const auto largest = static_cast<std::size_t>(max_array_size());
   const std::size_t cells_a_task = (cells.size() + largest - 1) / largest;
   const std::size_t tasks = (cells.size() + cells_a_task - 1) / cells_a_task;

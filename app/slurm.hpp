@@ -19,6 +19,10 @@ struct SlurmOptions {
 /// @throws InputError where it is none
 [[nodiscard]] int slurm_minutes(const std::string& time);
 
+/// Asked before anything is written.
+/// @throws InputError where there is no Slurm with job arrays, or its scripts cannot name the folder
+void throw_if_no_jobs(const std::filesystem::path& folder);
+
 /// Submits cells of a plan as a job array and, after it, a job that merges. As many cells go one after
 /// another into a task as MaxArraySize asks for. Scripts, the list of tasks, the jobs' numbers and their logs
 /// are kept in the plan's folder, below `jobs`. What was submitted is printed.

@@ -237,6 +237,7 @@ void snapshot(const SnapshotArguments& arguments) {
   place.options.catch_up = method_named(method).needs.keeps_state && show_stages(chosen);
   options.method = method;
   options.stereo = place.source->camera().is_stereo();
+  throw_if_among_data(arguments.out, {arguments.place.place});
   SnapshotFiles pictures({arguments.out, arguments.plots, arguments.video, arguments.fps, arguments.force},
                          chosen.workbench ? options.workbench_size : options.panel_size,
                          usual_step(*place.source));

@@ -64,6 +64,7 @@ void sweep(const SweepArguments& arguments) {
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(arguments.frames.open(
         sequence, config, {.depth = true, .oracle = method_of(config).needs.true_mask, .questioned = true}));
+  throw_if_among_data(arguments.out, arguments.sequences);
   if (!arguments.out.empty()) prepare_out_folder(arguments.out, {"sweep.csv"}, arguments.force);
   SweepResults results;
   for (const auto& source : sources) {

@@ -21,8 +21,7 @@ h2 { font-size: 20px; margin: 40px 0 8px; padding-top: 14px; border-top: 1px sol
 h3 { font-size: 16px; margin: 26px 0 6px; }
 p { margin: 6px 0 10px; max-width: 86ch; }
 .dim { color: #5b6572; }
-nav { margin: 12px 0 0; }
-nav a { margin-right: 16px; }
+nav { display: flex; flex-wrap: wrap; gap: 2px 16px; margin: 12px 0 0; overflow-wrap: anywhere; }
 a { color: #00639c; }
 .scroll { overflow-x: auto; margin: 10px 0 14px; }
 table { border-collapse: collapse; font-size: 13.5px; line-height: 1.35; font-variant-numeric: tabular-nums; }

@@ -110,7 +110,9 @@ void add_report_command(CLI::App& app) {
   command->add_option("RUNS", arguments->runs, "Folders that `stillpoint run` or `benchmark` wrote")
       ->required();
   command->add_option("--out", arguments->out, "The page, one HTML file with its pictures in it")->required();
-  command->add_option("--worst", arguments->worst, "How many of each run's worst frames to show")
+  command
+      ->add_option("--worst", arguments->worst,
+                   "How many of each run's worst frames to show; each is 10 frames or more from a worse one")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   CLI::Option* interactive = command->add_flag("--interactive", arguments->interactive,

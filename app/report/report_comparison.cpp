@@ -179,7 +179,7 @@ std::string provenance(const std::vector<ReportGroup>& groups) {
       rows.push_back({{run.label},
                       {group.sequence},
                       {run.opened.source->camera().name},
-                      {run.result().config.run.odometry},
+                      {run.recorded().outside.empty() ? run.result().config.run.odometry : "its own"},
                       {run.report.hash},
                       {removal_text(run)},
                       {mask_text(run)}});

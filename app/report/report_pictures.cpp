@@ -156,6 +156,8 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
   const auto session = session_of_report(group, run, again);
   const double start = run.result().records.front().timestamp;
   std::string html = fmt::format("<h3>Worst frames of {}</h3>\n", escaped(run.label));
+  if (count > 1)
+    html += fmt::format("<p class=\"dim\">Each is {} frames or more from a worse one.</p>\n", kApart);
   for (const WorstFrame& frame : worst) {
     session->go_to(frame.index, [&](const FrameRecord&) {
       progress(fmt::format("{} ({}): stages of frame {}", group.sequence, run.label, frame.index));

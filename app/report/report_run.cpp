@@ -9,6 +9,7 @@
 
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/motion/methods.hpp"
 #include "core/odometry/engines.hpp"
@@ -33,6 +34,22 @@ void label_runs(ReportGroup& group) {
     if (methods[run.label] > 1 && name != run.label) run.label += fmt::format(" ({})", name);
     const int times = ++labels[run.label];
     if (times > 1) run.label += fmt::format(" {}", times);
+  }
+}
+
+/// Groups of one sequence's name are told apart by how many frames they are of, and where that is the same by
+/// number; why they do not stand together is said.
+void name_groups(std::vector<ReportGroup>& groups) {
+  std::map<std::string, int> names, taken;
+  for (const ReportGroup& group : groups) ++names[group.sequence];
+  for (ReportGroup& group : groups) {
+    if (names[group.sequence] < 2) continue;
+    group.warnings.push_back(fmt::format(
+        "Other runs here are of other frames of a sequence called {}; they stand apart, for errors "
+        "of different frames do not compare.",
+        group.sequence));
+    group.sequence += ", " + counted(group.runs.front().result().frames_in_sequence, "frame");
+    if (const int times = ++taken[group.sequence]; times > 1) group.sequence += fmt::format(" ({})", times);
   }
 }
 
@@ -75,6 +92,7 @@ std::vector<ReportGroup> open_report_runs(const std::vector<std::string>& folder
     group.runs.push_back(std::move(run));
   }
   for (ReportGroup& group : groups) label_runs(group);
+  name_groups(groups);
   return groups;
 }
 

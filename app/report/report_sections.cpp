@@ -184,10 +184,13 @@ std::string summary_table(const ReportGroup& group, int worst) {
 std::string stage_timings(const ReportGroup& group) {
   double widest = 1e-9;
   for (const ReportRun& run : group.runs) widest = std::max(widest, sum_of(run.report.speed.mean));
-  std::string html =
-      "<p class=\"dim\">Mean milliseconds a frame, decoding excluded. Motion detection of method "
-      "paper goes on beside feature extraction, so the stages may add up to more than the frame "
-      "takes.</p>\n<p>";
+  std::string html = "<p class=\"dim\">Mean milliseconds a frame, decoding excluded.";
+  if (std::any_of(group.runs.begin(), group.runs.end(),
+                  [](const ReportRun& run) { return run.report.method == "paper"; }))
+    html +=
+        " Motion detection of method paper goes on beside feature extraction, so the stages may add up to "
+        "more than the frame takes.";
+  html += "</p>\n<p>";
   for (const TimedStage& stage : kStages)
     html += fmt::format("<span class=\"key\" style=\"background:{}\"></span>{}", hex_of(stage.colour),
                         stage.name);

@@ -73,20 +73,13 @@ void FrameRecords::push_back(FrameRecord one) {
 FrameRecords FrameRecords::first(std::size_t count) const {
   FrameRecords some;
   static_cast<ChunkedList&>(some) = ChunkedList::first(count);
-  some.outlines_ = outlines().first(count);
+  some.outlines_ = outlines_.first(count);
   return some;
 }
 
 void FrameRecords::resize(std::size_t count) {
   if (count < size()) *this = first(count);
   while (size() < count) push_back({});
-}
-
-FrameOutlines FrameRecords::outlines() const {
-  if (!held_) return outlines_;
-  FrameOutlines made;
-  for (const FrameRecord& record : *this) made.push_back(outline_of(record));
-  return made;
 }
 
 }  // namespace stillpoint

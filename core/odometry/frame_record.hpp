@@ -240,22 +240,18 @@ class FrameRecords : public ChunkedList<FrameRecord> {
     change(record);
     outlines_.edit(i) = outline_of(record);
   }
-  /// One to be changed at any time, so that outlines are made anew from then on whenever they are asked for.
-  [[nodiscard]] FrameRecord& edit(std::size_t i) {
-    held_ = true;
-    return ChunkedList::edit(i);
-  }
 
-  /// One a record. A copy, which shares what it holds.
-  [[nodiscard]] FrameOutlines outlines() const;
+  /// One a record.
+  [[nodiscard]] const FrameOutlines& outlines() const { return outlines_; }
 
   [[nodiscard]] std::size_t held_bytes() const {
     return ChunkedList::held_bytes() + outlines_.held_bytes() - sizeof(outlines_);
   }
 
  private:
+  using ChunkedList::edit;  // by change() alone, which sees to the outline
+
   FrameOutlines outlines_;
-  bool held_ = false;  // somebody may change a record
 };
 
 }  // namespace stillpoint

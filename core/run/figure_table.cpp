@@ -30,12 +30,20 @@ double of_scores(const MeasuredFrame& row, double value) {
 }
 double time(double ms) { return ms > 0.0 ? ms : kUnknownFigure; }  // 0: not measured
 
-/// The error of the motion that ends at the record, or null. @param errors in order of time
-const RelativeError* motion_error(const std::vector<RelativeError>& errors, const FrameRecord& record) {
-  const auto at =
-      std::lower_bound(errors.begin(), errors.end(), record.timestamp - kSameTime,
-                       [](const RelativeError& error, double stamp) { return error.to_timestamp < stamp; });
-  return at != errors.end() && at->to_timestamp < record.timestamp + kSameTime ? &*at : nullptr;
+/// Of a frame among errors in order of time, or null. @param stamp the one of an error
+template <typename Error>
+const Error* error_at(const std::vector<Error>& errors, double Error::*stamp, const FrameOutline& frame) {
+  if (!frame.estimated) return nullptr;
+  const auto at = std::lower_bound(errors.begin(), errors.end(), frame.timestamp - kSameTime,
+                                   [stamp](const Error& error, double time) { return error.*stamp < time; });
+  return at != errors.end() && (*at).*stamp < frame.timestamp + kSameTime ? &*at : nullptr;
+}
+
+/// Of the motion that ends at the frame.
+double motion_error(const std::vector<RelativeError>& errors, const FrameOutline& frame,
+                    double RelativeError::*part) {
+  const RelativeError* error = error_at(errors, &RelativeError::to_timestamp, frame);
+  return error == nullptr ? kUnknownFigure : error->*part;
 }
 
 /// @param block 0 = position, 3 = rotation
@@ -44,26 +52,9 @@ double sigma_of(const FrameRecord& record, int block) {
   return record.estimated && sigma > 0 ? sigma : kUnknownFigure;
 }
 
-double rpe_frame(const MeasuredFrame& row, double RelativeError::*part) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
-  const RelativeError* error = motion_error(row.evaluation->rpe_frame.errors, row.record);
-  return error == nullptr ? kUnknownFigure : error->*part;
-}
-
-double rpe_second(const MeasuredFrame& row, double RelativeError::*part) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
-  const RelativeError* error = motion_error(row.evaluation->rpe_time.errors, row.record);
-  return error == nullptr ? kUnknownFigure : error->*part;
-}
-
-double ate(const MeasuredFrame& row) {
-  if (row.evaluation == nullptr || !row.record.estimated) return kUnknownFigure;
-  const auto& errors = row.evaluation->ate.errors;
-  const auto at =
-      std::lower_bound(errors.begin(), errors.end(), row.record.timestamp - kSameTime,
-                       [](const AbsoluteError& error, double stamp) { return error.timestamp < stamp; });
-  return at != errors.end() && at->timestamp < row.record.timestamp + kSameTime ? at->translation_m
-                                                                                : kUnknownFigure;
+double ate(const FrameOutline& frame, const TrajectoryEvaluation& evaluation) {
+  const AbsoluteError* error = error_at(evaluation.ate.errors, &AbsoluteError::timestamp, frame);
+  return error == nullptr ? kUnknownFigure : error->translation_m;
 }
 
 std::vector<FrameFigure> all_figures() {
@@ -109,94 +100,94 @@ std::vector<FrameFigure> all_figures() {
                 [](const MeasuredFrame& r) {
                   return of_part(&RecordParts::bundle, r, flag(r.record.bundle_iterations > 0));
                 }),
-      {{.name = "rpe",
-        .unit = metres,
-        .help = "error of the motion from the frame before, against ground truth",
-        .digits = 6,
-        .worse = high,
-        .title = "Step error",
-        .column = "rpe_frame_m"},
-       [](const MeasuredFrame& r) { return rpe_frame(r, &RelativeError::translation_m); },
-       false,
-       true},
-      {{.name = "rpe_deg",
-        .unit = degrees,
-        .help = "the same, rotation",
-        .worse = high,
-        .title = "Step rotation",
-        .column = "rpe_frame_deg"},
-       [](const MeasuredFrame& r) { return rpe_frame(r, &RelativeError::rotation_deg); },
-       false,
-       true},
-      {{.name = "rpe_1s",
-        .unit = metres,
-        .help = "error of the motion over the second that ends here",
-        .digits = 6,
-        .worse = high,
-        .title = "1 s error",
-        .column = "rpe_second_m"},
-       [](const MeasuredFrame& r) { return rpe_second(r, &RelativeError::translation_m); },
-       false,
-       true},
-      {{.name = "rpe_1s_deg",
-        .unit = degrees,
-        .help = "the same, rotation",
-        .worse = high,
-        .title = "1 s rotation",
-        .column = "rpe_second_deg"},
-       [](const MeasuredFrame& r) { return rpe_second(r, &RelativeError::rotation_deg); },
-       false,
-       true},
-      {{.name = "ate",
-        .unit = metres,
-        .help = "distance from ground truth after alignment of the whole trajectory",
-        .digits = 6,
-        .worse = high,
-        .title = "Absolute error",
-        .column = "ate_m"},
-       [](const MeasuredFrame& r) { return ate(r); },
-       false,
-       true},
-      {{.name = "step",
-        .unit = metres,
-        .help = "error of the step from the pose before; this and the next three need run.check_removal",
-        .digits = 6,
-        .worse = high,
-        .title = "Step, with removal",
-        .column = "step_m"},
-       [](const MeasuredFrame& r) { return r.removal->with_removal_m; },
-       true},
-      {{.name = "step_without",
-        .unit = metres,
-        .help = "the same step solved without removal",
-        .digits = 6,
-        .worse = high,
-        .title = "Step, without removal",
-        .column = "step_without_m"},
-       [](const MeasuredFrame& r) { return r.removal->without_removal_m; },
-       true},
-      {{.name = "step_oracle",
-        .unit = metres,
-        .help = "the same step solved with the ground-truth mask",
-        .digits = 6,
-        .worse = high,
-        .title = "Step, ground-truth mask",
-        .column = "step_oracle_m",
-        .old_name = "step_told"},
-       [](const MeasuredFrame& r) { return r.removal->oracle_m; },
-       true},
-      {{.name = "widened",
-        .help = "the position's standard deviation, as many times as with nothing removed: information that "
+      {.info = {.name = "rpe",
+                .unit = metres,
+                .help = "error of the motion from the frame before, against ground truth",
+                .digits = 6,
+                .worse = high,
+                .title = "Step error",
+                .column = "rpe_frame_m"},
+       .of_evaluation =
+           [](const FrameOutline& frame, const TrajectoryEvaluation& of) {
+             return motion_error(of.rpe_frame.errors, frame, &RelativeError::translation_m);
+           }},
+      {.info = {.name = "rpe_deg",
+                .unit = degrees,
+                .help = "the same, rotation",
+                .worse = high,
+                .title = "Step rotation",
+                .column = "rpe_frame_deg"},
+       .of_evaluation =
+           [](const FrameOutline& frame, const TrajectoryEvaluation& of) {
+             return motion_error(of.rpe_frame.errors, frame, &RelativeError::rotation_deg);
+           }},
+      {.info = {.name = "rpe_1s",
+                .unit = metres,
+                .help = "error of the motion over the second that ends here",
+                .digits = 6,
+                .worse = high,
+                .title = "1 s error",
+                .column = "rpe_second_m"},
+       .of_evaluation =
+           [](const FrameOutline& frame, const TrajectoryEvaluation& of) {
+             return motion_error(of.rpe_time.errors, frame, &RelativeError::translation_m);
+           }},
+      {.info = {.name = "rpe_1s_deg",
+                .unit = degrees,
+                .help = "the same, rotation",
+                .worse = high,
+                .title = "1 s rotation",
+                .column = "rpe_second_deg"},
+       .of_evaluation =
+           [](const FrameOutline& frame, const TrajectoryEvaluation& of) {
+             return motion_error(of.rpe_time.errors, frame, &RelativeError::rotation_deg);
+           }},
+      {.info = {.name = "ate",
+                .unit = metres,
+                .help = "distance from ground truth after alignment of the whole trajectory",
+                .digits = 6,
+                .worse = high,
+                .title = "Absolute error",
+                .column = "ate_m"},
+       .of_evaluation = ate},
+      {.info = {.name = "step",
+                .unit = metres,
+                .help =
+                    "error of the step from the pose before; this and the next three need run.check_removal",
+                .digits = 6,
+                .worse = high,
+                .title = "Step, with removal",
+                .column = "step_m"},
+       .of_removal = [](const RemovalError& error) { return error.with_removal_m; }},
+      {.info = {.name = "step_without",
+                .unit = metres,
+                .help = "the same step solved without removal",
+                .digits = 6,
+                .worse = high,
+                .title = "Step, without removal",
+                .column = "step_without_m"},
+       .of_removal = [](const RemovalError& error) { return error.without_removal_m; }},
+      {.info = {.name = "step_oracle",
+                .unit = metres,
+                .help = "the same step solved with the ground-truth mask",
+                .digits = 6,
+                .worse = high,
+                .title = "Step, ground-truth mask",
+                .column = "step_oracle_m",
+                .old_name = "step_told"},
+       .of_removal = [](const RemovalError& error) { return error.oracle_m; }},
+      {.info =
+           {.name = "widened",
+            .help =
+                "the position's standard deviation, as many times as with nothing removed: information that "
                 "removal cost",
-        .digits = 3,
-        .worse = high,
-        .title = "Position σ, by removal",
-        .column = "sigma_by_removal"},
-       [](const MeasuredFrame& r) { return r.removal->widened; },
-       true},
-      {{.name = "hurt", .unit = truth, .help = "removal made the step worse", .digits = 0},
-       [](const MeasuredFrame& r) { return flag(r.removal->hurt); },
-       true},
+            .digits = 3,
+            .worse = high,
+            .title = "Position σ, by removal",
+            .column = "sigma_by_removal"},
+       .of_removal = [](const RemovalError& error) { return error.widened; }},
+      {.info = {.name = "hurt", .unit = truth, .help = "removal made the step worse", .digits = 0},
+       .of_removal = [](const RemovalError& error) { return flag(error.hurt); }},
       {{.name = "mask",
         .unit = share,
         .help = "of the image, classified as dynamic",

@@ -13,21 +13,24 @@ namespace stillpoint {
 /// What a figure is where it is not known.
 inline constexpr double kUnknownFigure = std::numeric_limits<double>::quiet_NaN();
 
-/// All that is known of one frame of a run.
+/// What a run leaves behind of one frame.
 struct MeasuredFrame {
   const FrameRecord& record;
   const FrameScores& scores;
-  const TrajectoryEvaluation* evaluation = nullptr;  ///< null where there is no ground truth
-  const RemovalError* removal = nullptr;             ///< null where the frame was not checked
 };
 
-/// A figure and where it comes from.
+/// A figure and where it comes from: one of three, or by its name among those that a method measured
+/// (FrameRecord::motion_figures). Each tells kUnknownFigure where it is not known.
 struct FrameFigure {
   FigureInfo info;
-  double (*of)(const MeasuredFrame&) = nullptr;  ///< null: a method's own, found by its name. Of removal and
-                                                 ///< evaluation it asks no more of a record than its outline
-  bool of_removal = false;                       ///< known of frames that were checked alone
-  bool of_evaluation = false;  ///< by MeasuredFrame::evaluation, which all frames together make
+  double (*of_frame)(const MeasuredFrame&) = nullptr;
+  /// By the errors of all poses: of its frame it asks no more than the outline, so that records that are put
+  /// by stay there.
+  double (*of_evaluation)(const FrameOutline&, const TrajectoryEvaluation&) = nullptr;
+  double (*of_removal)(const RemovalError&) = nullptr;  ///< of frames that were checked alone
+
+  [[nodiscard]] bool is_of_method() const { return !of_frame && !of_evaluation && !of_removal; }
+  [[nodiscard]] bool is_of_errors() const { return of_evaluation || of_removal; }
 };
 
 /// Every figure there is, each once: those of any run, then those that only one method measures.

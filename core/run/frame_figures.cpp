@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <unordered_map>
 
@@ -13,10 +14,9 @@
 namespace stillpoint {
 namespace {
 
-/// A figure of one frame; NaN where it is not known.
+/// A figure that record and scores tell; NaN where it is not known.
 double value_of(const FrameFigure& figure, const MeasuredFrame& row) {
-  if (figure.of_removal && row.removal == nullptr) return kUnknownFigure;
-  if (figure.of != nullptr) return figure.of(row);
+  if (figure.of_frame != nullptr) return figure.of_frame(row);
   for (const MotionFigure& one : row.record.motion_figures)
     if (one.name == figure.info.name) return one.value;
   return kUnknownFigure;
@@ -32,15 +32,18 @@ RemovalErrors removal_of(const MeasuredFrames& frames) {
   return errors;
 }
 
-const RemovalError* error_of(const RemovalErrors& removal, int frame) {
-  const auto checked = removal.find(frame);
-  return checked == removal.end() ? nullptr : &checked->second;
+/// A figure that errors tell; NaN where it is not known. @param evaluation may be null
+double value_of(const FrameFigure& figure, const FrameOutline& frame, const TrajectoryEvaluation* evaluation,
+                const RemovalErrors& removal) {
+  if (figure.of_evaluation != nullptr)
+    return evaluation != nullptr ? figure.of_evaluation(frame, *evaluation) : kUnknownFigure;
+  const auto checked = removal.find(frame.index);
+  return checked != removal.end() ? figure.of_removal(checked->second) : kUnknownFigure;
 }
 
 /// @param from row to begin with
 template <typename Take>
-void walk(const MeasuredFrames& frames, const RemovalErrors& removal, const Take& take,
-          std::size_t from = 0) {
+void walk(const MeasuredFrames& frames, const Take& take, std::size_t from = 0) {
   static const FrameScores none;
   static const ScoreList no_scores;
   const ScoreList& scores = frames.scores != nullptr ? *frames.scores : no_scores;
@@ -48,23 +51,27 @@ void walk(const MeasuredFrames& frames, const RemovalErrors& removal, const Take
   const auto end = frames.records.end();
   for (auto record = frames.records.begin() + static_cast<std::ptrdiff_t>(from); record != end; ++record) {
     const bool scored = score != scores.end();
-    take(MeasuredFrame{*record, scored ? *score : none, frames.evaluation, error_of(removal, record->index)});
+    take(MeasuredFrame{*record, scored ? *score : none});
     if (scored) ++score;
   }
 }
 
-/// Of removal or evaluation: records that are put by stay there.
-std::vector<double> values_by_outline(const FrameFigure& figure, const MeasuredFrames& frames) {
-  static const FrameScores none;
-  const RemovalErrors removal = figure.of_removal ? removal_of(frames) : RemovalErrors{};
+/// All of one frame. @param values one a figure of the table
+void figures_into(std::vector<double>& values, const MeasuredFrame& row,
+                  const TrajectoryEvaluation* evaluation, const RemovalErrors& removal) {
+  const FrameOutline outline = outline_of(row.record);
+  std::transform(
+      figure_table().begin(), figure_table().end(), values.begin(), [&](const FrameFigure& figure) {
+        return figure.is_of_errors() ? value_of(figure, outline, evaluation, removal) : value_of(figure, row);
+      });
+}
+
+std::vector<double> values_of_errors(const FrameFigure& figure, const MeasuredFrames& frames) {
+  const RemovalErrors removal = figure.of_removal != nullptr ? removal_of(frames) : RemovalErrors{};
   std::vector<double> values;
   values.reserve(frames.records.size());
-  FrameRecord record;
-  for (const FrameOutline& outline : frames.records.outlines()) {
-    record.index = outline.index, record.timestamp = outline.timestamp;
-    record.estimated = outline.estimated;
-    values.push_back(value_of(figure, {record, none, frames.evaluation, error_of(removal, outline.index)}));
-  }
+  for (const FrameOutline& frame : frames.records.outlines())
+    values.push_back(value_of(figure, frame, frames.evaluation, removal));
   return values;
 }
 
@@ -135,14 +142,13 @@ const std::string& column_head(const FigureInfo& figure) {
 }
 
 bool needs_evaluation(int figure) {
-  const FrameFigure& one = figure_table().at(static_cast<std::size_t>(figure));
-  return one.of_evaluation || one.of_removal;
+  return figure_table().at(static_cast<std::size_t>(figure)).is_of_errors();
 }
 
 int first_method_figure() {
   const auto& all = figure_table();
-  const auto is_of_method = [](const FrameFigure& figure) { return figure.of == nullptr; };
-  return static_cast<int>(std::find_if(all.begin(), all.end(), is_of_method) - all.begin());
+  return static_cast<int>(std::find_if(all.begin(), all.end(), std::mem_fn(&FrameFigure::is_of_method)) -
+                          all.begin());
 }
 
 int frame_figure(std::string_view name) {
@@ -156,11 +162,11 @@ int frame_figure(std::string_view name) {
 
 std::vector<double> frame_figure_values(const MeasuredFrames& frames, int figure) {
   const FrameFigure& wanted = figure_table().at(static_cast<std::size_t>(figure));
-  if (needs_evaluation(figure)) return values_by_outline(wanted, frames);
+  if (wanted.is_of_errors()) return values_of_errors(wanted, frames);
   if (frames.columns != nullptr) return frames.columns->values(frames, figure);
   std::vector<double> values;
   values.reserve(frames.records.size());
-  walk(frames, {}, [&](const MeasuredFrame& row) { values.push_back(value_of(wanted, row)); });
+  walk(frames, [&](const MeasuredFrame& row) { values.push_back(value_of(wanted, row)); });
   return values;
 }
 
@@ -175,7 +181,7 @@ std::vector<double> FigureColumns::values(const MeasuredFrames& frames, int figu
     if (one.size() == known) behind.emplace_back(&figure_table().at(static_cast<std::size_t>(of)), &one);
   if (known < rows)
     walk(
-        frames, {},
+        frames,
         [&](const MeasuredFrame& row) {
           for (const auto& [of, one] : behind) one->push_back(value_of(*of, row));
         },
@@ -187,19 +193,17 @@ std::vector<double> figures_of_frame(const MeasuredFrames& frames, std::size_t r
   const FrameRecord record = frames.records[row];
   const FrameScores scores =
       frames.scores != nullptr && row < frames.scores->size() ? (*frames.scores)[row] : FrameScores{};
-  std::vector<double> values;
-  values.reserve(figure_table().size());
-  for (const FrameFigure& figure : figure_table())
-    values.push_back(value_of(figure, {record, scores, frames.evaluation, nullptr}));
+  std::vector<double> values(figure_table().size());
+  figures_into(values, {record, scores}, frames.evaluation, {});
   return values;
 }
 
 void walk_figures(const MeasuredFrames& frames,
                   const std::function<void(const FrameRecord&, const std::vector<double>&)>& take) {
   std::vector<double> values(figure_table().size());
-  walk(frames, removal_of(frames), [&](const MeasuredFrame& row) {
-    std::transform(figure_table().begin(), figure_table().end(), values.begin(),
-                   [&row](const FrameFigure& figure) { return value_of(figure, row); });
+  const RemovalErrors removal = removal_of(frames);
+  walk(frames, [&](const MeasuredFrame& row) {
+    figures_into(values, row, frames.evaluation, removal);
     take(row.record, values);
   });
 }
@@ -230,7 +234,7 @@ FrameFigures::FrameFigures(const MeasuredFrames& frames, const std::set<int>& fi
   if (in_one_pass.empty()) return;
   for (const int figure : in_one_pass)
     columns_[static_cast<std::size_t>(figure)].reserve(frames.records.size());
-  walk(frames, {}, [&](const MeasuredFrame& row) {
+  walk(frames, [&](const MeasuredFrame& row) {
     for (const int figure : in_one_pass)
       columns_[static_cast<std::size_t>(figure)].push_back(
           value_of(figure_table()[static_cast<std::size_t>(figure)], row));

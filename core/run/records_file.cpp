@@ -1,6 +1,9 @@
 #include "core/run/records_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,12 +17,26 @@
 
 namespace stillpoint {
 
+RecordsWriter::Lock::Lock(const std::filesystem::path& path)
+    : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  // Disks that know no locks say something else, and are written to all the same.
+  if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(file_);
+  throw InputError(fmt::format("{}: another run is being written there", path.parent_path().string()));
+}
+
+RecordsWriter::Lock::~Lock() {
+  if (file_ >= 0) ::close(file_);
+}
+
 RecordsWriter::RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin,
                              const Config& config, const std::string& outside, bool masks)
     : path_(run_folder / kRecordsName) {
   std::error_code none;
   if (std::filesystem::exists(run_folder / kSummaryName, none)) beside_.emplace(path_);
-  file_.open(beside_ ? beside_->while_written() : path_, std::ios::binary);
+  const std::filesystem::path written = beside_ ? beside_->while_written() : path_;
+  lock_.emplace(written);
+  file_.open(written, std::ios::binary);
   if (!file_)
     throw InputError(fmt::format("{}: cannot be written ({})", path_.string(), std::strerror(errno)));
   put(records_head());

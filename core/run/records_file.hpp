@@ -47,7 +47,7 @@ inline constexpr const char* kRecordsName = "records.bin";
 /// stays until keep().
 class RecordsWriter {
  public:
-  /// @throws InputError when the file cannot be made
+  /// @throws InputError when the file cannot be made, or another run is being written there
   /// @param outside RecordedRun::outside
   /// @param masks whether that program left masks
   RecordsWriter(const std::filesystem::path& run_folder, const SequenceOrigin& origin, const Config& config,
@@ -69,8 +69,22 @@ class RecordsWriter {
   void put(const std::vector<std::uint8_t>& bytes);
   void put_tables(const FrameRecords& records);
 
+  /// Of a file that one run at a time may write.
+  class Lock {
+   public:
+    /// @throws InputError when another has it
+    explicit Lock(const std::filesystem::path& path);
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+   private:
+    int file_;  // descriptor; negative where it could not be opened
+  };
+
   std::filesystem::path path_;
   std::optional<WholeFile> beside_;
+  std::optional<Lock> lock_;
   std::ofstream file_;
   ByteStreamWriter content_;
   std::uint64_t end_ = 0;              // of what was written

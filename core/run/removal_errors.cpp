@@ -47,7 +47,7 @@ void judge(std::vector<RemovalError>& errors) {
 
 std::vector<RemovalError> removal_errors(const FrameRecords& records,
                                          const TrajectoryEvaluation& evaluation) {
-  const FrameOutlines outlines = records.outlines();
+  const FrameOutlines& outlines = records.outlines();
   if (std::none_of(outlines.begin(), outlines.end(),
                    [](const FrameOutline& one) { return one.removal_checked; }))
     return {};

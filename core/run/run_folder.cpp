@@ -55,7 +55,10 @@ void write_frames_csv(const RunResult& run, const RunReport& report, std::ostrea
 }  // namespace
 
 void prepare_run_folder(const std::filesystem::path& folder, bool force) {
-  prepare_out_folder(folder, {kSummaryName, "trajectory.txt", kRecordsName}, force);
+  prepare_out_folder(folder,
+                     {kSummaryName, "trajectory.txt", kRecordsName, "config.toml", "frames.csv",
+                      "trajectory_live.txt", "keyframes.txt", "map.ply", "keyframes.ply"},
+                     force);
 }
 
 void write_run(const std::filesystem::path& folder, const RunResult& run, const RunReport& report,

@@ -11,8 +11,7 @@ namespace stillpoint {
 
 /// Makes the folder a run is written to, before the run, so that nobody waits for frames to learn it cannot
 /// be.
-/// @throws InputError as prepare_out_folder does; `summary.json` and `trajectory.txt` are signs of an earlier
-/// run
+/// @throws InputError as prepare_out_folder does: what a run writes is not written over unless `force` is set
 void prepare_run_folder(const std::filesystem::path& folder, bool force);
 
 inline constexpr const char* kSummaryName = "summary.json";

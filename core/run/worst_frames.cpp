@@ -28,7 +28,7 @@ int usual_figure(const MeasuredFrames& frames) {
 std::vector<WorstFrame> worst_frames(const MeasuredFrames& frames, int figure, int apart, std::size_t most) {
   const FigureInfo& info = frame_figure_infos().at(static_cast<std::size_t>(figure));
   std::vector<WorstFrame> worst;
-  const FrameOutlines outlines = frames.records.outlines();
+  const FrameOutlines& outlines = frames.records.outlines();
   bool posed = true;  // the frame before
   std::size_t row = 0;
   for (const FrameOutline& frame : outlines) {

@@ -171,6 +171,42 @@ TEST_F(BadStart, EarlierRunsAreKeptWithoutForce) {
                       "killed: holds earlier results (records.bin); --force overwrites them");
 }
 
+TEST_F(BadStart, SomebodysOwnConfigIsKeptWithoutForce) {
+  const std::string mine = "# mine\n[run]\nmethod = \"none\"\n";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", sequence.path()},
+                                                {"motion", sequence.path("rgb"), "--method", "yi2013"}}) {
+    sequence.folder.write("out/config.toml", mine);
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--out", sequence.path("out")});
+    expect_one_sentence(run_cli(all), "out: holds earlier results (config.toml); --force overwrites them");
+    EXPECT_EQ(sequence.folder.read("out/config.toml"), mine);
+  }
+}
+
+TEST_F(BadStart, ResultsAndSequencesAreKeptApart) {
+  const std::string beside = sequence.path(), sentence = "is the sequence itself";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", beside},
+                                                {"benchmark", beside, "--methods", "none"},
+                                                {"sweep", "--parameter", "paper.border_px=1:2:2", beside},
+                                                {"ablate", beside},
+                                                {"snapshot", beside, "--frames", "0"}}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--force", "--out", beside + "/."});
+    expect_one_sentence(run_cli(all), sentence);
+  }
+  EXPECT_FALSE(std::filesystem::exists(sequence.path("summary.json")));
+  ASSERT_EQ(run_cli({"run", beside, "--out", sequence.path("run")}).exit_code, 0);
+  expect_one_sentence(
+      run_cli({"import", beside, "own=" + sequence.path("run/trajectory.txt"), "--force", "--out", beside}),
+      sentence);
+  const std::string run = sequence.path("run");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"generate", "room", "--frames", "2", "--force", "--out", run},
+        {"export", beside, "--force", "--out", run}})
+    expect_one_sentence(run_cli(words), "run: holds a finished run; a sequence needs a folder of its own");
+  EXPECT_FALSE(std::filesystem::exists(run + "/rgb"));
+}
+
 TEST_F(BadStart, EarlierTablesAreKeptWithoutForce) {
   const std::vector<std::string> run = {"benchmark", sequence.path(), "--methods",
                                         "none",      "--out",         sequence.path("out")};

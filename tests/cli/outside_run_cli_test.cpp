@@ -105,6 +105,7 @@ TEST_F(OutsideRunCli, AReportTellsItsDoubtAndNoConfiguration) {
   const std::string both = page({"own", "theirs"});
   EXPECT_THAT(both, HasSubstr("theirs: 5 of its poses are the same number for number as the one before"));
   EXPECT_THAT(both, HasSubstr("All of none, as TOML"));
+  EXPECT_THAT(both, HasSubstr("<td class=\"text\">its own</td>")) << "its odometry is none of ours";
   EXPECT_THAT(both, Not(HasSubstr("All of theirs, as TOML")));
   EXPECT_THAT(page({"theirs"}), HasSubstr("None: these runs are other programs'."));
 }

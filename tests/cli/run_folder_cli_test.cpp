@@ -148,6 +148,7 @@ TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
                            ">stillpoint<",
                            "Worst frames of none",
                            "Worst frames of stillpoint",
+                           "Mean milliseconds a frame, decoding excluded.</p>",
                            "Error over time",
                            "Trajectories",
                            "Stage timings",
@@ -224,6 +225,18 @@ TEST_F(RunFolder, OpensInAWindow) {
   EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
   EXPECT_FALSE(result.by_signal);
   EXPECT_THAT(out_.read("config/stillpoint/settings.json"), HasSubstr("runs/stillpoint"));
+}
+
+TEST_F(RunFolder, AReportTellsWhyRunsOfOneSequenceStandApart) {
+  for (const char* frames : {"5", "8"})
+    ASSERT_EQ(run_cli({"run", sequence_.path(), "--frames", frames, "--out", out_.path(frames)}).exit_code,
+              0);
+  const CliResult made = run_cli({"report", out_.path("5"), out_.path("8"), "--out", page(), "--worst", "2"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string html = out_.read("report.html");
+  for (const char* part : {", 5 frames</a>", ", 8 frames</a>", ", 5 frames</h2>", "they stand apart",
+                           "Each is 10 frames or more from a worse one."})
+    EXPECT_THAT(html, HasSubstr(part));
 }
 
 TEST(Report, ForeignTextIsNoMarkup) {

@@ -166,6 +166,10 @@ TEST_F(StandIns, WhatSlurmRefusesIsToldInASentence) {
   {
     const Variable nowhere("PATH", bin_.path());
     expect_one_sentence(run_cli(words({"--force"})), "there is no scontrol here");
+    std::vector<std::string> elsewhere = words();
+    elsewhere[7] = sequence_.path("elsewhere");
+    expect_one_sentence(run_cli(elsewhere), "there is no scontrol here");
+    EXPECT_FALSE(fs::exists(elsewhere[7])) << "nothing is left that the next would take for results";
   }
   std::vector<std::string> odd = words();
   odd[7] = sequence_.path("100 %");

@@ -46,7 +46,7 @@ SessionView without_truth() {
   auto run = std::make_shared<RunView>(*view.run), baseline = std::make_shared<RunView>(*view.baseline);
   run->evaluation = baseline->evaluation = {};
   // The record belongs to the run shown.
-  current->record = &run->records.edit(run->records.size() - 1);
+  current->record = record_in(*run, run->records.size() - 1);
   view.run = run;
   view.baseline = baseline;
   view.ground_truth = {};
@@ -189,7 +189,8 @@ TEST(Panels, TimingsHaveTheGhostsBesideTheRun) {
   SessionView session = generated_example();
   const cv::Mat alone = stage.render(session);
   auto run = std::make_shared<RunView>(*session.run);
-  for (std::size_t i = 0; i < run->records.size(); ++i) run->records.edit(i).ms.total *= 2.0;
+  for (std::size_t i = 0; i < run->records.size(); ++i)
+    run->records.change(i, [](FrameRecord& record) { record.ms.total *= 2.0; });
   GhostView ghost;
   ghost.name = "ghost";
   ghost.from = 4;

@@ -34,14 +34,14 @@ SessionView with_trajectory(SessionView session) {
   ghost.name = "orb3";
   ghost.outside = true;
   auto run = std::make_shared<RunView>(*session.run);
-  for (std::size_t i = 0; i < run->records.size(); ++i) {
-    FrameRecord& record = run->records.edit(i);
-    record.features.clear();
-    record.measured = poses_alone();
-  }
+  for (std::size_t i = 0; i < run->records.size(); ++i)
+    run->records.change(i, [](FrameRecord& record) {
+      record.features.clear();
+      record.measured = poses_alone();
+    });
   auto current = std::make_shared<FrameView>(*session.current);
   current->mask = cv::Mat();
-  current->record = &run->records.edit(static_cast<std::size_t>(current->index));
+  current->record = record_in(*run, static_cast<std::size_t>(current->index));
   ghost.run = run;
   ghost.current = current;
   session.debug.ghosts.push_back(ghost);

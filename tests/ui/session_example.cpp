@@ -266,6 +266,10 @@ StillpointTrace handmade_depth_motion() {
 
 }  // namespace
 
+const FrameRecord* record_in(const RunView& run, std::size_t row) {
+  return &*(run.records.begin() + static_cast<std::ptrdiff_t>(row));
+}
+
 SessionView handmade_example() {
   SessionView view;
   auto run = handmade_run("stillpoint", 1.0);
@@ -300,7 +304,7 @@ SessionView handmade_example() {
   current->mask = own.judged.mask;
   current->truth.moving = cv::Mat::zeros(240, 320, CV_8UC1);
   cv::circle(current->truth.moving, {196, 120}, 45, 255, cv::FILLED);
-  current->record = &run->records.edit(24);
+  current->record = record_in(*run, 24);
   view.title = "by hand";
   view.camera.width = 320;
   view.camera.height = 240;
@@ -324,7 +328,7 @@ SessionView handmade_example() {
   auto other = std::make_shared<FrameView>();
   other->index = 22;
   other->frame = handmade_frame(22);
-  other->record = &run->records.edit(22);
+  other->record = record_in(*run, 22);
   view.debug.other_is = OtherFrame::kept, view.debug.kept_frame = 22;
   view.debug.other = std::move(other);
   SweepView sweep{.range = {"paper.border_px", 1, 9, 5},
@@ -354,17 +358,17 @@ GhostView handmade_ghost(const SessionView& session, const std::string& name, in
   ghost.config.of<PaperConfig>().border_px = 7;
   auto run = handmade_run("stillpoint", millimetres);
   run->records = session.run->records;
-  for (std::size_t i = 0; i < run->records.size(); ++i) {
-    FrameRecord& record = run->records.edit(i);
-    if (record.index < parts) continue;
-    record.world_from_camera.translation().z() += 0.002 * (record.index - parts + 1);
-    record.inliers -= 40;
-    record.mask_share *= 0.5;
-  }
+  for (std::size_t i = 0; i < run->records.size(); ++i)
+    run->records.change(i, [parts](FrameRecord& record) {
+      if (record.index < parts) return;
+      record.world_from_camera.translation().z() += 0.002 * (record.index - parts + 1);
+      record.inliers -= 40;
+      record.mask_share *= 0.5;
+    });
   auto current = std::make_shared<FrameView>(*session.current);
   current->mask = cv::Mat(240, 320, CV_8UC1, cv::Scalar(0));
   cv::circle(current->mask, {220, 120}, 40, 255, cv::FILLED);
-  current->record = &run->records.edit(static_cast<std::size_t>(current->index));
+  current->record = record_in(*run, static_cast<std::size_t>(current->index));
   ghost.current = current;
   ghost.diverged = parts;
   ghost.run = run;
@@ -423,7 +427,7 @@ SessionView long_example(int frames, int worst) {
     run->records.push_back(record);
   }
   auto current = std::make_shared<FrameView>(*view.current);
-  current->record = &run->records.edit(24);
+  current->record = record_in(*run, 24);
   view.current = current;
   view.run = run;
   view.baseline = nullptr;

@@ -31,6 +31,9 @@ struct SessionExample {
 /// A run of as many frames as wanted, its figures going up and down; worst at `worst`.
 [[nodiscard]] SessionView long_example(int frames, int worst);
 
+/// One of a run's records, to be shown: it stays where it is until a record of the run is changed.
+[[nodiscard]] const FrameRecord* record_in(const RunView& run, std::size_t row);
+
 /// The names of all panels, in the order in which they are made.
 [[nodiscard]] std::vector<std::string> panel_names();
 

@@ -5,7 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 #include "core/geometry/schur_equations.hpp"
 #include "core/odometry/bundle_adjustment.hpp"
@@ -186,6 +187,11 @@ struct RandomSights {
   }
 };
 
+/// A view of it: columns are rows.
+cv::Mat as_symmetric(Eigen::MatrixXd& h) {
+  return {static_cast<int>(h.cols()), static_cast<int>(h.rows()), CV_64F, h.data()};
+}
+
 TEST(SchurEquations, StepAsTheWholeSystemDoes) {
   const RandomSights sights;
   SchurEquations equations;
@@ -202,7 +208,10 @@ TEST(SchurEquations, StepAsTheWholeSystemDoes) {
     Eigen::MatrixXd damped = h;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-9;
-    const Eigen::VectorXd expected = -damped.fullPivLu().solve(g);
+    Eigen::VectorXd expected(g.size());
+    cv::Mat solution(static_cast<int>(g.size()), 1, CV_64F, expected.data());
+    ASSERT_TRUE(cv::solve(as_symmetric(damped), -cv::Mat(static_cast<int>(g.size()), 1, CV_64F, g.data()),
+                          solution, cv::DECOMP_LU));
     for (int i = 0; i < RandomSights::kPoses; ++i)
       EXPECT_LT((step.poses[static_cast<std::size_t>(i)] - expected.segment<6>(6 * i)).norm(), kNear)
           << damping;

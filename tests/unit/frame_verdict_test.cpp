@@ -57,9 +57,9 @@ TEST(FrameVerdict, NamesInliersOnDynamicObjects) {
 TEST(FrameVerdict, WithoutMasksNamesWhatElseWasRecorded) {
   RunView run = run_with_a_bad_step();
   EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("nothing recorded explains it"));
-  run.records.edit(5).inliers = 22;
+  run.records.change(5, [](FrameRecord& record) { record.inliers = 22; });
   EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("the pose rests on 22 inliers, usually 60"));
-  run.records.edit(5).note = "little was left without what is dynamic";
+  run.records.change(5, [](FrameRecord& record) { record.note = "little was left without what is dynamic"; });
   EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("little was left"));
   EXPECT_THAT(frame_verdict(run, 5, {105}).sentence, HasSubstr("solved without removal, the step is better"));
   EXPECT_THAT(texts(frame_verdict(run, 5, {105})), testing::Contains("removal hurt"));
@@ -102,8 +102,10 @@ TEST(FrameVerdict, AmongAFewFramesNothingIsUsual) {
 
 TEST(FrameVerdict, AFrameWithoutAPoseSaysWhy) {
   RunView run = run_with_a_bad_step();
-  run.records.edit(4).status = FrameStatus::lost;
-  run.records.edit(4).note = "too few inliers";
+  run.records.change(4, [](FrameRecord& record) {
+    record.status = FrameStatus::lost;
+    record.note = "too few inliers";
+  });
   const FrameVerdict verdict = frame_verdict(run, 4);
   EXPECT_TRUE(verdict.bad);
   EXPECT_EQ(verdict.sentence, "No pose: too few inliers.");
@@ -113,7 +115,7 @@ TEST(FrameVerdict, AFrameWithoutAPoseSaysWhy) {
 TEST(FrameVerdict, WithoutGroundTruthGoesByInliers) {
   RunView run = run_with_a_bad_step();
   run.evaluation = {};
-  run.records.edit(7).inliers = 12;
+  run.records.change(7, [](FrameRecord& record) { record.inliers = 12; });
   const FrameVerdict verdict = frame_verdict(run, 7);
   EXPECT_TRUE(verdict.bad);
   EXPECT_THAT(texts(verdict), testing::Contains("Inliers 12, worst of 10"));
@@ -122,12 +124,12 @@ TEST(FrameVerdict, WithoutGroundTruthGoesByInliers) {
 
 TEST(FrameVerdict, TellsOfNoMaskWhereNobodyLeftOne) {
   RunView run = run_with_a_bad_step();
-  for (std::size_t i = 0; i < run.records.size(); ++i) {
-    FrameRecord& record = run.records.edit(i);
-    record.measured = poses_alone();
-    record.inliers = 0;
-    record.mask_share = 0.0;
-  }
+  for (std::size_t i = 0; i < run.records.size(); ++i)
+    run.records.change(i, [](FrameRecord& record) {
+      record.measured = poses_alone();
+      record.inliers = 0;
+      record.mask_share = 0.0;
+    });
   EXPECT_THAT(texts(frame_verdict(run, 5)), testing::ElementsAre("Step error 40.00 mm, worst of 9"));
   EXPECT_EQ(frame_verdict(run, 0).sentence, "The run begins here.");
 }

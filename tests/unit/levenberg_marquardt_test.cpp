@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <limits>
 
 namespace stillpoint {
@@ -31,7 +31,7 @@ struct Valley {
     const Eigen::Vector2d added = damping * h.diagonal();
     Eigen::Matrix2d damped = h;
     damped.diagonal() += added;
-    change = -damped.ldlt().solve(g);
+    change = -damped.inverse() * g;
     const double foreseen = added.dot(change.cwiseAbs2()) - g.dot(change);
     if (foreseen > 0) at += change;
     return foreseen;

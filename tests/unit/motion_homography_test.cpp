@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
+#include <opencv2/core.hpp>
 
 #include "core/motion/paper/homography.hpp"
 #include "tests/unit/motion_scene.hpp"
@@ -38,21 +38,22 @@ double corner_error_px(const cv::Matx33d& truth, const cv::Matx33d& estimate) {
 
 /// The direct linear transform in raw pixels: what Levenberg-Marquardt has to better.
 cv::Matx33d direct_linear_transform(const std::vector<Track>& tracks) {
-  Eigen::MatrixXd rows(2 * static_cast<Eigen::Index>(tracks.size()), 9);
-  Eigen::Index row = 0;
+  cv::Mat_<double> rows(0, 9);
   for (const Track& track : tracks) {
     const double x = track.from.x, y = track.from.y, u = track.to.x, v = track.to.y;
-    rows.row(row++) << x, y, 1, 0, 0, 0, -u * x, -u * y, -u;
-    rows.row(row++) << 0, 0, 0, x, y, 1, -v * x, -v * y, -v;
+    rows.push_back(cv::Mat(cv::Matx<double, 1, 9>(x, y, 1, 0, 0, 0, -u * x, -u * y, -u)));
+    rows.push_back(cv::Mat(cv::Matx<double, 1, 9>(0, 0, 0, x, y, 1, -v * x, -v * y, -v)));
   }
-  const Eigen::VectorXd h = rows.jacobiSvd(Eigen::ComputeThinV).matrixV().col(8);
-  return cv::Matx33d(h.data()) * (1.0 / h(8));
+  cv::Mat_<double> h;
+  cv::SVD::solveZ(rows, h);
+  return cv::Matx33d(h.ptr<double>()) * (1.0 / h(8));
 }
 
 TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     std::vector<Track> tracks = make_tracks(slight_motion(), 600, 240, 0.3, seed);
-    const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
+    const HomographyEstimate estimate =
+        estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
     ASSERT_TRUE(estimate.valid);
     // 360 good tracks of 0.3 px noise: a corner is known to about 0.3 * sqrt(8 / 720) * 3 = 0.1 px.
     EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.25);
@@ -67,7 +68,8 @@ TEST(Homography, RecoversAKnownOneFromNoisyTracksWithOutliers) {
 
 TEST(Homography, ExactTracksGiveTheExactHomography) {
   std::vector<Track> tracks = make_tracks(slight_motion(), 100, 0, 0.0, 4);
-  const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate =
+      estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 1e-3);  // Track's floats round at 1e-5 px
 }
@@ -111,7 +113,8 @@ TEST(Homography, RemovedTracksHaveNoSay) {
     other.removed = true;
     tracks.push_back(other);
   }
-  const HomographyEstimate estimate = estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
+  const HomographyEstimate estimate =
+      estimate_homography(tracks, kPairSize, PaperConfig{}, cv::Matx33d::eye());
   ASSERT_TRUE(estimate.valid);
   EXPECT_LT(corner_error_px(slight_motion(), estimate.matrix), 0.2);
   for (const Track& track : tracks) EXPECT_FALSE(track.removed && track.inlier);

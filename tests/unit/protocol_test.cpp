@@ -2,10 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <opencv2/core.hpp>
 
 #include "core/evaluation/evaluation_json.hpp"
 #include "core/evaluation/time_offset.hpp"
@@ -69,14 +70,17 @@ double horn_rmse(const std::vector<MatchedPose>& matched, std::size_t first, boo
     m += a * b.transpose();
     spread += a.squaredNorm();
   }
-  Eigen::Matrix4d n;
-  n << m.trace(), m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0),                   //
+  // By OpenCV's decomposition: Eigen's takes many seconds to compile.
+  const cv::Matx44d n(
+      m.trace(), m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0),                    //
       m(1, 2) - m(2, 1), m(0, 0) - m(1, 1) - m(2, 2), m(0, 1) + m(1, 0), m(2, 0) + m(0, 2),  //
       m(2, 0) - m(0, 2), m(0, 1) + m(1, 0), m(1, 1) - m(0, 0) - m(2, 2), m(1, 2) + m(2, 1),  //
-      m(0, 1) - m(1, 0), m(2, 0) + m(0, 2), m(1, 2) + m(2, 1), m(2, 2) - m(0, 0) - m(1, 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(n);
-  const Eigen::Vector4d q = solver.eigenvectors().col(3);
-  const Eigen::Matrix3d rotation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+      m(0, 1) - m(1, 0), m(2, 0) + m(0, 2), m(1, 2) + m(2, 1), m(2, 2) - m(0, 0) - m(1, 1));
+  cv::Matx41d values;
+  cv::Matx44d vectors;  // in rows, the largest value's first
+  cv::eigen(n, values, vectors);
+  const cv::Matx14d q = vectors.row(0);
+  const Eigen::Matrix3d rotation = Eigen::Quaterniond(q(0), q(1), q(2), q(3)).toRotationMatrix();
   const double scale = with_scale ? (rotation * m).trace() / spread : 1.0;
   double squares = 0;
   for (const MatchedPose& pose : matched)

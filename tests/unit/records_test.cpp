@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "core/error.hpp"
@@ -179,6 +180,26 @@ TEST_F(Records, OfAFinishedRunStayUntilAnotherIsFinished) {
   EXPECT_NE(out_.read(records()), whole);
 }
 
+TEST_F(Records, AreWrittenByOneRunAtATime) {
+  const auto begun = [this] { return std::make_unique<RecordsWriter>(run_folder(), origin_, config_); };
+  const auto refused = [&]() -> std::string {
+    try {
+      (void)begun();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const bool earlier : {false, true}) {
+    if (earlier) out_.write("run/summary.json", std::string("{}\n"));
+    auto writer = begun();
+    writer->add({});
+    EXPECT_THAT(refused(), HasSubstr("run: another run is being written there")) << earlier;
+    writer.reset();
+    EXPECT_EQ(refused(), "") << "it has ended";
+  }
+}
+
 TEST_F(Records, OfFramesThatDoNotFollowEachOtherAreRefused) {
   RecordsWriter writer(run_folder(), origin_, config_);
   FrameResult frame;
@@ -188,14 +209,17 @@ TEST_F(Records, OfFramesThatDoNotFollowEachOtherAreRefused) {
 
 TEST_F(Records, ARunSaysWhereItsSequenceWentAway) {
   RunResult run;
-  run.records.resize(3);
-  for (int i = 0; i < 3; ++i) run.records.edit(static_cast<std::size_t>(i)).index = i;
-  run.records.edit(0).status = FrameStatus::tracked;
-  run.records.edit(1).status = run.records.edit(2).status = FrameStatus::unreadable;
+  for (int i = 0; i < 3; ++i) {
+    FrameRecord record;
+    record.index = i;
+    record.status = i == 0 ? FrameStatus::tracked : FrameStatus::unreadable;
+    run.records.push_back(record);
+  }
   EXPECT_EQ(why_gone(sequence_.path(), run), "");
   EXPECT_EQ(why_gone("generated:room", run), "");
   EXPECT_THAT(why_gone(out_.path("gone"), run), HasSubstr("2 of 3 frames could not be read"));
-  run.records.edit(1).status = run.records.edit(2).status = FrameStatus::tracked;
+  for (const std::size_t i : {1U, 2U})
+    run.records.change(i, [](FrameRecord& record) { record.status = FrameStatus::tracked; });
   EXPECT_EQ(why_gone(out_.path("gone"), run), "");
 }
 

@@ -85,7 +85,7 @@ class LogPanel final : public NamedPanel {
     }
     Controls controls(frame);
     controls.toggle("Errors only", errors_only_, "Lost and unreadable frames, and what could not be done");
-    const FrameOutlines frames = session.run->records.outlines();
+    const FrameOutlines& frames = session.run->records.outlines();
     const auto lost = std::count_if(frames.begin(), frames.end(),
                                     [](const FrameOutline& one) { return is_lost(one.status); });
     ImGui::SameLine();

@@ -14,7 +14,7 @@
 namespace stillpoint {
 
 double series_start(const SessionView& session) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   return frames.empty() ? session.current->frame.timestamp : frames.front().timestamp;
 }
 
@@ -40,13 +40,13 @@ Series error_series(const RelativePoseError& error, double start, bool rotation)
 }
 
 AxisRange record_range(const SessionView& session) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   if (frames.size() < 2) return {0.0, 1.0};
   return {0.0, frames.back().timestamp - frames.front().timestamp};
 }
 
 std::vector<PlotBand> lost_bands(const SessionView& session, Rgb colour) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   const double start = series_start(session);
   std::vector<PlotBand> bands;
   std::optional<double> from;
@@ -68,7 +68,7 @@ std::optional<std::size_t> record_of(const SessionView& session, int frame_index
 }
 
 std::optional<std::size_t> record_of(const RunView& run, int frame_index) {
-  const FrameOutlines frames = run.records.outlines();
+  const FrameOutlines& frames = run.records.outlines();
   const auto found =
       std::lower_bound(frames.begin(), frames.end(), frame_index,
                        [](const FrameOutline& frame, int index) { return frame.index < index; });
@@ -77,7 +77,7 @@ std::optional<std::size_t> record_of(const RunView& run, int frame_index) {
 }
 
 std::optional<int> frame_at(const SessionView& session, double seconds) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   if (frames.empty()) return std::nullopt;
   const double time = seconds + series_start(session);
   const auto after =

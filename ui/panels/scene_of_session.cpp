@@ -31,7 +31,7 @@ Eigen::Vector3f broken() { return Eigen::Vector3f::Constant(std::numeric_limits<
 /// The part of the ground truth the run has come by.
 ScenePath truth_path(const SessionView& session) {
   ScenePath path{.name = "ground truth", .role = Role::kGroundTruth, .width_px = 2.0F};
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   if (frames.empty()) return path;
   const double from = frames.front().timestamp, to = frames.back().timestamp;
   double before = -1.0;

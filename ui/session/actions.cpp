@@ -19,7 +19,7 @@ bool is_function_key(Key key) { return key >= Key::kF1 && key <= Key::kF12; }
 
 template <typename Wanted>
 std::optional<int> next_frame(const SessionView& session, Wanted wanted) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   const auto last = std::min(static_cast<std::ptrdiff_t>(session.current->index) + 1,
                              static_cast<std::ptrdiff_t>(frames.size()));
   const auto found = std::find_if(frames.begin() + last, frames.end(), wanted);
@@ -114,7 +114,7 @@ std::optional<int> next_keyframe(const SessionView& session) {
 }
 
 std::optional<int> previous_keyframe(const SessionView& session) {
-  const FrameOutlines frames = session.run->records.outlines();
+  const FrameOutlines& frames = session.run->records.outlines();
   auto at = frames.begin() + std::min(static_cast<std::ptrdiff_t>(session.current->index),
                                       static_cast<std::ptrdiff_t>(frames.size()));
   while (at != frames.begin())

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/check/findings.hpp"
 #include "core/inspect/frame_view.hpp"
 #include "core/inspect/run_view.hpp"
@@ -85,17 +87,20 @@ TEST(PaletteRows, AFrameIsAskedForByItsNumber) {
   EXPECT_EQ(frame_asked_for("41x"), std::nullopt);
 }
 
+bool holds(const std::vector<int>& all, int one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
 SessionView session_at(int index, const std::vector<int>& keyframes, const std::vector<int>& lost,
                        int count) {
   auto run = std::make_shared<RunView>();
   for (int i = 0; i < count; ++i) {
     FrameRecord record;
     record.index = i;
-    record.status = FrameStatus::tracked;
+    record.status = holds(lost, i) ? FrameStatus::lost : FrameStatus::tracked;
+    record.keyframe = holds(keyframes, i);
     run->records.push_back(record);
   }
-  for (const int i : keyframes) run->records.edit(static_cast<std::size_t>(i)).keyframe = true;
-  for (const int i : lost) run->records.edit(static_cast<std::size_t>(i)).status = FrameStatus::lost;
   auto current = std::make_shared<FrameView>();
   current->index = index;
   SessionView session;

@@ -138,7 +138,7 @@ TEST(FeatureExplanation, TellsWhatWeighsLittle) {
   InspectScene scene;
   const int trusted = scene.add_feature({100, 60}, FeatureFate::inlier, 9, 0.5F);
   const int suspected = scene.add_feature({52, 40}, FeatureFate::inlier, 10, 0.5F);
-  scene.record().features.back().static_weight = 0.07F;
+  scene.change([](FrameRecord& record) { record.features.back().static_weight = 0.07F; });
   EXPECT_THAT(explain(scene, trusted).verdict, ::testing::Not(HasSubstr("weighs")));
   EXPECT_THAT(explain(scene, suspected).verdict, HasSubstr("weighs 7 %"));
   EXPECT_EQ(weighing_little(scene.record().features), 1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iterator>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
@@ -44,17 +45,25 @@ struct InspectScene {
     paper.reference_gray = view.reference.gray;
     for (int i = 0; i < 2; ++i) paper.pair.rounds.push_back(round(i));
     view.mask = paper.pair.mask();
-    view.record = &record();
+    change([](FrameRecord&) {});
     describe();
   }
   InspectScene(const InspectScene&) = delete;
   InspectScene& operator=(const InspectScene&) = delete;
 
-  FrameRecord& record() { return run.records.edit(run.records.size() - 1); }
+  const FrameRecord& record() const { return *view.record; }
+  /// Changes the frame's record, as `change(record)` does.
+  template <typename Change>
+  void change(const Change& change) {
+    run.records.change(run.records.size() - 1, change);
+    view.record = &*std::prev(run.records.end());
+  }
 
   int add_feature(cv::Point2f pixel, FeatureFate fate, int map_point = kNone, float residual_px = 0.0F) {
-    record().features.push_back(
-        {pixel, static_cast<float>(kDepth), residual_px, map_point, std::uint8_t{0}, fate});
+    change([&](FrameRecord& record) {
+      record.features.push_back(
+          {pixel, static_cast<float>(kDepth), residual_px, map_point, std::uint8_t{0}, fate});
+    });
     return static_cast<int>(record().features.size()) - 1;
   }
 

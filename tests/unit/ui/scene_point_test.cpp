@@ -52,7 +52,7 @@ TEST(ScenePoint, WithoutDepthOrPoseTheHomographyWarpsIt) {
   expect_near(scene_point_in(pair, FrameSpace::kReference, {70, 50}), {75, 50}, WarpedBy::kHomography);
   expect_near(scene_point_in(pair, FrameSpace::kCompensatedForward, {70, 50}), {70, 50},
               WarpedBy::kHomography);
-  scene.run.records.edit(4).estimated = false;
+  scene.run.records.change(4, [](FrameRecord& record) { record.estimated = false; });
   pair = pair_of(scene);
   EXPECT_FALSE(pair.reference_from_target);
   expect_near(target_point(pair, FrameSpace::kReference, {75, 50}), {70, 50}, WarpedBy::kHomography);

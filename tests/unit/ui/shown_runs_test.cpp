@@ -83,9 +83,12 @@ TEST(ShownRuns, OutsideRunsWithMasksHavePictures) {
 TEST(ShownRuns, AnOutsideRunMayLackPicturesOfAFrameAlone) {
   SessionView view = session_of_runs();
   auto run = std::make_shared<RunView>();
-  run->records.resize(4);
-  for (std::size_t i = 0; i < 4; ++i) run->records.edit(i).measured = poses_alone();
-  run->records.edit(2).measured.mask = true;
+  for (int i = 0; i < 4; ++i) {
+    FrameRecord record;
+    record.measured = poses_alone();
+    record.measured.mask = i == 2;
+    run->records.push_back(record);
+  }
   view.debug.ghosts[2].run = run;
   const ListedRun listed = listed_runs(view)[4];
   EXPECT_EQ(listed.no_pictures, "orb3 left neither mask nor features of frame 3.");

@@ -164,10 +164,10 @@ TEST(Stages, AreHeldAgainstTheRoundBefore) {
 
 TEST(Stages, AreHeldAgainstTheFrameBefore) {
   InspectScene scene, earlier;
-  scene.record().inliers = 90;
+  scene.change([](FrameRecord& record) { record.inliers = 90; });
   scene.add_feature({10, 10}, FeatureFate::inlier, 1);
   scene.add_feature({20, 10}, FeatureFate::inlier, 2);
-  earlier.record().inliers = 100;
+  earlier.change([](FrameRecord& record) { record.inliers = 100; });
   earlier.add_feature({11, 10}, FeatureFate::inlier, 1);
   earlier.add_feature({30, 10}, FeatureFate::inlier, 3);
   earlier.add_feature({40, 10}, FeatureFate::inlier, 4);
@@ -232,7 +232,7 @@ TEST(StagePictures, ShowWhatChangedAgainstStageRoundAndFrame) {
   // The frame before is warped here by depth and the camera's motion: 5 px to the left.
   InspectScene earlier;
   earlier.view.index = 4;
-  earlier.record().world_from_camera.translation().x() = 0.4;
+  earlier.change([](FrameRecord& record) { record.world_from_camera.translation().x() = 0.4; });
   scene.view.before = alone(earlier.view);
   EXPECT_EQ(against(stage_of(stages, "clean_up", 0), ChangeAgainst::kFrameBefore),
             "130 px gained, 130 px lost, 546 px stay");
@@ -283,7 +283,7 @@ TEST(FrameNeighbours, AViewAloneKeepsItsRecordAndLetsGoOfTheRest) {
   std::shared_ptr<const FrameView> kept;
   {
     InspectScene scene;
-    scene.record().inliers = 77;
+    scene.change([](FrameRecord& record) { record.inliers = 77; });
     scene.view.before = std::make_shared<FrameView>();
     kept = alone(scene.view);
   }
