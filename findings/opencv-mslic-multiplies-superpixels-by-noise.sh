@@ -11,8 +11,8 @@
 #   after twenty. enforceLabelConnectivity takes less than a tenth away. With a 3 x 3 blur before, as
 #   the page recommends, noise of 6 still doubles them.
 # What follows: for superpixels that are compared from frame to frame, or whose number is a parameter of
-#   a method, MSLIC is not the third choice beside the others: a dark room and a bright one are cut
-#   into different sizes. getNumberOfSuperpixels() is to be written down with the results.
+#   a method, MSLIC is not the third choice beside the others: pictures with more noise are cut finer.
+#   getNumberOfSuperpixels() is to be written down with the results.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }
