@@ -5,7 +5,7 @@
 #   as a unit vector, as from all others; or at the least always of the same length.
 # What happens: relative_pose_ransac gives it with a length of 0.7071 by STEWENIUS, NISTER and
 #   EIGHTPT, the half of an essential matrix of norm 1, and by SEVENPT with another each time, from
-#   0.71 to some tens and more on perfect points; rotation and direction are right to a thousandth of a degree in all.
+#   0.71 to some tens and more on perfect points; rotation and direction are right in all four.
 #   Triangulated with it, a scene at 3 to 8 m and a baseline of one metre comes out 2.1 to 5.7 m deep,
 #   or several times as large, by the method's name.
 # What follows: the translation is to be normalised before it is given a length from wheels, an IMU or
