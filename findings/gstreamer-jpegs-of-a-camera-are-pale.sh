@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # GStreamer's JPEGs of a camera's YUY2 are pale: black is 16, white is 235, red is (238, 14, 14)
 #
-# One would swear: jpegenc takes YUY2 and I420, whose caps say that their luma goes from 16 to 235,
-#   and makes a JPEG, whose luma by the format goes from 0 to 255; so it converts, or has it
+# One would swear: jpegenc takes YUY2 and I420, whose luma goes from 16 to 235 unless their caps say
+#   otherwise, and makes a JPEG, whose luma by the format goes from 0 to 255; so it converts, or has it
 #   converted.
 # What happens: the planes go into the JPEG as they are. Every reader takes them for full range: black
 #   is 16, white 235, contrast is down by a seventh and so is colour. GStreamer's own jpegdec, too,
