@@ -17,7 +17,8 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kFewestJoined = 0.7;                     // of the colour images with depth; fewer are told
+constexpr double kFewestJoined = 0.7;  // of the colour images with depth; fewer are told
+constexpr double kMostJoined = 0.9;  // of the depth images with colour; with more, depth's clock is colour's
 constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
 constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted
 
@@ -106,13 +107,23 @@ void ListedSequence::join_depth(FolderLists& lists) {
         "first)",
         depth_list_, listed, kAssociationTolerance, begins, options_.depth_offset_s - later);
   } else if (joined < kFewestJoined * static_cast<double>(frames_.size())) {
+    const std::string without =
+        fmt::format("{}: {} of {} colour images have no depth image within {} s", depth_list_,
+                    frames_.size() - static_cast<std::size_t>(joined), frames_.size(), kAssociationTolerance);
+    // Depth that finds its colour is of the right time: there is less of it.
+    if (joined > kMostJoined * static_cast<double>(listed)) {
+      warnings_.push_back(
+          fmt::format("{}: there are only {}, {} of which have theirs", without, listed, joined));
+      return;
+    }
+    if (std::abs(later) < kAssociationTolerance) {
+      warnings_.push_back(without);
+      return;
+    }
     // Who gave an offset settled the clock.
-    if (std::abs(later) >= kAssociationTolerance && options_.depth_offset_s == 0) depth_late_s_ = later;
-    warnings_.push_back(
-        fmt::format("{}: {} of {} colour images have no depth image within {} s; {} (if its "
-                    "clock is, `--depth-offset {:.6f}` mends that)",
-                    depth_list_, frames_.size() - static_cast<std::size_t>(joined), frames_.size(),
-                    kAssociationTolerance, begins, options_.depth_offset_s - later));
+    if (options_.depth_offset_s == 0) depth_late_s_ = later;
+    warnings_.push_back(fmt::format("{}; {} (if its clock is, `--depth-offset {:.6f}` mends that)", without,
+                                    begins, options_.depth_offset_s - later));
   }
 }
 
