@@ -21,7 +21,7 @@ constexpr int kPairsSampled = 12;      // neighbours compared in search of repea
 /// say nothing: /camera/… is of images and depth.
 std::string subject_of(const std::string& whole) {
   const auto topic = whole.find(":/");
-  const auto said = topic == std::string::npos ? topic : whole.find(": ", topic);
+  const auto said = topic == std::string::npos ? topic : whole.find(' ', topic);
   const std::string sentence = said == std::string::npos ? whole : whole.substr(said);
   const auto speaks_of = [&](const char* word) { return sentence.find(word) != std::string::npos; };
   if (speaks_of("groundtruth") || speaks_of("ground truth") || speaks_of(".gt.freiburg") ||
@@ -29,7 +29,8 @@ std::string subject_of(const std::string& whole) {
     return "truth";
   if (speaks_of("mask")) return "masks";
   if (speaks_of("units a metre") || speaks_of("depth image") || speaks_of("depth is of") ||
-      speaks_of("right image") || speaks_of("matched corners"))
+      speaks_of("depth in metres") || speaks_of("is depth ") || speaks_of("right image") ||
+      speaks_of("matched corners"))
     return "depth";
   if (speaks_of("times of recording")) return "stamps";
   if (speaks_of("camera") || speaks_of("distortion")) return "camera";

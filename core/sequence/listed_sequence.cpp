@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/media/stored_depth.hpp"
+#include "core/median.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/image_file.hpp"
@@ -21,6 +23,13 @@ constexpr double kFewestJoined = 0.7;  // of the colour images with depth; fewer
 constexpr double kMostJoined = 0.9;  // of the depth images with colour; with more, depth's clock is colour's
 constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
 constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted
+
+/// The median step of increasing stamps, s.
+double usual_interval(const std::vector<double>& stamps) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(stamps[i] - stamps[i - 1]);
+  return median_of(steps);
+}
 
 }  // namespace
 
@@ -112,8 +121,11 @@ void ListedSequence::join_depth(FolderLists& lists) {
                     frames_.size() - static_cast<std::size_t>(joined), frames_.size(), kAssociationTolerance);
     // Depth that finds its colour is of the right time: there is less of it.
     if (joined > kMostJoined * static_cast<double>(listed)) {
-      warnings_.push_back(
-          fmt::format("{}: there are only {}, {} of which have theirs", without, listed, joined));
+      std::vector<double> depth_stamps;
+      for (const ListEntry& depth : lists.depths->entries) depth_stamps.push_back(depth.timestamp);
+      warnings_.push_back(fmt::format(
+          "{}: there are only {}, one every {:.3f} s where colour images come every {:.3f} s", without,
+          counted(listed, "depth image"), usual_interval(depth_stamps), usual_interval(stamps())));
       return;
     }
     if (std::abs(later) < kAssociationTolerance) {

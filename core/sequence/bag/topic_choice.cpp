@@ -77,9 +77,12 @@ int depth_score(const ImageTopic& image, const LoggedTopic& topic) {
 /// The name of the camera that a topic of images is of: what stands before the part that tells the image.
 std::string camera_name(const std::string& topic) {
   std::size_t end = topic.find('/', 1);
-  for (std::size_t begin = 0; end != std::string::npos; begin = end, end = topic.find('/', end + 1))
-    if (has_any(topic.substr(begin, end - begin), {"depth", "rgb", "color", "colour", "image", "infra"}))
+  for (std::size_t begin = 0; end != std::string::npos; begin = end, end = topic.find('/', end + 1)) {
+    const std::string part = topic.substr(begin, end - begin);
+    const bool is_camera = has_any(part, {"cam", "rgbd"});  // depth_cam is no image's name
+    if (!is_camera && has_any(part, {"depth", "rgb", "color", "colour", "image", "infra"}))
       return topic.substr(0, begin);
+  }
   return topic.substr(0, topic.rfind('/'));
 }
 
