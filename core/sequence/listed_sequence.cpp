@@ -83,6 +83,8 @@ void ListedSequence::read_lists() {
     join_right(lists);
   else if (lists.depths)
     join_depth(lists);
+  else if (!lists.why_no_depth.empty())
+    why_not_[FramePart::depth] = lists.why_no_depth;
   if (lists.masks) join_masks(*lists.masks);
   tell_files_without_bytes();
 }

@@ -39,14 +39,17 @@ class BagInput final : public SequenceInput {
 
   [[nodiscard]] FolderLists lists() override {
     FolderLists lists;
-    lists.warnings = choice_.warnings;
+    lists.warnings = choice_.warnings, lists.why_no_depth = choice_.why_no_depth;
     lists.colours = list_of(choice_.colour, lists.warnings);
     if (lists.colours.entries.empty())
       throw InputError(fmt::format("{}: not one of its messages can be read", lists.colours.path));
     if (choice_.depth) {
       lists.depths = list_of(*choice_.depth, lists.warnings);
-      if (lists.depths->entries.empty()) lists.depths.reset();
       tell_registration(lists.warnings);
+      if (lists.depths->entries.empty()) {
+        lists.why_no_depth = fmt::format("{}: not one of its messages can be read", lists.depths->path);
+        lists.depths.reset();
+      }
     }
     return lists;
   }

@@ -220,11 +220,17 @@ class Chooser {
   }
 
   void tell_unreadable(TopicChoice& choice) const {
-    for (const ImageTopic& image : images_)
-      if (const LoggedTopic& topic = log_.topics()[image.topic]; image.encoding.empty())
-        choice.warnings.push_back(
-            fmt::format("{}:{}: none of its first {} says what image it holds; it was left out", log_.path(),
-                        topic.name, counted(std::min(topic.times.size(), kFirstMessages), "message")));
+    for (const ImageTopic& image : images_) {
+      if (!image.encoding.empty()) continue;
+      const LoggedTopic& topic = log_.topics()[image.topic];
+      std::string sentence =
+          fmt::format("{}:{}: none of its first {} says what image it holds; it was left out", log_.path(),
+                      topic.name, counted(std::min(topic.times.size(), kFirstMessages), "message"));
+      if (!choice.depth && !is_none("depth") && has_any(topic.name, {"depth"}))
+        choice.why_no_depth = std::move(sentence);
+      else
+        choice.warnings.push_back(std::move(sentence));
+    }
   }
 
   template <typename Score>

@@ -28,6 +28,7 @@ struct TopicChoice {
   std::optional<std::size_t> info;         ///< sensor_msgs/CameraInfo of the colour images
   std::optional<std::size_t> truth;        ///< asked for by name: tf, or a topic of poses
   bool no_info = false, no_truth = false;  ///< `info=none`, `truth=none`
+  std::string why_no_depth;                ///< depth is there and of no use: one sentence
   std::vector<std::string> warnings;       ///< what else there was to choose from, and what is of no use
 };
 
