@@ -105,14 +105,14 @@ class Reader {
   void find() {
     if (tf_) take_tf(*tf_, false);
     std::vector<Named> named;
-    std::vector<std::string> others;
+    std::vector<std::size_t> others;
     for (std::size_t i = 0; i < log_.topics().size() && truth_.poses.empty(); ++i) {
       const LoggedTopic& topic = log_.topics()[i];
-      if (!is_pose_type(topic.type) || topic.times.empty()) continue;
+      if (!is_pose_type(topic.type) || topic.times.empty() || topic.format == WireFormat::other) continue;
       if (names_truth(topic.name))
         named.push_back(look_at(i));
       else
-        others.push_back(fmt::format("{} ({})", topic.name, topic.type));
+        others.push_back(i);
     }
     std::stable_sort(named.begin(), named.end(), [](const Named& a, const Named& b) {
       return a.is_joined != b.is_joined ? a.is_joined : a.words > b.words;
@@ -129,9 +129,10 @@ class Reader {
     Named named;
     named.topic = topic;
     std::string body;
-    for (std::size_t i = 0; i < std::min(logged.times.size(), kFirstMessages) && body.empty(); ++i) {
+    for (std::size_t i = 0; i < std::min(logged.times.size(), kFirstMessages); ++i) {
       try {
         body = transform_messages(log_.read(topic, i), logged.format, logged.type).front().child;
+        break;
       } catch (const MalformedBytes&) {  // the next may tell
       }
     }
@@ -154,14 +155,18 @@ class Reader {
                     log_.path(), names.size(), shortened(names), log_.topics()[*truth_.topic].name));
   }
 
-  void tell_not_taken(const std::vector<std::string>& others) {
+  /// @param others topics of poses that no name calls truth
+  void tell_not_taken(const std::vector<std::size_t>& others) {
     if (!truth_.why_not.empty()) return;
     if (!others.empty()) {
-      truth_.why_not =
-          fmt::format("{}: {} may be {} and {} not taken for ground truth (`--topics truth={}` takes {})",
-                      log_.path(), shortened(others), others.size() == 1 ? "an estimate" : "estimates",
-                      others.size() == 1 ? "was" : "were", others.front().substr(0, others.front().find(' ')),
-                      others.size() == 1 ? "it" : "that one");
+      std::vector<std::string> names;
+      for (const std::size_t topic : others)
+        names.push_back(fmt::format("{} ({})", log_.topics()[topic].name, log_.topics()[topic].type));
+      const bool is_one = names.size() == 1;
+      truth_.why_not = fmt::format(
+          "{}: {} may be {} and {} not taken for ground truth (`--topics truth={}` takes {})", log_.path(),
+          shortened(names), is_one ? "an estimate" : "estimates", is_one ? "was" : "were",
+          log_.topics()[others.front()].name, is_one ? "it" : "the first");
       return;
     }
     for (const std::string& frame : tree_.moving()) {
