@@ -151,6 +151,19 @@ TEST(BagChoice, OfSeveralCamerasDepthIsOfColoursAndTheOthersAreTold) {
       });
 }
 
+TEST(BagChoice, ColourIsOfTheCameraThatHasDepth) {
+  auto messages = small_messages(kChoiceFrames, kSmallInfo);
+  for (int i = 0; i < kChoiceFrames; ++i)
+    messages.push_back({"/a_webcam/rgb/image_raw", "sensor_msgs/Image", small_stamp(i),
+                        image_bytes(false, small_stamp(i), "webcam", "bgr8",
+                                    cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(99)))});
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages);
+  const auto source = open_sequence(bag.path);
+  EXPECT_EQ(source->read(2).colour.at<cv::Vec3b>(9, 9)[0], 2);
+  EXPECT_THAT(source->warnings(), IsEmpty());
+}
+
 TEST(BagChoice, ATopicIsKnownByItsFirstMessageThatCanBeRead) {
   struct Fault {
     const char* topic;

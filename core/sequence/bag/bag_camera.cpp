@@ -83,12 +83,13 @@ void tell_change(const Camera& camera, std::size_t first, std::size_t count, con
     const std::size_t at = first + k * (count - 1 - first) / kSample;
     const auto other = camera_in(at);
     if (!other || !are_apart(camera, *other)) continue;
-    warnings.push_back(
-        fmt::format("{}: the camera changes: fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f} in message {}, and "
-                    "{:.1f}, {:.1f}, "
-                    "{:.1f}, {:.1f} in message {} of {}; the first was taken for all images",
-                    path, camera.fx, camera.fy, camera.cx, camera.cy, first + 1, other->fx, other->fy,
-                    other->cx, other->cy, at + 1, count));
+    const auto numbers = [](const Camera& c) {
+      return fmt::format("fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}", c.fx, c.fy, c.cx, c.cy);
+    };
+    warnings.push_back(fmt::format(
+        "{}: the camera changes: {} in message {}, and {} in message {} of {}; the first was taken "
+        "for all images",
+        path, numbers(camera), first + 1, numbers(*other), at + 1, count));
     return;
   }
 }

@@ -50,6 +50,8 @@ ImageTopic look_at(const MessageLog& log, std::size_t topic) {
   return image;
 }
 
+constexpr int kIsColour = 5;  // of colour_score: infrared images are below
+
 /// How likely a topic is the colour images; below 0 it is not.
 int colour_score(const ImageTopic& image, const LoggedTopic& topic) {
   const std::string name = lower_case(topic.name);
@@ -139,7 +141,11 @@ class Chooser {
     TopicChoice choice;
     if (const auto named = asked("colour", is_image))
       choice.colour = look_at(log_, *named);
-    else if (const auto found = best(colour_score))
+    else if (const auto found = best([this](const ImageTopic& image, const LoggedTopic& topic) {
+               constexpr int kWithDepth = 6;  // more than being raw, less than being named colour
+               const int score = colour_score(image, topic);
+               return score >= kIsColour && has_depth_beside(image) ? score + kWithDepth : score;
+             }))
       choice.colour = *found;
     else
       throw InputError(no_images());
@@ -197,15 +203,21 @@ class Chooser {
   }
 
   [[nodiscard]] std::string camera_of(const ImageTopic& image) const {
-    return camera_name(log_.topics()[image.topic].name);
+    const std::string name = camera_name(log_.topics()[image.topic].name);
+    return name.empty() ? "/" : name;
   }
   [[nodiscard]] bool are_of_one_camera(const ImageTopic& a, const ImageTopic& b) const {
     return camera_of(a) == camera_of(b) || (!a.frame.empty() && a.frame == b.frame);
   }
 
+  [[nodiscard]] bool has_depth_beside(const ImageTopic& colour) const {
+    return std::any_of(images_.begin(), images_.end(), [&](const ImageTopic& image) {
+      return depth_score(image, log_.topics()[image.topic]) >= 0 && are_of_one_camera(image, colour);
+    });
+  }
+
   /// Cameras of which both colour and depth are there; nobody but the user knows which is meant.
   void tell_other_cameras(TopicChoice& choice) const {
-    constexpr int kIsColour = 5;  // of colour_score: infrared images are below
     std::set<std::string> coloured, whole;
     for (const ImageTopic& image : images_)
       if (colour_score(image, log_.topics()[image.topic]) >= kIsColour) coloured.insert(camera_of(image));

@@ -37,8 +37,8 @@ struct TopicChoice {
 /// but
 ///   colour may be `none` (`color` and `rgb` mean colour);
 /// - otherwise by what they hold and how drivers name them: colour is what has 8 bits and is no infrared
-///   image, raw before compressed; depth what has 16 bits or floats and, of several, what is of the same
-///   camera and registered to colour; info as info_beside has it.
+///   image, of a camera with depth before others, raw before compressed; depth what has 16 bits or floats
+///   and, of several, what is of the same camera and registered to colour; info as info_beside has it.
 /// @throws InputError in one sentence for a recording without images, an option that is none, and a topic
 /// that is not there or of another type
 [[nodiscard]] TopicChoice choose_topics(const MessageLog& log, const std::string& asked);
