@@ -17,15 +17,23 @@ constexpr double kLongGap = 10.0;      // times the median step
 constexpr double kLongGapLeast = 0.5;  // s: shorter ones of fast cameras are no gaps to a hand
 constexpr int kPairsSampled = 12;      // neighbours compared in search of repeats
 
-/// What a sentence told on opening is about, by its words.
-std::string subject_of(const std::string& sentence) {
+/// What a sentence told on opening is about, by its words. Those of a bag's topic, with which it may begin,
+/// say nothing: /camera/… is of images and depth.
+std::string subject_of(const std::string& whole) {
+  const auto topic = whole.find(":/");
+  const auto said = topic == std::string::npos ? topic : whole.find(' ', topic);
+  const std::string sentence = said == std::string::npos ? whole : whole.substr(said);
   const auto speaks_of = [&](const char* word) { return sentence.find(word) != std::string::npos; };
-  if (speaks_of("groundtruth") || speaks_of("ground truth") || speaks_of(".gt.freiburg")) return "truth";
+  if (speaks_of("groundtruth") || speaks_of("ground truth") || speaks_of(".gt.freiburg") ||
+      speaks_of("poses"))
+    return "truth";
   if (speaks_of("mask")) return "masks";
-  if (speaks_of("units a metre") || speaks_of("depth image") || speaks_of("right image") ||
+  if (speaks_of("units a metre") || speaks_of("depth image") || speaks_of("depth is of") ||
+      speaks_of("depth in metres") || speaks_of("is depth ") || speaks_of("right image") ||
       speaks_of("matched corners"))
     return "depth";
-  if (speaks_of("camera")) return "camera";
+  if (speaks_of("times of recording")) return "stamps";
+  if (speaks_of("camera") || speaks_of("distortion")) return "camera";
   if (speaks_of("stamp")) return "stamps";
   return "images";
 }
@@ -41,7 +49,7 @@ void check_gaps(const FrameSource& source, std::vector<Finding>& findings) {
   const auto gaps = std::count_if(steps.begin(), steps.end(), [limit](double step) { return step > limit; });
   findings.push_back(
       {"stamps", fmt::format("{} in time longer than {:.2f} s where a step is {:.3f} s; the longest, "
-                             "{:.3f} s, follows frame {}: the odometry will be lost there",
+                             "{:.3f} s, follows frame {}: the odometry may be lost there",
                              counted(gaps, "gap"), limit, usual, *longest, longest - steps.begin())});
 }
 

@@ -22,6 +22,7 @@ struct ImageList {
 struct FolderLists {
   ImageList colours;
   std::optional<ImageList> depths, masks;
+  std::string why_no_depth;             ///< of a recording that has depth of no use: one sentence
   bool stereo = false;                  ///< `depths` names the right images of a stereo pair
   bool paired = false;                  ///< depth i belongs to colour image i, whatever the stamps say
   StampUnit unit = StampUnit::seconds;  ///< the colour stamps were written in

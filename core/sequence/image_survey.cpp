@@ -18,7 +18,7 @@ constexpr double kWhiteShare = 0.5;   // of what is not 0, to call a mask black 
 constexpr int kMostLabels = 32;       // values: with more it is a picture and no labels
 constexpr int kNearlyWhite = 250;     // of 8 bits: JPEG's white
 
-double quantile(std::vector<std::uint16_t>& values, double share) {
+double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0.0;
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
@@ -59,7 +59,7 @@ std::string fault_of_depth(const std::string& path, const ImageRead& read, const
 
 DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected, const ImageReader& read_image) {
   DepthSurvey survey;
-  std::vector<std::uint16_t> values;
+  std::vector<float> values;
   double pixels = 0, zeros = 0;
   for (const std::string& path : paths) {
     ImageRead read = read_image(path);
@@ -77,17 +77,17 @@ DepthSurvey survey_depth(const ImagePaths& paths, const DepthSize& expected, con
     }
     ++survey.fit;
     survey.in_metres = read.in_metres;
-    if (read.in_metres) {
-      // Clipped first: OpenCV makes 0 of what is beyond 2^31.
-      cv::min(read.image, (kNoMeasurement - 1) / kMetresSurveyScale, read.image);
-      read.image.convertTo(read.image, CV_16U, kMetresSurveyScale);
-    }
+    const auto of_image = [&read](int y, int x) {
+      if (read.in_metres) return read.image.at<float>(y, x) * static_cast<float>(kMetresSurveyScale);
+      const auto raw = read.image.at<std::uint16_t>(y, x);
+      return raw == kNoMeasurement ? 0.0F : static_cast<float>(raw);
+    };
     constexpr int kStride = 3;  // px: a ninth of the pixels tells quantiles as well
     for (int y = 0; y < read.image.rows; y += kStride)
       for (int x = 0; x < read.image.cols; x += kStride) {
-        const auto value = read.image.at<std::uint16_t>(y, x);
-        pixels += 1, zeros += value == 0 || value == kNoMeasurement ? 1 : 0;
-        if (value != 0 && value != kNoMeasurement) values.push_back(value);
+        const float value = of_image(y, x);
+        pixels += 1, zeros += value == 0 ? 1 : 0;
+        if (value != 0) values.push_back(value);
       }
   }
   survey.nearest = quantile(values, 0.02);

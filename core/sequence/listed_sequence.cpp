@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/media/stored_depth.hpp"
+#include "core/median.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/folder_camera.hpp"
 #include "core/sequence/image_file.hpp"
@@ -17,9 +19,17 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kFewestJoined = 0.7;                     // of the colour images with depth; fewer are told
+constexpr double kFewestJoined = 0.7;  // of the colour images with depth; fewer are told
+constexpr double kMostJoined = 0.9;  // of the depth images with colour; with more, depth's clock is colour's
 constexpr std::size_t kDepthSample = 5, kMaskSample = 8;  // images looked at on opening
 constexpr double kMostMoving = 0.7;                       // of the masks' pixels; more look inverted
+
+/// The median step of increasing stamps, s.
+double usual_interval(const std::vector<double>& stamps) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(stamps[i] - stamps[i - 1]);
+  return median_of(steps);
+}
 
 }  // namespace
 
@@ -73,6 +83,8 @@ void ListedSequence::read_lists() {
     join_right(lists);
   else if (lists.depths)
     join_depth(lists);
+  else if (!lists.why_no_depth.empty())
+    why_not_[FramePart::depth] = lists.why_no_depth;
   if (lists.masks) join_masks(*lists.masks);
   tell_files_without_bytes();
 }
@@ -106,13 +118,26 @@ void ListedSequence::join_depth(FolderLists& lists) {
         "first)",
         depth_list_, listed, kAssociationTolerance, begins, options_.depth_offset_s - later);
   } else if (joined < kFewestJoined * static_cast<double>(frames_.size())) {
+    const std::string without =
+        fmt::format("{}: {} of {} colour images have no depth image within {} s", depth_list_,
+                    frames_.size() - static_cast<std::size_t>(joined), frames_.size(), kAssociationTolerance);
+    // Depth that finds its colour is of the right time: there is less of it.
+    if (joined > kMostJoined * static_cast<double>(listed)) {
+      std::vector<double> depth_stamps;
+      for (const ListEntry& depth : lists.depths->entries) depth_stamps.push_back(depth.timestamp);
+      warnings_.push_back(fmt::format(
+          "{}: there are only {}, one every {:.3f} s where colour images come every {:.3f} s", without,
+          counted(listed, "depth image"), usual_interval(depth_stamps), usual_interval(stamps())));
+      return;
+    }
+    if (std::abs(later) < kAssociationTolerance) {
+      warnings_.push_back(without);
+      return;
+    }
     // Who gave an offset settled the clock.
-    if (std::abs(later) >= kAssociationTolerance && options_.depth_offset_s == 0) depth_late_s_ = later;
-    warnings_.push_back(
-        fmt::format("{}: {} of {} colour images have no depth image within {} s; {} (if its "
-                    "clock is, `--depth-offset {:.6f}` mends that)",
-                    depth_list_, frames_.size() - static_cast<std::size_t>(joined), frames_.size(),
-                    kAssociationTolerance, begins, options_.depth_offset_s - later));
+    if (options_.depth_offset_s == 0) depth_late_s_ = later;
+    warnings_.push_back(fmt::format("{}; {} (if its clock is, `--depth-offset {:.6f}` mends that)", without,
+                                    begins, options_.depth_offset_s - later));
   }
 }
 

@@ -24,7 +24,6 @@ class RecordingCli : public ::testing::Test {
  protected:
   RecordingCli() {
     write_archive(places.path("small.tgz"), sequence.path(), "tgz", "small");
-    std::vector<LogMessage> messages;
     for (int i = 0; i < kRecordedFrames; ++i) {
       const std::int64_t stamp = std::llround(SmallSequence::stamp(i) * 1e4) * 100'000;
       cv::Mat depth;
@@ -53,6 +52,7 @@ class RecordingCli : public ::testing::Test {
 
   TemporaryFolder places{"recordings"};
   SmallSequence sequence{kRecordedFrames};
+  std::vector<LogMessage> messages;  ///< of small.mcap
 };
 
 TEST_F(RecordingCli, RunsAreTheFolders) {
@@ -96,6 +96,41 @@ TEST_F(RecordingCli, TopicsAreKeptWithTheRun) {
   EXPECT_EQ(
       run_cli({"snapshot", places.path("out"), "--panels", "input", "--out", places.path("pictures")}).err,
       "");
+}
+
+TEST_F(RecordingCli, OfTwoTrackedBodiesTheCamerasIsTakenAndBothAreTold) {
+  for (int i = 0; i < kRecordedFrames; ++i)
+    for (const auto& [topic, metres_a_frame] :
+         {std::pair{"/mocap/alice", 0.5},
+          std::pair{"/mocap/camera", SmallSequence::kStep * SmallSequence::kDepth / SmallSequence::kFocal}}) {
+      const std::int64_t stamp = std::llround(SmallSequence::stamp(i) * 1e4) * 100'000;
+      Pose pose = Pose::Identity();
+      pose.translation().x() = metres_a_frame * i;
+      messages.push_back({topic, "geometry_msgs/PoseStamped", stamp, pose_bytes(true, stamp, "world", pose)});
+    }
+  write_mcap(places.path("two.mcap"), messages);
+  const std::string told = "2 topics may be the camera's ground truth, /mocap/camera, /mocap/alice";
+  const CliResult run =
+      run_cli({"run", places.path("two.mcap"), "--method", "none", "--out", places.path("two")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(told));
+  EXPECT_LT(
+      nlohmann::json::parse(places.read("two/summary.json"))["evaluation"]["ate"]["translation_m"]["rmse"],
+      0.01);
+  const CliResult check = run_cli({"check", places.path("two.mcap")});
+  EXPECT_THAT(check.out,
+              AllOf(HasSubstr("/mocap/camera  geometry_msgs/PoseStamped  8 messages  read as truth"),
+                    HasSubstr(told), HasSubstr("`--topics truth=TOPIC` takes another")));
+}
+
+TEST_F(RecordingCli, DepthThatCannotBeReadIsNamed) {
+  for (LogMessage& message : messages)
+    if (message.topic.find("depth") != std::string::npos)
+      message.bytes = image_bytes(true, message.time, "", "", cv::Mat());
+  write_mcap(places.path("empty.mcap"), messages);
+  expect_one_sentence(
+      run_cli({"run", places.path("empty.mcap"), "--method", "none"}),
+      "/cam/aligned_depth_to_color/image_raw: none of its first 8 messages says what image it holds");
 }
 
 TEST_F(RecordingCli, BadOnesEndInASentence) {

@@ -48,7 +48,7 @@ std::string compressed_bytes(bool cdr, std::int64_t stamp, std::string_view fram
 
 std::string info_bytes(bool cdr, std::int64_t stamp, const InfoExample& info) {
   MessageWriter writer(cdr);
-  writer.header(stamp, "camera").number(info.height).number(info.width).text(info.model);
+  writer.header(stamp, info.frame).number(info.height).number(info.width).text(info.model);
   writer.number(static_cast<std::uint32_t>(info.d.size()));
   for (const double value : info.d) writer.number(value);
   for (const double value : {info.fx, 0.0, info.cx, 0.0, info.fy, info.cy, 0.0, 0.0, 1.0})
@@ -57,8 +57,9 @@ std::string info_bytes(bool cdr, std::int64_t stamp, const InfoExample& info) {
   for (const double value :
        {info.fx / 2, 0.0, info.cx, 0.0, 0.0, info.fy / 2, info.cy, 0.0, 0.0, 0.0, 1.0, 0.0})
     writer.number(value);
-  writer.number(std::uint32_t{0}).number(std::uint32_t{0});     // binning
-  for (int i = 0; i < 4; ++i) writer.number(std::uint32_t{0});  // region of interest
+  writer.number(info.binning).number(info.binning);
+  const auto [x, y, width, height] = info.roi;
+  for (const std::uint32_t value : {x, y, height, width}) writer.number(value);
   return writer.number(std::uint8_t{0}).take();
 }
 

@@ -50,6 +50,9 @@ struct InfoExample {
   std::string model = "plumb_bob";
   std::vector<double> d;
   double fx = 525, fy = 525, cx = 319.5, cy = 239.5;
+  std::string frame = "camera";
+  std::uint32_t binning = 0;           ///< along both sides
+  std::array<std::uint32_t, 4> roi{};  ///< x, y, width, height
 };
 /// sensor_msgs/CameraInfo, whose P is of half its focal length.
 [[nodiscard]] std::string info_bytes(bool cdr, std::int64_t stamp, const InfoExample& info);

@@ -46,6 +46,62 @@ TEST(Bags, CameraComesFromCameraInfo) {
   EXPECT_THAT(warnings, Contains(HasSubstr("not calibrated")));
 }
 
+TEST(Bags, ARegionOfInterestIsShiftedAndBinningScaled) {
+  // Images of 64x48 px from a camera of 128x96, as its driver says they are made.
+  InfoExample info{128, 96, "plumb_bob", {0.1, 0, 0, 0, 0}, 120, 121, 70, 50};
+  info.roi = {20, 10, 64, 48};
+  std::vector<std::string> warnings;
+  Camera camera = camera_read(info, &warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+  EXPECT_EQ(camera.width, 64);
+  EXPECT_EQ(camera.fx, 120);
+  EXPECT_EQ(camera.fy, 121);
+  EXPECT_EQ(camera.cx, 50);
+  EXPECT_EQ(camera.cy, 40);
+  EXPECT_EQ(camera.k1, 0.1);
+  // Rectified ones likewise: P is of the whole image, too.
+  camera = camera_read(info, &warnings, "/cam/rgb/image_rect_color");
+  EXPECT_EQ(camera.fx, 60);
+  EXPECT_EQ(camera.cx, 50);
+  // Pixels' centres: what is 2c + 0.5 in the whole image is c where two pixels became one.
+  info.roi = {}, info.binning = 2;
+  camera = camera_read(info, &warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+  EXPECT_EQ(camera.fx, 60);
+  EXPECT_DOUBLE_EQ(camera.cx, (70 - 0.5) / 2);
+  info.width = 256, info.height = 192, info.roi = {40, 20, 128, 96};
+  camera = camera_read(info, &warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+  EXPECT_DOUBLE_EQ(camera.cx, (70 - 40 - 0.5) / 2);
+  // What goes beyond the image, and what images of the whole size were not made by, is not believed.
+  info.width = 64, info.height = 48, info.roi = {10, 10, 64, 48}, info.binning = 0;
+  EXPECT_EQ(camera_read(info).cx, 70);
+  info.roi = {10, 10, 40, 36}, info.binning = 1;
+  EXPECT_EQ(camera_read(info).cx, 70);
+}
+
+TEST(Bags, ACameraThatChangesIsTold) {
+  const InfoExample first{64, 48, "plumb_bob", {0, 0, 0, 0, 0}, 60, 61, 31, 23};
+  InfoExample later = first;
+  later.fx = 40;
+  const auto warnings = [&](int from) {
+    const Recording bag(".bag");
+    auto messages = small_messages(20, first);
+    for (LogMessage& message : messages)
+      if (message.topic == "/cam/rgb/camera_info" && message.time >= small_stamp(from))
+        message.bytes = info_bytes(false, message.time, later);
+    write_ros1_bag(bag.path, messages);
+    const auto source = open_sequence(bag.path);
+    EXPECT_EQ(source->camera().fx, 60);
+    return source->warnings();
+  };
+  for (const int from : {10, 19})
+    EXPECT_THAT(warnings(from),
+                Contains(AllOf(HasSubstr("the camera changes: fx 60.0,"), HasSubstr("fx 40.0,"),
+                               HasSubstr("the first was taken for all images"))));
+  EXPECT_THAT(warnings(20), IsEmpty());
+}
+
 TEST(Bags, RationalDistortionIsFittedAndTold) {
   // An Azure Kinect's.
   const InfoExample info{
@@ -86,7 +142,8 @@ TEST(Bags, DepthIsChecked) {
           image_bytes(false, message.time, "depth", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(2000.0)));
   write_ros1_bag(bag.path, messages);
   EXPECT_THAT(open_sequence(bag.path)->warnings(),
-              AllOf(Contains(HasSubstr("`--depth-scale 1000` takes it for millimetres")),
+              AllOf(Contains(AllOf(HasSubstr("`--depth-scale 1000` takes it for millimetres"),
+                                   HasSubstr("reads 2000.00 to 2000.00 m, 2000.00 m in the middle"))),
                     Contains(HasSubstr("as if it were registered"))));
   OpenOptions options;
   options.depth_scale = 1000;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,21 +121,43 @@ class Recording {
   std::string path;
 };
 
+/// Of small_messages, ns.
+inline std::int64_t small_stamp(int frame) { return 1'300'000'000'000'000'000 + frame * 33'000'000LL; }
+
 /// A small recording: images of 64x48 px whose pixels tell their frame, and whatever else.
-inline std::vector<LogMessage> small_messages(int frames, const InfoExample& info) {
+inline std::vector<LogMessage> small_messages(int frames, const InfoExample& info, bool cdr = false) {
   std::vector<LogMessage> messages;
   for (int i = 0; i < frames; ++i) {
-    const std::int64_t stamp = 1'300'000'000'000'000'000 + i * 33'000'000LL;
+    const std::int64_t stamp = small_stamp(i);
     messages.push_back(
-        {"/cam/rgb/camera_info", "sensor_msgs/CameraInfo", stamp, info_bytes(false, stamp, info)});
+        {"/cam/rgb/camera_info", "sensor_msgs/CameraInfo", stamp, info_bytes(cdr, stamp, info)});
     messages.push_back(
         {"/cam/rgb/image_raw", "sensor_msgs/Image", stamp,
-         image_bytes(false, stamp, "cam", "bgr8", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(i)))});
+         image_bytes(cdr, stamp, "cam", "bgr8", cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(i)))});
     messages.push_back(
         {"/cam/depth/image", "sensor_msgs/Image", stamp,
-         image_bytes(false, stamp, "cam", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(1.0 + i)))});
+         image_bytes(cdr, stamp, "cam", "32FC1", cv::Mat(48, 64, CV_32FC1, cv::Scalar(1.0 + i)))});
   }
   return messages;
+}
+
+/// The same recording as a ROS 1 bag, an MCAP file and rosbag2's database, looked at one after the other.
+/// @param messages gives them in ROS 1's serialisation or in CDR
+inline void in_every_kind(const std::function<std::vector<LogMessage>(bool cdr)>& messages,
+                          const std::function<void(const std::string& path)>& look) {
+  for (const char* ending : {".bag", ".mcap", ".db3"}) {
+    SCOPED_TRACE(ending);
+    const Recording recording(ending);
+    const std::string kind = ending;
+    const auto written = messages(kind != ".bag");
+    if (kind == ".bag")
+      write_ros1_bag(recording.path, written);
+    else if (kind == ".mcap")
+      write_mcap(recording.path, written);
+    else
+      write_db3(recording.path, written);
+    look(recording.path);
+  }
 }
 
 }  // namespace stillpoint

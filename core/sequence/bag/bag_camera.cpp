@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include "core/geometry/normal_equations.hpp"
 #include "core/text_file.hpp"
@@ -49,9 +50,83 @@ double fit_radial(Camera& camera, const std::vector<double>& d) {
   return worst;
 }
 
+/// The part of the whole image that is sent, and its pixels put together, as the message says. Images that
+/// are of the whole size are, whatever it says: drivers fill this in at will.
+Camera camera_of_region(Camera camera, const CameraInfoMessage& info, cv::Size images) {
+  if (images == cv::Size(camera.width, camera.height)) return camera;
+  const std::uint64_t right = std::uint64_t{info.roi_x} + info.roi_width;
+  const std::uint64_t lower = std::uint64_t{info.roi_y} + info.roi_height;
+  if (std::min(info.roi_width, info.roi_height) >= kSmallestSide && right <= info.width &&
+      lower <= info.height) {
+    camera.cx -= info.roi_x, camera.cy -= info.roi_y;
+    camera.width = static_cast<int>(info.roi_width), camera.height = static_cast<int>(info.roi_height);
+  }
+  const std::uint32_t across = std::max(info.binning_x, 1U), down = std::max(info.binning_y, 1U);
+  const std::uint32_t width = static_cast<std::uint32_t>(camera.width) / across;
+  const std::uint32_t height = static_cast<std::uint32_t>(camera.height) / down;
+  if (across * down == 1 || std::min(width, height) < kSmallestSide) return camera;
+  return camera.scaled_to(static_cast<int>(width), static_cast<int>(height));
+}
+
+bool are_apart(const Camera& a, const Camera& b) {
+  constexpr double kApart = 0.5;  // px: less is what calibrating online jitters by
+  return std::abs(a.fx - b.fx) > kApart || std::abs(a.fy - b.fy) > kApart || std::abs(a.cx - b.cx) > kApart ||
+         std::abs(a.cy - b.cy) > kApart;
+}
+
+/// Looks at a few messages spread over those after the first that described the camera.
+void tell_change(const Camera& camera, std::size_t first, std::size_t count, const std::string& path,
+                 const std::function<std::optional<Camera>(std::size_t)>& camera_in,
+                 std::vector<std::string>& warnings) {
+  constexpr std::size_t kSample = 8;  // messages
+  for (std::size_t k = 1; k <= kSample; ++k) {
+    const std::size_t at = first + k * (count - 1 - first) / kSample;
+    const auto other = camera_in(at);
+    if (!other || !are_apart(camera, *other)) continue;
+    const auto numbers = [](const Camera& c) {
+      return fmt::format("fx {:.1f}, fy {:.1f}, cx {:.1f}, cy {:.1f}", c.fx, c.fy, c.cx, c.cy);
+    };
+    warnings.push_back(fmt::format(
+        "{}: the camera changes: {} in message {}, and {} in message {} of {}; the first was taken "
+        "for all images",
+        path, numbers(camera), first + 1, numbers(*other), at + 1, count));
+    return;
+  }
+}
+
 }  // namespace
 
-std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rectified,
+std::optional<Camera> camera_of_topic(const MessageLog& log, std::size_t topic, bool is_rectified,
+                                      cv::Size images, std::string& why_not,
+                                      std::vector<std::string>& warnings) {
+  const LoggedTopic& logged = log.topics()[topic];
+  const std::string path = fmt::format("{}:{}", log.path(), logged.name);
+  const std::size_t count = logged.times.size();
+  std::vector<std::string> told;
+  const auto camera_in = [&](std::size_t message) -> std::optional<Camera> {
+    std::string fault;
+    told.clear();
+    try {
+      const auto camera = camera_of_info(camera_info_message(log.read(topic, message), logged.format),
+                                         is_rectified, images, path, fault, told);
+      if (camera) return camera;
+    } catch (const MalformedBytes& error) {
+      fault = fmt::format("{} {}", path, error.what());
+    }
+    if (message == 0) why_not = fault;
+    return std::nullopt;
+  };
+  for (std::size_t i = 0; i < std::min(count, kFirstMessages); ++i) {
+    const auto camera = camera_in(i);
+    if (!camera) continue;
+    warnings.insert(warnings.end(), told.begin(), told.end());
+    tell_change(*camera, i, count, path, camera_in, warnings);
+    return camera;
+  }
+  return std::nullopt;
+}
+
+std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rectified, cv::Size images,
                                      const std::string& path, std::string& why_not,
                                      std::vector<std::string>& warnings) {
   Camera camera;
@@ -72,6 +147,7 @@ std::optional<Camera> camera_of_info(const CameraInfoMessage& info, bool is_rect
     why_not = fmt::format("{}: the camera is not calibrated (its focal length is {:g})", path, camera.fx);
     return std::nullopt;
   }
+  camera = camera_of_region(camera, info, images);
   std::vector<double> d = info.distortion;
   if (is_rectified || std::all_of(d.begin(), d.end(), [](double v) { return v == 0; })) return camera;
   const std::string model = lower_case(info.model);

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/sequence/bag/bag_camera.hpp"
 #include "core/sequence/bag/bag_image.hpp"
+#include "core/sequence/bag/bag_stamps.hpp"
 #include "core/sequence/bag/bag_truth.hpp"
 #include "core/sequence/bag/frame_tree.hpp"
 #include "core/sequence/bag/messages.hpp"
@@ -38,13 +39,17 @@ class BagInput final : public SequenceInput {
 
   [[nodiscard]] FolderLists lists() override {
     FolderLists lists;
+    lists.warnings = choice_.warnings, lists.why_no_depth = choice_.why_no_depth;
     lists.colours = list_of(choice_.colour, lists.warnings);
     if (lists.colours.entries.empty())
       throw InputError(fmt::format("{}: not one of its messages can be read", lists.colours.path));
     if (choice_.depth) {
       lists.depths = list_of(*choice_.depth, lists.warnings);
-      if (lists.depths->entries.empty()) lists.depths.reset();
       tell_registration(lists.warnings);
+      if (lists.depths->entries.empty()) {
+        lists.why_no_depth = fmt::format("{}: not one of its messages can be read", lists.depths->path);
+        lists.depths.reset();
+      }
     }
     return lists;
   }
@@ -108,30 +113,24 @@ class BagInput final : public SequenceInput {
   [[nodiscard]] ImageList list_of(const ImageTopic& topic, std::vector<std::string>& warnings) const {
     const LoggedTopic& logged = log_->topics()[topic.topic];
     ImageList list{fmt::format("{}:{}", log_->path(), logged.name), {}};
-    std::vector<std::int64_t> stamps(logged.times.size(), 0);
-    std::vector<bool> is_read(stamps.size(), false);
-    std::size_t unreadable = 0;
-    for (std::size_t i = 0; i < stamps.size(); ++i) {
+    std::vector<std::int64_t> stamps, recorded;
+    std::vector<std::size_t> messages;
+    for (std::size_t i = 0; i < logged.times.size(); ++i) {
       try {
-        stamps[i] = stamp_of(log_->read(topic.topic, i, kStampBytes), logged.format);
-        is_read[i] = true;
-      } catch (const MalformedBytes&) {
-        ++unreadable;
+        stamps.push_back(stamp_of(log_->read(topic.topic, i, kStampBytes), logged.format));
+        recorded.push_back(logged.times[i]);
+        messages.push_back(i);
+      } catch (const MalformedBytes&) {  // counted below
       }
     }
-    if (unreadable > 0)
+    if (messages.size() < logged.times.size())
       warnings.push_back(fmt::format("{}: {} of {} messages cannot be read and were left out", list.path,
-                                     unreadable, stamps.size()));
-    const auto [least, most] = std::minmax_element(stamps.begin(), stamps.end());
-    if (stamps.size() > 1 && *least == *most && unreadable == 0) {
-      warnings.push_back(fmt::format("{}: all stamps are {:.3f} s; the times of recording were taken instead",
-                                     list.path, seconds_of(*least)));
-      stamps = logged.times;
-    }
-    for (std::size_t i = 0; i < stamps.size(); ++i)
-      if (is_read[i])
-        list.entries.push_back(
-            {seconds_of(stamps[i]), fmt::format("{}[{}]", logged.name, i), static_cast<int>(i)});
+                                     logged.times.size() - messages.size(), logged.times.size()));
+    const BagStamps settled = settle_bag_stamps(std::move(stamps), recorded);
+    if (!settled.told.empty()) warnings.push_back(fmt::format("{}: {}", list.path, settled.told));
+    for (std::size_t i = 0; i < messages.size(); ++i)
+      list.entries.push_back({seconds_of(settled.stamps[i]), fmt::format("{}[{}]", logged.name, messages[i]),
+                              static_cast<int>(messages[i])});
     put_in_order(list, warnings);
     return list;
   }
@@ -154,17 +153,11 @@ class BagInput final : public SequenceInput {
   }
 
   /// The camera that a topic of images is said to be of.
-  [[nodiscard]] std::optional<Camera> camera_beside(std::size_t images) const {
+  [[nodiscard]] std::optional<Camera> camera_beside(const ImageTopic& images) const {
     const auto info = info_beside(*log_, images);
-    if (!info) return std::nullopt;
     std::string why_not;
     std::vector<std::string> ignored;
-    try {
-      const WireFormat format = log_->topics()[*info].format;
-      return camera_of_info(camera_info_message(log_->read(*info, 0), format), false, "", why_not, ignored);
-    } catch (const MalformedBytes&) {
-      return std::nullopt;
-    }
+    return info ? camera_of_topic(*log_, *info, false, images.size, why_not, ignored) : std::nullopt;
   }
 
   void tell_registration(std::vector<std::string>& warnings) const {
@@ -173,7 +166,7 @@ class BagInput final : public SequenceInput {
     const std::string &colour = choice_.colour.frame, &depth = choice_.depth->frame;
     if (!colour.empty() && !depth.empty() && colour != depth)
       differs = fmt::format("depth is of frame {} and colour of frame {}", depth, colour);
-    const auto colours = camera_beside(choice_.colour.topic), depths = camera_beside(choice_.depth->topic);
+    const auto colours = camera_beside(choice_.colour), depths = camera_beside(*choice_.depth);
     if (differs.empty() && colours && depths && colours->width == depths->width &&
         std::abs(depths->fx / colours->fx - 1.0) > kSameCamera)
       differs = fmt::format("depth is of a camera of {:.1f} px and colour of one of {:.1f} px", depths->fx,
@@ -189,32 +182,34 @@ class BagInput final : public SequenceInput {
   [[nodiscard]] Camera camera_told(std::vector<std::string>& warnings) const {
     std::optional<Camera> named = camera_from_folder_name(whole_.stem().string());
     if (!named) named = camera_from_folder_name(whole_.parent_path().filename().string());
-    std::string why_not =
-        fmt::format("{}: holds no sensor_msgs/CameraInfo of the colour images", log_->path());
+    std::string why_not = why_no_info();
     if (choice_.info) {
-      const LoggedTopic& logged = log_->topics()[*choice_.info];
-      const std::string path = fmt::format("{}:{}", log_->path(), logged.name);
-      try {
-        const bool is_rectified = name_of(choice_.colour).find("rect") != std::string::npos;
-        const auto camera = camera_of_info(camera_info_message(log_->read(*choice_.info, 0), logged.format),
-                                           is_rectified, path, why_not, warnings);
-        if (camera && named && is_factory_default(*camera)) {
-          warnings.push_back(
-              fmt::format("{}: is the calibration a driver makes up; that of {} was taken, as the "
-                          "name says (--camera says otherwise)",
-                          path, named->name));
-          return *named;
-        }
-        if (camera) return *camera;
-      } catch (const MalformedBytes& error) {
-        why_not = fmt::format("{} {}", path, error.what());
+      const bool is_rectified = name_of(choice_.colour).find("rect") != std::string::npos;
+      const auto camera =
+          camera_of_topic(*log_, *choice_.info, is_rectified, choice_.colour.size, why_not, warnings);
+      if (camera && named && is_factory_default(*camera)) {
+        warnings.push_back(
+            fmt::format("{}:{}: is the calibration a driver makes up; that of {} was taken, as the "
+                        "name says (--camera says otherwise)",
+                        log_->path(), log_->topics()[*choice_.info].name, named->name));
+        return *named;
       }
+      if (camera) return *camera;
     }
     if (named) return *named;
     Camera camera = camera_by_name("ros_default");
     warnings.push_back(
         fmt::format("{}; {} is assumed (--camera NAME|FILE says which)", why_not, camera.name));
     return camera;
+  }
+
+  [[nodiscard]] std::string why_no_info() const {
+    if (choice_.no_info) return fmt::format("{}: its CameraInfo is left out", log_->path());
+    std::string why = fmt::format("{}: holds no sensor_msgs/CameraInfo of the colour images", log_->path());
+    if (const std::vector<std::size_t> infos = info_topics(*log_); !infos.empty())
+      why += fmt::format(" (`--topics info={}` takes {})", log_->topics()[infos.front()].name,
+                         infos.size() == 1 ? "that of another" : "one of others");
+    return why;
   }
 
   /// Of depth images of 16 bits.

@@ -20,8 +20,9 @@ struct BagTruth {
 };
 
 /// Reads ground truth: the topic that was asked for, or else what can be nothing but truth: tf's way from the
-/// colour images' frame up to a world, or a topic of poses that is named after motion capture. Odometry and
-/// maps are somebody's estimates, and are read as truth only when asked for.
+/// colour images' frame up to a world, or a topic of poses that is named after motion capture; of several,
+/// the one whose body tf joins with the camera, or else whose name speaks most of it, and how many there were
+/// is told. Odometry and maps are somebody's estimates, and are read as truth only when asked for.
 /// @param camera_frame the colour images'; poses of a body that tf holds fixed to it are made poses of it
 [[nodiscard]] BagTruth read_bag_truth(const MessageLog& log, const TopicChoice& choice,
                                       const std::string& camera_frame);

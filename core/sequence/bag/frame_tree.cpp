@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "core/sequence/bag/bag_stamps.hpp"
+
 namespace stillpoint {
 namespace {
 
@@ -24,17 +26,21 @@ double seconds_of(std::int64_t nanoseconds) {
   return value;
 }
 
-void FrameTree::add(const TransformMessage& transform) {
+void FrameTree::add(const TransformMessage& transform, std::int64_t recorded) {
   if (!transform.is_pose || transform.child.empty() || transform.child == transform.parent) return;
   Edge& edge = edges_[transform.child];
   if (edge.parent_from_child.empty()) edge.parent = transform.parent;
   if (edge.parent != transform.parent) return;
-  edge.parent_from_child.push_back({seconds_of(transform.stamp), transform.parent_from_child});
+  edge.stamps.push_back(transform.stamp), edge.recorded.push_back(recorded);
+  edge.parent_from_child.push_back({0.0, transform.parent_from_child});
 }
 
 void FrameTree::settle() {
   for (auto& [child, edge] : edges_) {
     Trajectory& poses = edge.parent_from_child;
+    const BagStamps settled = settle_bag_stamps(std::move(edge.stamps), edge.recorded);
+    edge.told = settled.told;
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i].timestamp = seconds_of(settled.stamps[i]);
     std::stable_sort(poses.begin(), poses.end(),
                      [](const StampedPose& a, const StampedPose& b) { return a.timestamp < b.timestamp; });
     poses.erase(
@@ -46,6 +52,22 @@ void FrameTree::settle() {
       return (pose.world_from_camera.matrix() - first.matrix()).cwiseAbs().maxCoeff() > kMoves;
     });
   }
+}
+
+std::vector<std::string> FrameTree::moving() const {
+  std::vector<std::string> frames;
+  for (const auto& [child, edge] : edges_)
+    if (edge.moves) frames.push_back(child);
+  return frames;
+}
+
+std::vector<std::string> FrameTree::told_of(const std::vector<std::string>& way) const {
+  std::vector<std::string> sentences;
+  for (const std::string& frame : way)
+    if (const auto edge = edges_.find(frame);
+        edge != edges_.end() && edge->second.moves && !edge->second.told.empty())
+      sentences.push_back(fmt::format("{}: {}", frame, edge->second.told));
+  return sentences;
 }
 
 std::vector<std::string> FrameTree::way_up(const std::string& frame) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,11 +15,17 @@ namespace stillpoint {
 class FrameTree {
  public:
   /// Takes a transform in; one that is no pose, or that makes a frame its own parent, is passed over.
-  void add(const TransformMessage& transform);
-  /// Puts what was added in order of time. Once, before anything is asked.
+  /// @param recorded ns, when its message was
+  void add(const TransformMessage& transform, std::int64_t recorded);
+  /// Puts what was added in order of time, by stamps that are settled as those of topics are
+  /// (bag_stamps.hpp). Once, before anything is asked.
   void settle();
 
   [[nodiscard]] bool knows(const std::string& frame) const { return edges_.contains(frame); }
+  /// Frames that move in their parents, by name.
+  [[nodiscard]] std::vector<std::string> moving() const;
+  /// What was wrong with the stamps of the frames of a way up, a sentence each that begins with the frame.
+  [[nodiscard]] std::vector<std::string> told_of(const std::vector<std::string>& way) const;
   /// From a frame up to where no parent is known: the frame itself is first. Ends before a loop closes.
   [[nodiscard]] std::vector<std::string> way_up(const std::string& frame) const;
   /// Where a frame is in the one its way up ends at, whenever the frame that moves most often was seen. Empty
@@ -31,8 +38,10 @@ class FrameTree {
  private:
   struct Edge {
     std::string parent;
+    std::vector<std::int64_t> stamps, recorded;  ///< ns, of parent_from_child until it is settled
     Trajectory parent_from_child;
     bool moves = false;
+    std::string told;  ///< of its stamps
   };
   std::map<std::string, Edge> edges_;  ///< by child
 };

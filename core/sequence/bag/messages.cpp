@@ -132,6 +132,9 @@ CameraInfoMessage camera_info_message(ByteView message, WireFormat format) {
   for (double& value : info.k) value = reader.number<double>();
   for (int i = 0; i < 9; ++i) reader.number<double>();  // R
   for (double& value : info.p) value = reader.number<double>();
+  for (std::uint32_t* value :
+       {&info.binning_x, &info.binning_y, &info.roi_x, &info.roi_y, &info.roi_height, &info.roi_width})
+    *value = reader.number<std::uint32_t>();
   return info;
 }
 

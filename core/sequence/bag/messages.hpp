@@ -29,6 +29,10 @@ inline constexpr std::size_t kStampBytes = 16;
 /// An image that is wider or higher is taken for a damaged message.
 inline constexpr std::uint32_t kLargestImageSide = 16384;  // px
 
+/// Messages at a topic's beginning that are looked at for one that tells what the topic holds: drivers begin
+/// with a few empty ones, and a topic that holds nothing else need not be read to its end.
+inline constexpr std::size_t kFirstMessages = 100;
+
 /// A ROS 2 type such as `sensor_msgs/msg/Image` as ROS 1 has it.
 [[nodiscard]] std::string plain_type(std::string type);
 
@@ -57,10 +61,13 @@ inline constexpr std::size_t kImageHeadBytes = 1024;
 struct CameraInfoMessage {
   MessageHeader header;
   std::uint32_t width = 0, height = 0;
-  std::string model;               ///< of distortion
-  std::vector<double> distortion;  ///< D
-  std::array<double, 9> k{};       ///< of the image as it is
-  std::array<double, 12> p{};      ///< of the rectified image
+  std::string model;                           ///< of distortion
+  std::vector<double> distortion;              ///< D
+  std::array<double, 9> k{};                   ///< of the image as it is
+  std::array<double, 12> p{};                  ///< of the rectified image
+  std::uint32_t binning_x = 0, binning_y = 0;  ///< pixels that became one; 0 means 1
+  /// What of the whole image is sent, px of it, before binning; all 0 means the whole.
+  std::uint32_t roi_x = 0, roi_y = 0, roi_width = 0, roi_height = 0;
 };
 [[nodiscard]] CameraInfoMessage camera_info_message(ByteView message, WireFormat format);
 
