@@ -331,7 +331,7 @@ std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
 }
 
 std::string scale_drift_sentence(const std::vector<MatchedPose>& matched) {
-  constexpr std::size_t kParts = 3;
+  constexpr std::size_t kParts = 3;    // of the pairs: a change shows, and each still tells a scale
   constexpr double kLeft = 0.6;        // of the error under one scale
   constexpr double kRemarkable = 0.1;  // log of the last scale over the first
   const Pairs pairs = pairs_of(matched);

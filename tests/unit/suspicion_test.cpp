@@ -140,7 +140,7 @@ TEST(Suspicion, ABodyThatCarriesTheCameraIsFoundWithItsTurn) {
 }
 
 /// sound(), whose estimate is of a body that carries the camera.
-std::vector<MatchedPose> carried(double turned_deg) {
+std::vector<MatchedPose> carried_poses(double turned_deg) {
   auto matched = sound();
   Pose camera_from_body = Pose::Identity();
   camera_from_body.linear() =
@@ -152,7 +152,7 @@ std::vector<MatchedPose> carried(double turned_deg) {
 
 TEST(Suspicion, ABodyMayBeTheEstimatesWhateverItsScale) {
   for (const double scale : {1.0, 10.0}) {
-    auto matched = carried(120);
+    auto matched = carried_poses(120);
     for (MatchedPose& pose : matched) pose.estimate.translation() *= scale;
     const auto suspicion = suspect_convention(matched, true);
     ASSERT_TRUE(suspicion) << scale;
@@ -189,7 +189,7 @@ TEST(Doubts, AreNoneOfSoundPosesAndElseWhatIsWrong) {
   EXPECT_THAT(doubts_of(small), ElementsAre(HasSubstr("(`evaluate --align sim3` does so)")));
   EXPECT_THAT(doubts_of(small, AlignBy::similarity), IsEmpty());
   // Over two thirds of a second no body can be found, and what is turned is seen all the same.
-  auto turned = carried(120);
+  auto turned = carried_poses(120);
   turned.resize(40);
   EXPECT_THAT(doubts_of(turned), ElementsAre(HasSubstr("all orientations are off by 120.")));
   auto at_random = sound();
@@ -218,7 +218,7 @@ TEST(Doubts, AScaleThatChangesOnTheWayIsTold) {
 
 /// A camera that goes straight on, a few millimetres beside a line, by an estimate that misses by `missing_m`
 /// and whose world is turned about that line.
-std::vector<MatchedPose> straight(double missing_m, double turned_deg) {
+std::vector<MatchedPose> along_a_line(double missing_m, double turned_deg) {
   std::vector<MatchedPose> matched;
   for (int i = 0; i < 60; ++i) {
     const double t = i / 30.0;
@@ -243,10 +243,10 @@ TEST(OpenRotation, IsToldWhereTheMissExplainsTheAngle) {
     }
     return open_rotation_sentence(evaluate_trajectory(truth, estimate));
   };
-  EXPECT_THAT(told(straight(0.005, 0)), HasSubstr("they do not tell the rotation about it"));
-  EXPECT_EQ(told(straight(0.0, 0)), "");
-  EXPECT_EQ(told(straight(0.0, 178)), "") << "the axes are wrong, and the positions say so";
-  EXPECT_EQ(told(straight(0.0, 178), 30.0), "") << "… whatever the scale";
+  EXPECT_THAT(told(along_a_line(0.005, 0)), HasSubstr("they do not tell the rotation about it"));
+  EXPECT_EQ(told(along_a_line(0.0, 0)), "");
+  EXPECT_EQ(told(along_a_line(0.0, 178)), "") << "the axes are wrong, and the positions say so";
+  EXPECT_EQ(told(along_a_line(0.0, 178), 30.0), "") << "… whatever the scale";
 }
 
 /// A camera that is waved to and fro with a period of 2.6 s while it is carried on, 30 poses a second.
