@@ -212,11 +212,10 @@ std::string lay_rows_on_frames(TrajectoryFile& file, const std::vector<double>& 
   const std::string of_first = fmt::format("the first {}", rows), of_every = "every " + ordinal(step);
   if (fits)
     return fmt::format(
-        "{}; they were given the times of {}, for motions over {:.2f} s then differ from the truth's by {}, "
+        "{}; they were given the times of {}, for motions then differ from the truth's by {}, "
         "and as {} by {} ({})",
-        unknown, is_every ? of_every : of_first, (is_every ? fits->every : fits->first).delta_s,
-        fit_text(is_every ? fits->every : fits->first), is_every ? of_first : of_every,
-        fit_text(is_every ? fits->first : fits->every), way_on);
+        unknown, is_every ? of_every : of_first, fit_text(is_every ? fits->every : fits->first),
+        is_every ? of_first : of_every, fit_text(is_every ? fits->first : fits->every), way_on);
   return fmt::format("{}; they were given the times of {}{} ({})", unknown, of_first,
                      step > 1 ? fmt::format(", and may as well be {}", of_every) : "", way_on);
 }
