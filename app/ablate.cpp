@@ -86,6 +86,14 @@ std::optional<AblationCell> run_variant(const FrameSource& source, const std::st
   return ablation_cell(report_on(result, source));
 }
 
+/// The two tables and what is to be known beside them.
+std::string both_tables(const std::string& method, const std::vector<AblationRow>& rows,
+                        const std::vector<std::string>& names) {
+  const std::string notes = notes_text(notes_on(rows, names));
+  return to_markdown(ablation_summary(method, rows, names)) + "\n" +
+         to_markdown(ablation_errors(rows, names)) + (notes.empty() ? notes : "\n" + notes);
+}
+
 /// A row a variant, still without cells.
 std::vector<AblationRow> rows_of(const std::vector<std::optional<Ingredient>>& variants) {
   std::vector<AblationRow> rows;
@@ -98,8 +106,7 @@ std::vector<AblationRow> rows_of(const std::vector<std::optional<Ingredient>>& v
 void write_results(const fs::path& folder, const std::string& method, const std::vector<AblationRow>& rows,
                    const std::vector<std::string>& names, const Provenance& made,
                    const std::vector<MissingRun>& missing = {}, std::size_t asked = 0) {
-  std::string text =
-      to_markdown(ablation_summary(method, rows, names)) + "\n" + to_markdown(ablation_errors(rows, names));
+  std::string text = both_tables(method, rows, names);
   nlohmann::ordered_json json = ablation_json(method, rows, names, made);
   if (!missing.empty()) text += "\n" + missing_text(missing, asked);
   for (const MissingRun& run : missing) json["missing"].push_back(to_json(run));
@@ -112,8 +119,8 @@ std::string ablation_text(const std::string& method, const std::vector<AblationR
                           const std::vector<std::string>& names) {
   return fmt::format(
       "Method {}, one ingredient left out at a time. Changes are against the whole method; RPE is "
-      "translational, over 1 s, its mean change the geometric mean over the sequences.\n\n{}\n{}",
-      method, to_markdown(ablation_summary(method, rows, names)), to_markdown(ablation_errors(rows, names)));
+      "translational, over 1 s, its mean change the geometric mean over the sequences.\n\n{}",
+      method, both_tables(method, rows, names));
 }
 
 /// Runs one cell of a plan as ablate() does.

@@ -119,7 +119,7 @@ void SequenceArguments::add_to(CLI::App& command, const char* frames_option) {
   command.add_option(
       "--truth", truth,
       "What a folder's ground truth means by a pose: as-written, inverse, w-first, mirrored-x, "
-      "mirrored-y (ICL-NUIM), mirrored-z, bonn");
+      "mirrored-y (ICL-NUIM), mirrored-z, opengl (y up, z backward), bonn");
   command.add_flag("--invert-masks", inverted_masks, "White in a folder's masks is what stands still");
   command.add_flag(
       "--calibrate-time", calibrate_time,

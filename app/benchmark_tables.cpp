@@ -23,10 +23,13 @@ std::string table_one_text(const BenchmarkResults& results, const BenchmarkColum
   return text;
 }
 
-/// Which runs are missing, where any is.
+/// What is to be known beside the figures, and which runs are missing, where there is anything.
 std::string after_tables(const BenchmarkResults& results, const BenchmarkColumns& columns) {
-  const std::string text = missing_text(results.missing, columns.asked);
-  return text.empty() ? text : "\n" + text;
+  std::string text;
+  for (const std::string& part :
+       {notes_text(notes_on(results)), missing_text(results.missing, columns.asked)})
+    if (!part.empty()) text += "\n" + part;
+  return text;
 }
 
 }  // namespace
@@ -61,15 +64,17 @@ BenchmarkResult result_of(const RunReport& report, bool judges) {
   result.p99_ms = report.speed.p99_ms;
   result.units = report.speed.units;
   result.hash = report.hash;
+  result.why_no_rpe = why_no_rpe(report);
+  result.doubt = report.doubt;
   return result;
 }
 
 std::string tables_text(const BenchmarkResults& results, const BenchmarkColumns& columns) {
-  const std::string missing = after_tables(results, columns);
+  const std::string after = after_tables(results, columns);
   if (!columns.repeated)
     return fmt::format(
         "Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}{}",
-        table_one_text(results, columns), to_markdown(details_table(results)), missing);
+        table_one_text(results, columns), to_markdown(details_table(results)), after);
   const SpreadTable table = spread_of_runs(results, columns.engines, columns.methods);
   return fmt::format(
       "Translational RPE over 1 s, RMSE in m: median of several runs and half the distance of their "
@@ -77,7 +82,7 @@ std::string tables_text(const BenchmarkResults& results, const BenchmarkColumns&
       "runs differ by a few features, the seed and the first frame. Best and second are marked only where "
       "the\n"
       "quartiles do not overlap.\n\n{}{}",
-      spread_text(table.rows, table.methods, "RPE 1 s, RMSE [m]", TableMarkup::markdown), missing);
+      spread_text(table.rows, table.methods, "RPE 1 s, RMSE [m]", TableMarkup::markdown), after);
 }
 
 void write_tables(const BenchmarkResults& results, const BenchmarkColumns& columns, const std::string& to) {

@@ -76,12 +76,16 @@ std::unique_ptr<FrameSource> open_frames(const std::string& where, const Evaluat
   return open_sequence(where, options);
 }
 
-void read_truth(const EvaluateArguments& arguments, int& frames, Compared& compared) {
+/// @returns what rows without stamps are laid on: the frames' stamps, or the rows' numbers of a truth that
+///          has none either
+std::vector<double> read_truth(const EvaluateArguments& arguments, int& frames, Compared& compared) {
   if (!is_sequence(arguments.truth)) {
     TrajectoryFile file = read_trajectory_file(arguments.truth);
     compared.truth = std::move(file.poses);
     compared.warnings = std::move(file.warnings);
-    return;
+    std::vector<double> numbers;
+    for (int i = 0; !file.has_stamps && i < file.rows; ++i) numbers.push_back(i);
+    return compared.clocks.frame_stamps.empty() ? numbers : compared.clocks.frame_stamps;
   }
   const auto source = open_frames(arguments.truth, arguments);
   if (source->ground_truth().empty()) {
@@ -94,16 +98,25 @@ void read_truth(const EvaluateArguments& arguments, int& frames, Compared& compa
   if (frames == 0) frames = source->size();
   compared.truth = source->ground_truth();
   compared.clocks.truth_in_seconds = true;
-  for (int i = 0; i < source->size(); ++i) compared.clocks.frame_stamps.push_back(source->timestamp(i));
+  return compared.clocks.frame_stamps = source->recorded_stamps();
 }
 
-void read_estimate(const EvaluateArguments& arguments, Compared& compared) {
+void read_estimate(const EvaluateArguments& arguments, const std::vector<double>& frames,
+                   Compared& compared) {
   std::optional<QuaternionOrder> order;
   if (!arguments.quaternion.empty())
     order = arguments.quaternion == "wxyz" ? QuaternionOrder::wxyz : QuaternionOrder::xyzw;
   TrajectoryFile file = read_estimate_file(arguments.estimate, order);
-  compared.estimate = std::move(file.poses);
   compared.warnings.insert(compared.warnings.end(), file.warnings.begin(), file.warnings.end());
+  convert(file.poses, convention_argument("--estimate", arguments.estimate_convention));
+  // As many rows as a truth without stamps has are the same ones.
+  const bool are_the_truths =
+      compared.clocks.frame_stamps.empty() && static_cast<std::size_t>(file.rows) == frames.size();
+  if (!are_the_truths)
+    if (std::string laid = lay_rows_on_frames(file, frames, compared.truth, arguments.estimate);
+        !laid.empty())
+      compared.warnings.push_back(std::move(laid));
+  compared.estimate = std::move(file.poses);
 }
 
 Compared read_both(const EvaluateArguments& arguments, EvaluationOptions& options) {
@@ -115,14 +128,13 @@ Compared read_both(const EvaluateArguments& arguments, EvaluationOptions& option
   if (!arguments.sequence.empty()) {
     const auto source = open_frames(arguments.sequence, arguments);
     options.expected_frames = source->size();
-    for (int i = 0; i < source->size(); ++i) clocks.frame_stamps.push_back(source->timestamp(i));
+    clocks.frame_stamps = source->recorded_stamps();
   }
-  read_truth(arguments, options.expected_frames, compared);
-  read_estimate(arguments, compared);
+  const std::vector<double> frames = read_truth(arguments, options.expected_frames, compared);
+  convert(compared.truth, convention_argument("--truth", arguments.truth_convention));
+  read_estimate(arguments, frames, compared);
   const auto notes = settle_clocks(compared.truth, compared.estimate, clocks);
   compared.warnings.insert(compared.warnings.end(), notes.begin(), notes.end());
-  convert(compared.truth, convention_argument("--truth", arguments.truth_convention));
-  convert(compared.estimate, convention_argument("--estimate", arguments.estimate_convention));
   return compared;
 }
 
@@ -139,22 +151,14 @@ void question(const TrajectoryEvaluation& evaluation, const EvaluateArguments& a
     warnings.push_back(fmt::format("{}: holds {}, more than the {}", arguments.estimate,
                                    counted(evaluation.estimated_poses, "pose"),
                                    counted(evaluation.expected_frames, "frame")));
-  if (const std::string held = held_pose_sentence(evaluation.matched); !held.empty())
-    warnings.push_back(fmt::format("{}: {}", arguments.estimate, held));
   const bool by_positions = arguments.options.align == AlignBy::rigid ||
                             arguments.options.align == AlignBy::similarity ||
                             arguments.options.align == AlignBy::first;
   if (const std::string open = open_rotation_sentence(evaluation); by_positions && !open.empty())
     warnings.push_back(fmt::format("{}: {}", arguments.estimate, open));
-  if (const auto suspicion = suspect_convention(evaluation.matched, true))
-    warnings.push_back(suspicion->sentence());
-  else if (const std::string clock = clock_sentence(compared.truth, compared.estimate, evaluation);
-           by_positions && !clock.empty())
-    warnings.push_back(
-        fmt::format("{}: {} (`--time-offset auto` finds how much)", arguments.estimate, clock));
-  else if (const std::string scale = scale_sentence(evaluation);
-           !scale.empty() && arguments.options.align == AlignBy::rigid)
-    warnings.push_back(fmt::format("{}: {} (`--align sim3` does so)", arguments.estimate, scale));
+  for (const Doubt& doubt :
+       doubts_about(compared.truth, compared.estimate, evaluation, arguments.options.align, ""))
+    warnings.push_back(fmt::format("{}: {}", arguments.estimate, doubt.sentence));
 }
 
 double number_argument(const char* option, const std::string& text, double least, double most) {
@@ -293,7 +297,7 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option(
       "--truth", arguments->truth_convention,
       "What the ground truth's poses mean: as-written, inverse, w-first, mirrored-x, mirrored-y, "
-      "mirrored-z, bonn");
+      "mirrored-z, opengl, bonn");
   command->add_option("--estimate", arguments->estimate_convention, "The same of the estimate's poses");
   command->add_option("--time-offset", arguments->time_offset,
                       "Added to the estimate's stamps [s]; `auto` finds it from the two paths, and tells it");

@@ -72,7 +72,7 @@ void add_import_command(CLI::App& app) {
   command->add_option(
       "--estimate", arguments->convention,
       "What its poses mean: as-written, inverse, w-first, mirrored-x, mirrored-y, mirrored-z, "
-      "bonn");
+      "opengl, bonn");
   command->add_option("--time-offset", arguments->time_offset_s, "Added to its stamps [s]")
       ->check(number_between(-1e10, 1e10));
   arguments->frames.add_to(*command);

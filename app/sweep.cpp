@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "app/arguments.hpp"
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "app/version.hpp"
 #include "core/error.hpp"
 #include "core/odometry/frame_result.hpp"
 #include "core/out_folder.hpp"
@@ -26,8 +28,11 @@ struct SweepArguments {
 
 /// What each sequence gave so far, as tables and for programs.
 struct SweepResults {
+  Provenance made = made_here();
   std::string markdown;
-  Table list{{"sequence", "parameter", "value", "rpe_m", "iou", "coverage", "median_ms", "run_hash"}, {}};
+  Table list{{"sequence", "parameter", "value", "rpe_m", "iou", "coverage", "median_ms", "run_hash", "ate_m",
+              "rpe_frame_m", "doubt"},
+             {}};
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
 
   void add(const std::string& sequence, const SweepRange& range, const std::vector<SweepPoint>& points) {
@@ -35,15 +40,19 @@ struct SweepResults {
                             to_markdown(sweep_table(range, points)));
     if (const auto best = best_of(points))
       markdown += fmt::format("\nleast RPE at {} = {:.6g}\n", range.parameter, points[*best].value);
+    if (const std::string notes = notes_text(notes_on(range, points)); !notes.empty())
+      markdown += "\n" + notes;
     json.push_back(sweep_json(sequence, range, points));
+    json.back().update(to_json(made));
     const auto number = [](const std::optional<double>& value) {
       return value ? fmt::format("{}", *value) : std::string();
     };
     for (const SweepPoint& point : points)
-      list.rows.push_back({sequence, range.parameter, fmt::format("{}", point.value),
-                           number(point.reached.rpe_m), number(point.reached.mask_iou),
-                           fmt::format("{}", point.reached.coverage),
-                           fmt::format("{:.3f}", point.reached.median_ms), point.reached.hash});
+      list.rows.push_back(
+          {sequence, range.parameter, fmt::format("{}", point.value), number(point.reached.rpe_m),
+           number(point.reached.mask_iou), fmt::format("{}", point.reached.coverage),
+           fmt::format("{:.3f}", point.reached.median_ms), point.reached.hash, number(point.reached.ate_m),
+           number(point.reached.rpe_frame_m), point.reached.doubt});
   }
 
   void write(const std::filesystem::path& folder) const {
@@ -60,6 +69,8 @@ void sweep(const SweepArguments& arguments) {
                                ? usual_sweep(config, arguments.parameter)
                                : sweep_range(arguments.parameter);
   const std::vector<double> values = sweep_values(config, range);
+  for (const std::string& remark : sweep_remarks(config, range, values))
+    std::fprintf(stderr, "stillpoint: warning: %s\n", remark.c_str());
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (const std::string& sequence : expanded_sequences(arguments.sequences))
     sources.push_back(arguments.frames.open(

@@ -111,15 +111,17 @@ std::optional<TimeShift> find_time_shift(const Trajectory& truth, const Trajecto
 std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate, bool estimate_may_err) {
   std::vector<Finding> findings;
   const TrajectoryEvaluation evaluation = evaluate_trajectory(truth, estimate);
-  if (const auto suspicion = suspect_convention(evaluation.matched, estimate_may_err)) {
-    findings.push_back(
-        {suspicion->of == Suspicion::Of::estimate ? "estimate" : "truth", suspicion->sentence()});
+  if (estimate_may_err) {
+    for (const Doubt& doubt :
+         doubts_about(truth, estimate, evaluation, AlignBy::rigid, "stillpoint evaluate "))
+      findings.push_back({doubt.of == Suspicion::Of::truth ? "truth" : "estimate", doubt.sentence});
+    if (!findings.empty()) return findings;
+  } else if (const auto suspicion = suspect_convention(evaluation.matched, false)) {
+    findings.push_back({"truth", suspicion->sentence()});
     return findings;  // what else is off shows once this is mended
+  } else if (const std::string scale = scale_sentence(evaluation); !scale.empty()) {
+    findings.push_back({"depth", scale + ": `--depth-scale` sets the depth's"});
   }
-  if (const std::string scale = scale_sentence(evaluation); !scale.empty())
-    findings.push_back(
-        {estimate_may_err ? "estimate" : "depth",
-         scale + (estimate_may_err ? " (`--scale` does so)" : ": `--depth-scale` sets the depth's")});
   if (const auto shift = find_time_shift(truth, estimate))
     findings.push_back(
         {"truth", fmt::format("the ground truth fits better {:.3f} s {}: motions then differ by {:.4f} m "

@@ -29,7 +29,8 @@ void to_json(nlohmann::json& json, const Finding& finding);
 [[nodiscard]] std::vector<Finding> look_over(const FrameSource& source);
 
 /// What can be said of ground truth beside poses that are independent of it: a convention, a constant motion
-/// between two bodies, a scale, a shift in time, each by how much better the alternative fits.
+/// between two bodies, a scale, a shift in time, each by how much better the alternative fits; of another
+/// program's estimate all that `evaluate` doubts (doubts_about).
 /// @param estimate_may_err false where the estimate is our own, whose convention is known
 [[nodiscard]] std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate,
                                                bool estimate_may_err);

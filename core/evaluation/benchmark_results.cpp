@@ -17,6 +17,14 @@ nlohmann::ordered_json or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+nlohmann::ordered_json sentence_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+}
+
+void read_sentence(const nlohmann::json& json, const char* key, std::string& text) {
+  if (const auto it = json.find(key); it != json.end() && !it->is_null()) it->get_to(text);
+}
+
 template <typename Value>
 void read_optional(const nlohmann::json& json, const char* key, std::optional<Value>& value) {
   if (const auto it = json.find(key); it != json.end() && !it->is_null()) value = it->get<Value>();
@@ -45,6 +53,8 @@ BenchmarkResult run_from(const nlohmann::json& json) {
   json.at("p99_ms").get_to(r.p99_ms);
   json.at("orb_units").get_to(r.units);
   json.at("run_hash").get_to(r.hash);
+  read_sentence(json, "rpe_why_none", r.why_no_rpe);
+  read_sentence(json, "doubt", r.doubt);
   return r;
 }
 
@@ -108,6 +118,8 @@ nlohmann::ordered_json to_json(const BenchmarkResult& r) {
   json["p99_ms"] = r.p99_ms;
   json["orb_units"] = r.units;
   json["run_hash"] = r.hash;
+  json["rpe_why_none"] = sentence_or_null(r.why_no_rpe);
+  json["doubt"] = sentence_or_null(r.doubt);
   return json;
 }
 
@@ -209,6 +221,17 @@ Table details_table(const BenchmarkResults& results) {
                           whole(r.wrong), time(r.median_ms, 1), time(r.p99_ms, 1), time(r.units, 2)});
   }
   return table;
+}
+
+std::vector<RunNote> notes_on(const BenchmarkResults& results) {
+  std::vector<RunNote> notes;
+  for (const BenchmarkResult& r : results.runs) {
+    std::string run = fmt::format("{}, {}", r.sequence, r.method);
+    if (r.odometry != kItsOwnOdometry) run += ", odometry " + r.odometry;
+    if (r.repeat > 0) run += fmt::format(", run {}", r.repeat + 1);
+    notes.push_back({run, r.why_no_rpe, r.doubt});
+  }
+  return notes;
 }
 
 std::string exit_text(int status) {

@@ -31,6 +31,8 @@ struct BenchmarkResult {
   double median_ms = 0.0, p99_ms = 0.0;      ///< wall time of tracking a frame
   double units = 0.0;                        ///< median_ms in units of one ORB extraction; 0 = not measured
   std::string hash;                          ///< run_hash
+  std::string why_no_rpe{};                  ///< of the RPE over 1 s; empty where there is one
+  std::string doubt{};                       ///< RunReport::doubt
   bool operator==(const BenchmarkResult&) const = default;
 };
 
@@ -89,6 +91,9 @@ struct BenchmarkResults : Provenance {
 
 /// What Table 1 leaves out: a row a run with its other errors, coverage, masks and speed.
 [[nodiscard]] Table details_table(const BenchmarkResults& results);
+
+/// What is to be known beside these figures.
+[[nodiscard]] std::vector<RunNote> notes_on(const BenchmarkResults& results);
 
 /// "exit status 1", "exit status 139 (signal 11)".
 [[nodiscard]] std::string exit_text(int status);

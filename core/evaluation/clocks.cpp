@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "core/counted.hpp"
+#include "core/evaluation/suspicion.hpp"
+#include "core/evaluation/trajectory_metrics.hpp"
 
 namespace stillpoint {
 namespace {
@@ -115,6 +120,51 @@ class Readings {
   const ClockOptions& options_;
 };
 
+/// Rows on every `step`-th frame, as far as there are frames.
+Trajectory laid_on(const Trajectory& rows, const std::vector<double>& frame_stamps, std::size_t step) {
+  Trajectory laid;
+  for (const StampedPose& row : rows)
+    if (const auto frame = static_cast<std::size_t>(row.timestamp) * step; frame < frame_stamps.size())
+      laid.push_back({frame_stamps[frame], row.world_from_camera});
+  return laid;
+}
+
+/// k where there is a row for every k-th of the frames, a row more or less; 1 where there is not.
+std::size_t step_of_rows(std::size_t rows, std::size_t frames) {
+  const std::size_t step = (frames + rows / 2) / rows;
+  return step > 1 && step * rows < frames + 2 * step && frames < step * rows + step ? step : 1;
+}
+
+/// How well motions are the truth's where rows are laid on the first frames and on every k-th.
+struct RowFits {
+  MotionFit first, every;
+  [[nodiscard]] bool is_every() const {
+    return every.tells_motions() && 2 * every.combined_m() < first.combined_m();
+  }
+  [[nodiscard]] bool is_first() const {
+    return first.tells_motions() && 2 * first.combined_m() < every.combined_m();
+  }
+};
+
+/// By metres, or else up to a scale, which programs of one camera leave open. Nothing where neither tells.
+std::optional<RowFits> telling_fits(const Trajectory& first, const Trajectory& every,
+                                    const Trajectory& truth) {
+  const auto on_first = match_trajectories(truth, first), on_every = match_trajectories(truth, every);
+  for (const bool scale_is_free : {false, true}) {
+    const RowFits fits{motion_fit(on_first, scale_is_free), motion_fit(on_every, scale_is_free)};
+    if (fits.is_every() || fits.is_first()) return fits;
+  }
+  return std::nullopt;
+}
+
+std::string fit_text(const MotionFit& fit) {
+  return fmt::format("{:.4f} m, {:.2f} deg", fit.translation_m, fit.rotation_deg);
+}
+
+std::string ordinal(std::size_t number) {
+  return fmt::format("{}{}", number, number == 2 ? "nd" : number == 3 ? "rd" : "th");
+}
+
 }  // namespace
 
 std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate, const ClockOptions& options) {
@@ -135,6 +185,39 @@ std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate, 
   set_stamps(truth, readings.truth(reading.truth));
   set_stamps(estimate, readings.estimate(reading));
   return notes;
+}
+
+std::string lay_rows_on_frames(TrajectoryFile& file, const std::vector<double>& frame_stamps,
+                               const Trajectory& truth, const std::string& name) {
+  if (file.has_stamps || file.rows <= 0 || frame_stamps.empty()) return "";
+  const auto rows = static_cast<std::size_t>(file.rows);
+  Trajectory first = laid_on(file.poses, frame_stamps, 1);
+  const std::string unknown = fmt::format("{}: {} without stamps do not say which of the {} they are", name,
+                                          counted(rows, "row"), counted(frame_stamps.size(), "frame")),
+                    way_on = "a stamp or a frame's number before each row would say it";
+  if (rows == frame_stamps.size()) {
+    file.poses = std::move(first);
+    return fmt::format("{}: the rows have no stamps; each was given its frame's time", name);
+  }
+  if (rows > frame_stamps.size()) {
+    file.poses = std::move(first);
+    return fmt::format("{}; the first {} were given the frames' times and the rest left out ({})", unknown,
+                       frame_stamps.size(), way_on);
+  }
+  const std::size_t step = step_of_rows(rows, frame_stamps.size());
+  Trajectory every = laid_on(file.poses, frame_stamps, step);
+  const auto fits = step > 1 ? telling_fits(first, every, truth) : std::nullopt;
+  const bool is_every = fits && fits->is_every();
+  file.poses = std::move(is_every ? every : first);
+  const std::string of_first = fmt::format("the first {}", rows), of_every = "every " + ordinal(step);
+  if (fits)
+    return fmt::format(
+        "{}; they were given the times of {}, for motions then differ from the truth's by {}, "
+        "and as {} by {} ({})",
+        unknown, is_every ? of_every : of_first, fit_text(is_every ? fits->every : fits->first),
+        is_every ? of_first : of_every, fit_text(is_every ? fits->first : fits->every), way_on);
+  return fmt::format("{}; they were given the times of {}{} ({})", unknown, of_first,
+                     step > 1 ? fmt::format(", and may as well be {}", of_every) : "", way_on);
 }
 
 std::string why_apart(const Trajectory& truth, const Trajectory& estimate, const ClockOptions& options) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/trajectory.hpp"
+#include "core/geometry/trajectory_file.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/stamps.hpp"
 
@@ -26,6 +27,16 @@ struct ClockOptions {
 /// only that lets all meet.
 [[nodiscard]] std::vector<std::string> settle_clocks(Trajectory& truth, Trajectory& estimate,
                                                      const ClockOptions& options);
+
+/// Gives rows without stamps (KITTI's), which are told apart by their number alone, the stamps of frames: of
+/// the first ones, a row each. Where there is about a row for every k-th frame, they are laid on these if
+/// motions are then the truth's, by less than half of the error that they have on the first; rows beyond the
+/// last frame are left out.
+/// @param frame_stamps of all frames that the rows may stand for, in increasing order
+/// @param truth on the clock of these; empty where there is none
+/// @returns what was done and why, one sentence; empty for a file that has stamps
+[[nodiscard]] std::string lay_rows_on_frames(TrajectoryFile& file, const std::vector<double>& frame_stamps,
+                                             const Trajectory& truth, const std::string& name);
 
 /// Why two trajectories in seconds meet nowhere, as far as that can be told: another origin of the clock and
 /// by how much, or frame numbers against times. One sentence that names the way on.

@@ -50,7 +50,10 @@ std::string alignment_text(const TrajectoryEvaluation& e, const EvaluationOption
     case AlignBy::origin:
       return "by the first matched pose";
     case AlignBy::first:
-      return fmt::format("rigidly (SE(3)) by the first {} matched poses", options.align_first);
+      return options.align_first > static_cast<int>(e.matched.size())
+                 ? fmt::format("rigidly (SE(3)) by all {}, fewer than the first {} asked for",
+                               counted(e.matched.size(), "matched pose"), options.align_first)
+                 : fmt::format("rigidly (SE(3)) by the first {} matched poses", options.align_first);
     case AlignBy::similarity:
       return "with scale (Sim(3))";
     case AlignBy::rigid:

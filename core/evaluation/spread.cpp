@@ -176,7 +176,9 @@ nlohmann::ordered_json spread_json(const std::vector<SpreadRow>& rows,
                      {"lower_quartile", figure(s.lower)},
                      {"upper_quartile", figure(s.upper)},
                      {"failed", s.failed},
-                     {"values", s.values}});
+                     {"values", s.values},
+                     {"figure", "RPE 1 s, RMSE"},
+                     {"unit", "m"}});
     }
   return all;
 }

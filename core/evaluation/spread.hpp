@@ -61,7 +61,8 @@ enum class TableMarkup { markdown, latex, csv };
                                       const std::vector<std::string>& methods, const std::string& what,
                                       TableMarkup markup);
 
-/// A list of {sequence, method, median, lower_quartile, upper_quartile, failed, values}.
+/// A list of {sequence, method, median, lower_quartile, upper_quartile, failed, values, figure, unit}: of the
+/// RPE over 1 s in m.
 [[nodiscard]] nlohmann::ordered_json spread_json(const std::vector<SpreadRow>& rows,
                                                  const std::vector<std::string>& methods);
 

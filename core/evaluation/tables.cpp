@@ -1,11 +1,13 @@
 #include "core/evaluation/tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace stillpoint {
 namespace {
@@ -120,6 +122,28 @@ std::string to_csv(const Table& table) {
   std::string text = csv_line(table.header);
   for (const auto& row : table.rows) text += csv_line(row);
   return text;
+}
+
+std::string notes_text(const std::vector<RunNote>& notes) {
+  constexpr std::size_t kNamed = 4, kDoubts = 20;  // runs of one reason by name; lines
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  std::string doubts;
+  std::size_t count = 0;
+  for (const RunNote& note : notes) {
+    if (!note.doubt.empty() && count++ < kDoubts) doubts += fmt::format("- {}: {}\n", note.run, note.doubt);
+    if (note.why_no_rpe.empty()) continue;
+    auto reason = std::find_if(reasons.begin(), reasons.end(),
+                               [&note](const auto& known) { return known.first == note.why_no_rpe; });
+    if (reason == reasons.end()) reason = reasons.insert(reason, {note.why_no_rpe, {}});
+    reason->second.push_back(note.run);
+  }
+  if (count > kDoubts) doubts += fmt::format("- {} more runs are to be doubted\n", count - kDoubts);
+  std::string text;
+  for (const auto& [why, runs] : reasons)
+    text += fmt::format("- no RPE over 1 s: {} ({})\n", why,
+                        runs.size() > kNamed ? fmt::format("{} runs", runs.size())
+                                             : fmt::format("{}", fmt::join(runs, "; ")));
+  return text + doubts;
 }
 
 const std::vector<PublishedRow>& published_table() {

@@ -29,6 +29,17 @@ struct Table {
 /// CSV after RFC 4180 with LF line ends.
 [[nodiscard]] std::string to_csv(const Table& table);
 
+/// What is to be known beside a run's figures.
+struct RunNote {
+  std::string run;         ///< which: sequence and method, or a value
+  std::string why_no_rpe;  ///< why it has no RPE over 1 s; empty where it has one
+  std::string doubt;       ///< why its figures are to be doubted (RunReport::doubt); empty mostly
+};
+
+/// For below a table, as a list: each reason for which there is no RPE, with its runs, and a doubt a run, as
+/// many as fit a screen. Empty where there is nothing to say.
+[[nodiscard]] std::string notes_text(const std::vector<RunNote>& notes);
+
 /// A row of the paper's Table 1 (Niu & Li 2019): translational RPE, RMSE in m, by inference over 1 s.
 struct PublishedRow {
   std::string sequence;         ///< short name, such as fr3_walking_xyz

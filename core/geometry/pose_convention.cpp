@@ -13,6 +13,14 @@ Pose mirrored(const Pose& pose, const Eigen::Vector3d& signs) {
   return result;
 }
 
+/// By half a turn about the camera's own x.
+Pose turned_about_x(const Pose& pose) {
+  Pose result = pose;
+  result.linear().col(1) *= -1.0;
+  result.linear().col(2) *= -1.0;
+  return result;
+}
+
 /// Axes of the motion capture system seen from ROS's, as the data set's page gives them.
 Pose bonn_ros() {
   Pose pose = Pose::Identity();
@@ -44,7 +52,8 @@ Pose reread_w_first(const Pose& pose) {
 const std::vector<PoseConvention>& other_conventions() {
   static const std::vector<PoseConvention> all = {PoseConvention::inverse,    PoseConvention::w_first,
                                                   PoseConvention::mirrored_x, PoseConvention::mirrored_y,
-                                                  PoseConvention::mirrored_z, PoseConvention::bonn};
+                                                  PoseConvention::mirrored_z, PoseConvention::opengl,
+                                                  PoseConvention::bonn};
   return all;
 }
 
@@ -60,6 +69,8 @@ std::string_view to_string(PoseConvention convention) {
       return "mirrored-y";
     case PoseConvention::mirrored_z:
       return "mirrored-z";
+    case PoseConvention::opengl:
+      return "opengl";
     case PoseConvention::bonn:
       return "bonn";
     case PoseConvention::as_written:
@@ -80,6 +91,8 @@ std::string_view meaning_of(PoseConvention convention) {
       return "the poses are mirrored in y against the images";
     case PoseConvention::mirrored_z:
       return "the poses are mirrored in z against the images";
+    case PoseConvention::opengl:
+      return "the poses are of an OpenGL camera, y up and z backward";
     case PoseConvention::bonn:
       return "the poses are those of Bonn's marker body";
     case PoseConvention::as_written:
@@ -107,6 +120,8 @@ Pose camera_pose(const Pose& written, PoseConvention convention) {
       return mirrored(written, {1, -1, 1});
     case PoseConvention::mirrored_z:
       return mirrored(written, {1, 1, -1});
+    case PoseConvention::opengl:
+      return turned_about_x(written);
     case PoseConvention::bonn:
       return bonn_ros().inverse() * written * bonn_ros() * bonn_marker();
     case PoseConvention::as_written:

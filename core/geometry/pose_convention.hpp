@@ -17,7 +17,8 @@ enum class PoseConvention {
   mirrored_x,  ///< both frames mirrored: F T F, F = diag(-1, 1, 1)
   mirrored_y,  ///< F = diag(1, -1, 1): ICL-NUIM, whose images have y down and whose poses have it up
   mirrored_z,  ///< F = diag(1, 1, -1)
-  bonn,        ///< the pose of Bonn's marker body: T_ROS⁻¹ G T_ROS T_m
+  opengl,  ///< the camera's own axes with y up and z backward: T diag(1, -1, -1), as NeRF and Blender write
+  bonn,    ///< the pose of Bonn's marker body: T_ROS⁻¹ G T_ROS T_m
 };
 
 /// All but as_written, in the order above.

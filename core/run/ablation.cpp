@@ -31,8 +31,20 @@ std::string signed_percent(const std::optional<double>& share) {
   return share ? fmt::format("{:+.1f} %", 100.0 * *share) : std::string(kNothing);
 }
 
-nlohmann::ordered_json or_null(const std::optional<double>& value) {
+template <typename Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+std::optional<std::string> sentence(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+/// Nothing for null, and where an earlier version did not write it.
+template <typename Value>
+std::optional<Value> optional_in(const nlohmann::json& json, const char* key) {
+  const auto it = json.find(key);
+  return it == json.end() || it->is_null() ? std::nullopt : std::optional(it->get<Value>());
 }
 
 /// A mean of what is known.
@@ -52,6 +64,10 @@ AblationCell ablated_cell_from(const nlohmann::json& json) {
   json.at("coverage").get_to(cell.coverage);
   json.at("median_ms").get_to(cell.median_ms);
   json.at("run_hash").get_to(cell.hash);
+  cell.ate_m = optional_in<double>(json, "ate_m");
+  cell.rpe_frame_m = optional_in<double>(json, "rpe_frame_m");
+  cell.why_no_rpe = optional_in<std::string>(json, "rpe_why_none").value_or("");
+  cell.doubt = optional_in<std::string>(json, "doubt").value_or("");
   return cell;
 }
 
@@ -103,8 +119,16 @@ Config ablated(Config config, const Ingredient* without) {
 
 AblationCell ablation_cell(const RunReport& report) {
   AblationCell cell;
-  if (report.evaluation && report.evaluation->rpe_time.translation_m.count > 0)
-    cell.rpe_m = report.evaluation->rpe_time.translation_m.rmse;
+  const auto rmse = [](const ErrorStatistics& errors) {
+    return errors.count > 0 ? std::optional(errors.rmse) : std::nullopt;
+  };
+  if (const auto& e = report.evaluation) {
+    cell.rpe_m = rmse(e->rpe_time.translation_m);
+    cell.ate_m = rmse(e->ate.translation_m);
+    cell.rpe_frame_m = rmse(e->rpe_frame.translation_m);
+  }
+  cell.why_no_rpe = why_no_rpe(report);
+  cell.doubt = report.doubt;
   // A baseline makes no masks that could be right or wrong.
   if (report.scores.known && !method_named(report.method).baseline) cell.mask_iou = report.scores.mask.iou();
   cell.coverage = report.coverage;
@@ -118,7 +142,11 @@ nlohmann::ordered_json to_json(const AblationCell& cell) {
           {"mask_iou", or_null(cell.mask_iou)},
           {"coverage", cell.coverage},
           {"median_ms", cell.median_ms},
-          {"run_hash", cell.hash}};
+          {"run_hash", cell.hash},
+          {"ate_m", or_null(cell.ate_m)},
+          {"rpe_frame_m", or_null(cell.rpe_frame_m)},
+          {"rpe_why_none", or_null(sentence(cell.why_no_rpe))},
+          {"doubt", or_null(sentence(cell.doubt))}};
 }
 
 AblationCell ablation_cell_from_json(const std::string& text, const std::string& where) {
@@ -172,16 +200,35 @@ Table ablation_summary(const std::string& method, const std::vector<AblationRow>
 }
 
 Table ablation_errors(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
+  const auto any = [&rows](std::optional<double> AblationCell::*figure) {
+    return std::any_of(rows.begin(), rows.end(), [figure](const AblationRow& row) {
+      return std::any_of(row.cells.begin(), row.cells.end(),
+                         [figure](const AblationCell& cell) { return (cell.*figure).has_value(); });
+    });
+  };
+  const bool by_frame = !any(&AblationCell::rpe_m) && any(&AblationCell::rpe_frame_m);
   Table table;
-  table.header = {"RPE 1 s, RMSE [m]"};
+  table.header = {by_frame ? "RPE 1 frame, RMSE [m]" : "RPE 1 s, RMSE [m]"};
   for (const AblationRow& row : rows) table.header.push_back(name_of(row));
   for (std::size_t i = 0; i < sequences.size(); ++i) {
     std::vector<std::string> cells = {sequences[i]};
     for (const AblationRow& row : rows)
-      cells.push_back(i < row.cells.size() ? number(row.cells[i].rpe_m, 4) : kNothing);
+      cells.push_back(i >= row.cells.size() ? kNothing
+                      : by_frame            ? number(row.cells[i].rpe_frame_m, 5)
+                                            : number(row.cells[i].rpe_m, 4));
     table.rows.push_back(std::move(cells));
   }
   return table;
+}
+
+std::vector<RunNote> notes_on(const std::vector<AblationRow>& rows,
+                              const std::vector<std::string>& sequences) {
+  std::vector<RunNote> notes;
+  for (std::size_t i = 0; i < sequences.size(); ++i)
+    for (const AblationRow& row : rows)
+      if (i < row.cells.size())
+        notes.push_back({sequences[i] + ", " + name_of(row), row.cells[i].why_no_rpe, row.cells[i].doubt});
+  return notes;
 }
 
 Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {

@@ -34,6 +34,10 @@ struct AblationCell {
   double coverage = 0.0;           ///< share of frames with a pose
   double median_ms = 0.0;          ///< tracking time a frame
   std::string hash;  ///< of the run's frames: equal to the whole method's where leaving out changed none
+  std::optional<double> ate_m{};        ///< RMSE, m
+  std::optional<double> rpe_frame_m{};  ///< translational RPE over one frame, RMSE, m
+  std::string why_no_rpe{};             ///< of the RPE over 1 s; empty where there is one
+  std::string doubt{};                  ///< RunReport::doubt
 };
 
 [[nodiscard]] AblationCell ablation_cell(const RunReport& report);
@@ -68,9 +72,13 @@ struct AblationChange {
 [[nodiscard]] Table ablation_summary(const std::string& method, const std::vector<AblationRow>& rows,
                                      const std::vector<std::string>& sequences);
 
-/// A row a sequence: RPE over 1 s of each variant.
+/// A row a sequence: RPE over 1 s of each variant, or over one frame where no run lasts a second.
 [[nodiscard]] Table ablation_errors(const std::vector<AblationRow>& rows,
                                     const std::vector<std::string>& sequences);
+
+/// What is to be known beside these figures.
+[[nodiscard]] std::vector<RunNote> notes_on(const std::vector<AblationRow>& rows,
+                                            const std::vector<std::string>& sequences);
 
 /// A row a run, for programs.
 [[nodiscard]] Table ablation_list(const std::vector<AblationRow>& rows,

@@ -173,17 +173,21 @@ Trajectory read_poses(const FrameSource& source, const FrameFinder& frames, cons
                       const std::string& path, std::vector<std::string>& warnings) {
   TrajectoryFile file = read_estimate_file(path, files.quaternion);
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  for (StampedPose& pose : file.poses)
+    pose.world_from_camera = camera_pose(pose.world_from_camera, files.convention);
+  // Numbers are of the whole recording's frames, however many are looked at.
+  const std::vector<double> recorded = source.recorded_stamps();
+  if (std::string laid = lay_rows_on_frames(file, recorded, source.ground_truth(), path); !laid.empty())
+    warnings.push_back(std::move(laid));
   Trajectory clock;  // the frames' own stamps, which is all that a clock is settled by
   for (const double stamp : frames.stamps()) clock.push_back({stamp, Pose::Identity()});
   ClockOptions options;
   options.truth_name = source.name(), options.estimate_name = path;
   options.truth_in_seconds = true;
-  options.frame_stamps = frames.stamps();
+  options.frame_stamps = recorded;
   options.estimate_offset_s = files.time_offset_s;
   const auto notes = settle_clocks(clock, file.poses, options);
   warnings.insert(warnings.end(), notes.begin(), notes.end());
-  for (StampedPose& pose : file.poses)
-    pose.world_from_camera = camera_pose(pose.world_from_camera, files.convention);
   if (std::none_of(file.poses.begin(), file.poses.end(),
                    [&](const StampedPose& pose) { return frames.at(pose.timestamp).has_value(); }))
     throw InputError(fmt::format("{}: none of its {} poses is closer than {} s to a frame of {}; {}", path,

@@ -184,16 +184,16 @@ std::string mask_gaps(const RunResult& run) {
 /// What lets truth and estimate fit far better. @param ours whether we made the estimate, from its depth
 std::string doubt_of(const TrajectoryEvaluation& evaluation, const RunResult& run, const FrameSource& source,
                      bool ours) {
-  if (const auto suspicion = suspect_convention(evaluation.matched, !ours)) return suspicion->sentence();
   if (!ours) {
-    if (std::string held = held_pose_sentence(evaluation.matched); !held.empty()) return held;
-    if (const std::string clock = clock_sentence(source.ground_truth(), run.trajectory, evaluation);
-        !clock.empty())
-      return clock + " (`--time-offset` does so)";
+    std::string all;
+    for (const Doubt& doubt : doubts_about(source.ground_truth(), run.trajectory, evaluation, AlignBy::rigid,
+                                           "stillpoint evaluate "))
+      all += (all.empty() ? "" : "; ") + doubt.sentence;
+    return all;
   }
+  if (const auto suspicion = suspect_convention(evaluation.matched, false)) return suspicion->sentence();
   const std::string scale = scale_sentence(evaluation);
   if (scale.empty()) return {};
-  if (!ours) return scale + " (`stillpoint evaluate --align sim3` does so)";
   if (const auto late = source.depth_late_s())
     return fmt::format(
         "its lengths do not fit the ground truth, as happens where depth is of another time than colour: the "
@@ -238,6 +238,14 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();
   return report;
+}
+
+std::string why_no_rpe(const RunReport& report) {
+  if (!report.truth_why_not.empty())
+    return fmt::format("the ground truth is of no use: {}", report.truth_why_not);
+  if (!report.has_truth) return "there is no ground truth";
+  if (!report.evaluation) return "no frame has a pose";
+  return report.evaluation->rpe_time.why_none;
 }
 
 std::string run_hash(const FrameRecords& records) {

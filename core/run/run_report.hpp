@@ -45,6 +45,9 @@ struct RunReport {
 
 [[nodiscard]] RunReport report_on(const RunResult& run, const FrameSource& source);
 
+/// Why a run has no RPE over 1 s: no ground truth, no poses, or none that far apart. Empty where it has one.
+[[nodiscard]] std::string why_no_rpe(const RunReport& report);
+
 /// A fingerprint of all that a run computed, 16 hex digits: equal for equal results, timings left out.
 [[nodiscard]] std::string run_hash(const FrameRecords& records);
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/odometry/frame_result.hpp"
 #include "core/run/run_report.hpp"
@@ -39,8 +40,8 @@ std::optional<double> number_in(const std::string& text) {
   return value;
 }
 
-std::string metres(const std::optional<double>& value) {
-  return value ? fmt::format("{:.4f}", *value) : std::string("–");
+std::string metres(const std::optional<double>& value, int digits = 4) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : std::string("–");
 }
 
 }  // namespace
@@ -114,6 +115,33 @@ std::vector<double> sweep_values(const Config& config, const SweepRange& range) 
   return values;
 }
 
+std::vector<std::string> sweep_remarks(const Config& config, const SweepRange& range,
+                                       const std::vector<double>& values) {
+  Config copy = config;
+  const Parameter parameter = numeric_parameter(copy, range.parameter);
+  std::vector<std::string> remarks;
+  if (std::holds_alternative<bool*>(parameter.value) || values.empty()) return remarks;
+  if (range.low > range.high)
+    remarks.push_back(fmt::format("{}: its values go up, from {:.6g} to {:.6g}", range.parameter,
+                                  values.front(), values.back()));
+  if (range.steps == 1 && range.low != range.high)
+    remarks.push_back(fmt::format("{}: one step is the lower end alone, {:.6g}; two take both",
+                                  range.parameter, values.front()));
+  else if (values.size() < static_cast<std::size_t>(range.steps))
+    remarks.push_back(fmt::format("{}: from {:.6g} to {:.6g} there are {} and no {} to run", range.parameter,
+                                  values.front(), values.back(), counted(values.size(), "value"),
+                                  range.steps));
+  return remarks;
+}
+
+std::vector<RunNote> notes_on(const SweepRange& range, const std::vector<SweepPoint>& points) {
+  std::vector<RunNote> notes;
+  for (const SweepPoint& point : points)
+    notes.push_back({fmt::format("{} = {:.6g}", range.parameter, point.value), point.reached.why_no_rpe,
+                     point.reached.doubt});
+  return notes;
+}
+
 Config swept(const Config& config, const std::string& parameter, double value) {
   Config copy = config;
   const Parameter found = numeric_parameter(copy, parameter);
@@ -149,11 +177,13 @@ std::optional<std::size_t> best_of(const std::vector<SweepPoint>& points) {
 }
 
 Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points) {
-  Table table{{range.parameter, "RPE 1 s, m", "mask IoU", "frames with a pose", "median ms a frame"}, {}};
+  Table table{{range.parameter, "RPE 1 s, m", "RPE 1 frame, m", "ATE, m", "mask IoU", "frames with a pose",
+               "median ms a frame"},
+              {}};
   for (const SweepPoint& point : points) {
     const AblationCell& cell = point.reached;
-    table.rows.push_back({fmt::format("{:.6g}", point.value), metres(cell.rpe_m),
-                          cell.mask_iou ? fmt::format("{:.3f}", *cell.mask_iou) : "–",
+    table.rows.push_back({fmt::format("{:.6g}", point.value), metres(cell.rpe_m), metres(cell.rpe_frame_m, 5),
+                          metres(cell.ate_m), cell.mask_iou ? fmt::format("{:.3f}", *cell.mask_iou) : "–",
                           // Rounded down, so that a frame lost never reads as 100 %.
                           fmt::format("{:.1f} %", std::floor(1000.0 * cell.coverage) / 10.0),
                           fmt::format("{:.1f}", cell.median_ms)});
@@ -166,6 +196,9 @@ nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange&
   const auto number = [](const std::optional<double>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
   };
+  const auto sentence = [](const std::string& text) {
+    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
+  };
   nlohmann::ordered_json json{{"sequence", sequence}, {"parameter", range.parameter}};
   json["points"] = nlohmann::ordered_json::array();
   for (const SweepPoint& point : points)
@@ -174,7 +207,11 @@ nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange&
                               {"iou", number(point.reached.mask_iou)},
                               {"coverage", point.reached.coverage},
                               {"median_ms", point.reached.median_ms},
-                              {"run_hash", point.reached.hash}});
+                              {"run_hash", point.reached.hash},
+                              {"ate_m", number(point.reached.ate_m)},
+                              {"rpe_frame_m", number(point.reached.rpe_frame_m)},
+                              {"rpe_why_none", sentence(point.reached.why_no_rpe)},
+                              {"doubt", sentence(point.reached.doubt)}});
   return json;
 }
 

@@ -51,7 +51,16 @@ struct SweepPoint {
 /// The value of least RPE over 1 s among those that kept as many frames as any; nothing where none has one.
 [[nodiscard]] std::optional<std::size_t> best_of(const std::vector<SweepPoint>& points);
 
-/// A row a value: RPE over 1 s, IoU, frames with a pose, median time.
+/// What is to be known of the values of a range: that they are fewer than the steps asked for, or go up where
+/// the range goes down. One sentence each.
+/// @param values sweep_values of it
+[[nodiscard]] std::vector<std::string> sweep_remarks(const Config& config, const SweepRange& range,
+                                                     const std::vector<double>& values);
+
+/// What is to be known beside these figures.
+[[nodiscard]] std::vector<RunNote> notes_on(const SweepRange& range, const std::vector<SweepPoint>& points);
+
+/// A row a value: RPE over 1 s and over a frame, ATE, IoU, frames with a pose, median time.
 [[nodiscard]] Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points);
 [[nodiscard]] nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange& range,
                                                 const std::vector<SweepPoint>& points);

@@ -13,6 +13,7 @@ class FirstFrames final : public FrameSource {
   [[nodiscard]] const Camera& camera() const override { return whole_->camera(); }
   [[nodiscard]] int size() const override { return count_; }
   [[nodiscard]] double timestamp(int index) const override { return whole_->timestamp(index); }
+  [[nodiscard]] std::vector<double> recorded_stamps() const override { return whole_->recorded_stamps(); }
   [[nodiscard]] Frame read(int index) const override { return whole_->read(index); }
   [[nodiscard]] FrameTruth truth(int index) const override { return whole_->truth(index); }
   [[nodiscard]] const Trajectory& ground_truth() const override { return whole_->ground_truth(); }

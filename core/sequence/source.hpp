@@ -30,6 +30,13 @@ class FrameSource {
   [[nodiscard]] virtual int size() const = 0;
   /// Seconds; strictly increasing with the index.
   [[nodiscard]] virtual double timestamp(int index) const = 0;
+  /// Stamps of all frames of the recording, s, of which these may be the first alone (OpenOptions::frames):
+  /// what another program numbered are those.
+  [[nodiscard]] virtual std::vector<double> recorded_stamps() const {
+    std::vector<double> stamps;
+    for (int i = 0; i < size(); ++i) stamps.push_back(timestamp(i));
+    return stamps;
+  }
   /// The frame. Never throws for a damaged file: the frame comes without the part, and says why in `problem`.
   [[nodiscard]] virtual Frame read(int index) const = 0;
   /// What is known of the frame; empty members where nothing is.

@@ -13,6 +13,7 @@ class WithCamera : public FrameSource {
   [[nodiscard]] const Camera& camera() const override { return camera_; }
   [[nodiscard]] int size() const override { return source_.size(); }
   [[nodiscard]] double timestamp(int index) const override { return source_.timestamp(index); }
+  [[nodiscard]] std::vector<double> recorded_stamps() const override { return source_.recorded_stamps(); }
   [[nodiscard]] Frame read(int index) const override { return source_.read(index); }
   [[nodiscard]] FrameTruth truth(int index) const override { return source_.truth(index); }
   [[nodiscard]] const Trajectory& ground_truth() const override { return source_.ground_truth(); }

@@ -42,6 +42,27 @@ TEST(SweepCommand, RunsEachValueAndWritesWhatItReached) {
                       "there is no parameter nothing.at_all");
 }
 
+TEST(SweepCommand, ShortInputSaysWhyThereAreDashesAndHasWhatThereIs) {
+  const SmallSequence sequence(12);
+  const std::string why = "- no RPE over 1 s: no two matched poses are 1 s apart (";
+  const CliResult sweep = run_cli({"sweep", sequence.path(), "--method", "none", "--parameter",
+                                   "features.count=500:501", "--out", sequence.path("out")});
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.err;
+  EXPECT_THAT(sweep.out, HasSubstr(why + "features.count = 500; features.count = 501)"));
+  EXPECT_THAT(sweep.err, HasSubstr("there are 2 values and no 7 to run"));
+  const auto json = nlohmann::json::parse(sequence.folder.read("out/sweep.json"));
+  EXPECT_THAT(json[0].at("command").get<std::string>(), HasSubstr("stillpoint sweep "));
+  for (const auto& point : json[0].at("points")) {
+    EXPECT_TRUE(point.at("rpe_m").is_null());
+    EXPECT_GT(point.at("ate_m").get<double>(), 0.0);
+    EXPECT_GT(point.at("rpe_frame_m").get<double>(), 0.0);
+  }
+  const CliResult ablate = run_cli({"ablate", sequence.path(), "--method", "none", "--without", "huber"});
+  EXPECT_THAT(ablate.out, HasSubstr(why));
+  EXPECT_THAT(ablate.out, HasSubstr("RPE 1 frame, RMSE [m]"));
+  EXPECT_THAT(run_cli({"benchmark", sequence.path(), "--methods", "none"}).out, HasSubstr(why));
+}
+
 TEST(AblateCommand, StoppedInOneProcessGoesOnAndForceKeepsEarlierTables) {
   const SmallSequence sequence(34);
   const std::string out = sequence.path("out");

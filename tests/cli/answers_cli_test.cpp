@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "tests/cli/run_cli.hpp"
@@ -190,6 +191,32 @@ TEST(Answers, ADoubtAboutAnotherProgramsRunIsAboutThatRun) {
   EXPECT_FALSE(fs::exists(sequence.path("figures/figure3.png")));
 }
 
+TEST(Answers, DoubtsStandUnderTablesToo) {
+  const SmallSequence sequence(kCurveFrames);
+  take_the_curve(sequence);
+  sequence.folder.write("small.txt", curve(0.05));
+  const std::string name = fs::path(sequence.path()).filename().string();
+  const CliResult benchmark = run_cli({"benchmark", sequence.path(), "--methods", "none", "--run",
+                                       "mono=" + sequence.path("small.txt"), "--out", sequence.path("out")});
+  EXPECT_EQ(benchmark.exit_code, 0) << benchmark.err;
+  EXPECT_THAT(benchmark.out, HasSubstr("\n- " + name + ", mono: the estimate fits "));
+  EXPECT_THAT(benchmark.out, HasSubstr("\n- " + name + ", none, odometry features: the estimate fits "));
+  const auto json = [&sequence](const char* file) {
+    return nlohmann::json::parse(sequence.folder.read(file));
+  };
+  for (const auto& run : json("out/results.json").at("runs"))
+    EXPECT_THAT(run.at("doubt").get<std::string>(), HasSubstr("its lengths are multiplied by"));
+  const CliResult sweep = run_cli({"sweep", sequence.path(), "--method", "none", "--parameter",
+                                   "features.count=400:500:2", "--out", sequence.path("swept")});
+  EXPECT_THAT(sweep.out, HasSubstr("\n- features.count = 400: the estimate fits "));
+  EXPECT_THAT(json("swept/sweep.json")[0].at("points")[1].at("doubt").get<std::string>(),
+              HasSubstr("is the depth scale right?"));
+  const CliResult ablate = run_cli(
+      {"ablate", sequence.path(), "--method", "none", "--without", "huber", "--out", sequence.path("a")});
+  EXPECT_THAT(ablate.out, HasSubstr("\n- " + name + ", without huber: the estimate fits "));
+  EXPECT_THAT(sequence.folder.read("a/ablation.md"), HasSubstr(", whole method: the estimate fits "));
+}
+
 TEST(Answers, AnEstimateMayBeARunsFolder) {
   const SmallSequence sequence(12);
   const std::string run = sequence.path("run");
@@ -202,6 +229,7 @@ TEST(Answers, AnEstimateMayBeARunsFolder) {
             table(run_cli({"evaluate", sequence.path(), run + "/trajectory.txt"})));
   const CliResult check = run_cli({"check", sequence.path(), run});
   EXPECT_NE(check.exit_code, 1) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("figures   12 of 12 poses beside the ground truth: ATE 0."));
   expect_one_sentence(run_cli({"evaluate", sequence.path("groundtruth.txt"), sequence.path("rgb")}),
                       "rgb: holds no trajectory");
 }

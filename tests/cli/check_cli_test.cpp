@@ -127,6 +127,16 @@ TEST(CheckCommand, QuestionsAnEstimate) {
   const CliResult result = run_cli({"check", sequence.path(), sequence.path("estimate.txt")});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.out, HasSubstr("none of its 2 poses meets the ground truth in time"));
+  std::string still;
+  for (int i = 0; i < 8; ++i) still += fmt::format("{:.4f} 1 2 3 0 0 0 1\n", SmallSequence::stamp(i));
+  sequence.folder.write("still.txt", still);
+  const CliResult held = run_cli({"check", sequence.path(), sequence.path("still.txt"), "--json"});
+  EXPECT_EQ(held.exit_code, 3);
+  const auto json = nlohmann::json::parse(held.out);
+  EXPECT_EQ(json["evaluation"]["matched"], 8);
+  EXPECT_EQ(json["findings"][0]["about"], "estimate");
+  EXPECT_THAT(json["findings"][0]["sentence"].get<std::string>(),
+              HasSubstr("7 of its poses are the same number for number"));
   expect_one_sentence(run_cli({"check", sequence.path("none")}), "there is no such folder");
 }
 

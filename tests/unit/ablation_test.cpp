@@ -84,6 +84,30 @@ TEST(Ablation, TablesHoldEveryRun) {
   EXPECT_NEAR(json["variants"][1]["rpe_mean_change"].get<double>(), std::sqrt(6.0) - 1.0, 1e-12);
 }
 
+TEST(Ablation, WhatHasNoRpeOverASecondHasItOverAFrameAndSaysWhy) {
+  std::vector<AblationRow> rows = {{"", {}, {cell({}, {}, 1, "a")}}, {"prior", {}, {cell({}, {}, 1, "b")}}};
+  for (AblationRow& row : rows) row.cells[0].why_no_rpe = "it is short";
+  rows[0].cells[0].rpe_frame_m = 0.00125;
+  rows[1].cells[0].doubt = "it drifts";
+  const Table errors = ablation_errors(rows, {"one"});
+  EXPECT_EQ(errors.header[0], "RPE 1 frame, RMSE [m]");
+  EXPECT_THAT(errors.rows.at(0), ::testing::ElementsAre("one", "0.00125", "–"));
+  EXPECT_EQ(notes_text(notes_on(rows, {"one"})),
+            "- no RPE over 1 s: it is short (one, whole method; one, without prior)\n"
+            "- one, without prior: it drifts\n");
+  const AblationCell read = ablation_cell_from_json(to_json(rows[1].cells[0]).dump(), "it");
+  EXPECT_EQ(read.doubt, "it drifts");
+  EXPECT_EQ(read.why_no_rpe, "it is short");
+}
+
+TEST(Notes, AreAsManyAsFitAScreen) {
+  EXPECT_EQ(notes_text({{"one", "", ""}, {"two", "", ""}}), "");
+  const std::string text = notes_text(std::vector<RunNote>(30, {"run", "short", "off"}));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 22);
+  EXPECT_THAT(text, ::testing::HasSubstr("- no RPE over 1 s: short (30 runs)\n"));
+  EXPECT_THAT(text, ::testing::HasSubstr("- 10 more runs are to be doubted\n"));
+}
+
 TEST(Ablation, IsReadBackAndSaysWhatItWasMadeBy) {
   const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
                                          {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};

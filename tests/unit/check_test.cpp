@@ -105,7 +105,13 @@ TEST(Check, NamesConventionsAndScales) {
   Trajectory small = estimate;
   for (StampedPose& pose : small) pose.world_from_camera.translation() *= 0.2;
   EXPECT_THAT(check_truth(estimate, small, false), Contains(says("depth", "multiplied by 5.000")));
-  EXPECT_THAT(check_truth(estimate, small, true), Contains(says("estimate", "`--scale`")));
+  EXPECT_THAT(check_truth(estimate, small, true),
+              Contains(says("estimate", "`stillpoint evaluate --align sim3`")));
+  Trajectory held = estimate;
+  for (StampedPose& pose : held) pose.world_from_camera = Pose::Identity();
+  EXPECT_THAT(check_truth(estimate, held, true), Contains(says("estimate", "the same number for number")));
+  EXPECT_THAT(check_truth(estimate, held, false),
+              ::testing::Not(Contains(says("estimate", "number for number"))));
 }
 
 TEST(Check, FindsGapsRepeatsAndWhatWasMended) {

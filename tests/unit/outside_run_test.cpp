@@ -116,6 +116,25 @@ TEST_F(OutsideRun, RowsOfAMatrixCountFrames) {
   EXPECT_THAT(warnings_, Not(IsEmpty()));  // that rows are taken for frames
 }
 
+TEST_F(OutsideRun, NumbersCountTheRecordingsFramesHoweverManyAreLookedAt) {
+  std::string kitti, numbered;
+  for (int i = 0; i < kFrames; ++i) {
+    kitti += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", 0.01 * i);
+    numbered += fmt::format("{} {} 0 0 0 0 0 1\n", i, 0.01 * i);
+  }
+  OpenOptions ten;
+  ten.frames = 10;
+  source_ = open_sequence(small_.path(), ten);
+  for (const std::string& text : {kitti, numbered}) {
+    const RecordedRun run = read(write("numbered.txt", text));
+    EXPECT_EQ(run.run.tracked(), 10);
+    EXPECT_EQ(run.run.trajectory.size(), 10U);
+    EXPECT_DOUBLE_EQ(run.run.records[7].world_from_camera.translation().x(), 0.07);
+    EXPECT_THAT(warnings_,
+                testing::Contains(HasSubstr("30 of its poses lie before the first frame or after")));
+  }
+}
+
 TEST_F(OutsideRun, PartsFromAnotherWhereItsMotionDoes) {
   const RecordedRun good = read(write("good.txt", drifting(0.0))),
                     bad = read(write("bad.txt", drifting(0.03)));

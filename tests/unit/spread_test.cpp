@@ -57,6 +57,8 @@ TEST(Spreads, AsTables) {
   ASSERT_EQ(json.size(), 6U);
   EXPECT_TRUE(json[4]["median"].is_null());
   EXPECT_EQ(json[4]["failed"], 1);
+  EXPECT_EQ(json[4]["figure"], "RPE 1 s, RMSE");
+  EXPECT_EQ(json[4]["unit"], "m");
 }
 
 TEST(Spreads, OneRunHasNone) {

@@ -125,6 +125,79 @@ TEST(Clocks, FramesMayBeNumberedFromOne) {
   EXPECT_EQ(numbered(1, count).first, 0.0);
 }
 
+/// A camera that goes and turns at an uneven pace.
+Pose uneven(double t) {
+  Pose pose;
+  pose.linear() = so3_exp({0.3 * std::sin(t), 0.5 * t, 0.2 * std::sin(1.7 * t)});
+  pose.translation() = Eigen::Vector3d(std::sin(1.3 * t), t * t, 0.3 * t);
+  return pose;
+}
+
+/// `count` frames at 30 Hz and the truth at them, beside rows of every `every`-th.
+struct Rows {
+  Rows(int count, int every, double scale = 1.0) {
+    for (int i = 0; i < count; ++i) {
+      stamps.push_back(1.7e9 + i / 30.0);
+      truth.push_back({stamps.back(), uneven(i / 30.0)});
+      if (i % every != 0) continue;
+      file.poses.push_back({static_cast<double>(file.rows++), truth.back().world_from_camera});
+      file.poses.back().world_from_camera.translation() *= scale;
+    }
+    file.has_stamps = false;
+  }
+  std::string laid(bool with_truth = true) {
+    return lay_rows_on_frames(file, stamps, with_truth ? truth : Trajectory(), "it");
+  }
+  [[nodiscard]] bool has(const std::string& said, const char* part) const {
+    return said.find(part) != std::string::npos;
+  }
+  std::vector<double> stamps;
+  Trajectory truth;
+  TrajectoryFile file;
+};
+
+TEST(Clocks, RowsWithoutStampsAreLaidOnTheFramesThatTheyFit) {
+  Rows all(80, 1);
+  EXPECT_EQ(all.laid(), "it: the rows have no stamps; each was given its frame's time");
+  EXPECT_EQ(all.file.poses[7].timestamp, all.stamps[7]);
+  for (const double scale : {1.0, 20.0})
+    for (const int every : {2, 3}) {
+      Rows some(81, every, scale);
+      const std::string said = some.laid();
+      EXPECT_TRUE(some.has(said, every == 2 ? "41 rows without stamps do not say which of the 81 frames"
+                                            : "they were given the times of every 3rd"))
+          << said;
+      EXPECT_EQ(some.file.poses[7].timestamp, some.stamps[7 * static_cast<std::size_t>(every)]) << said;
+    }
+  // Half of a run is half of a run.
+  Rows half(80, 1);
+  half.file.poses.resize(40);
+  half.file.rows = 40;
+  const std::string said = half.laid();
+  EXPECT_TRUE(half.has(said, "the times of the first 40, for motions")) << said;
+  EXPECT_EQ(half.file.poses[7].timestamp, half.stamps[7]);
+}
+
+TEST(Clocks, RowsWithoutStampsThatNothingSettlesAreToldToBeOpen) {
+  Rows alone(80, 2);
+  const std::string open = alone.laid(false);
+  EXPECT_TRUE(alone.has(open, "the times of the first 40, and may as well be every 2nd")) << open;
+  EXPECT_EQ(alone.file.poses[7].timestamp, alone.stamps[7]);
+  Rows odd(80, 1);
+  odd.file.poses.resize(57);
+  odd.file.rows = 57;
+  EXPECT_TRUE(odd.has(odd.laid(), "57 rows without stamps do not say which of the 80 frames they are"));
+  Rows more(80, 1);
+  more.stamps.resize(50);
+  const std::string rest = more.laid();
+  EXPECT_TRUE(more.has(rest, "the first 50 were given the frames' times and the rest left out")) << rest;
+  EXPECT_EQ(more.file.poses.size(), 50U);
+  Rows stamped(80, 2);
+  stamped.file.has_stamps = true;
+  EXPECT_EQ(stamped.laid(), "");
+  EXPECT_EQ(stamped.file.poses[7].timestamp, 7.0);
+}
+
 TEST(Clocks, OfAnotherOriginAreToldWithTheWayOn) {
   Trajectory truth = at(written(1.7e9, 30, 1)), estimate = at(written(0, 30, 1));
   ClockOptions options;

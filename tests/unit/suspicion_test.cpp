@@ -34,8 +34,9 @@ std::vector<MatchedPose> sound(int poses = 90) {
 
 TEST(Conventions, AreTheirOwnInversesWhereTheyShouldBe) {
   const Pose pose = sound()[40].truth;
-  for (const PoseConvention c : {PoseConvention::inverse, PoseConvention::mirrored_x,
-                                 PoseConvention::mirrored_y, PoseConvention::mirrored_z}) {
+  for (const PoseConvention c :
+       {PoseConvention::inverse, PoseConvention::mirrored_x, PoseConvention::mirrored_y,
+        PoseConvention::mirrored_z, PoseConvention::opengl}) {
     const Pose twice = camera_pose(camera_pose(pose, c), c);
     EXPECT_LT((twice.matrix() - pose.matrix()).norm(), 1e-12) << to_string(c);
     EXPECT_GT((camera_pose(pose, c).matrix() - pose.matrix()).norm(), 0.01) << to_string(c);
@@ -93,12 +94,30 @@ TEST_P(Misread, EstimateIsNamedWithItsSwitch) {
   ASSERT_TRUE(suspicion);
   EXPECT_EQ(suspicion->convention, GetParam());
   EXPECT_LT(suspicion->mended.combined_m(), 0.02);
+  EXPECT_THAT(suspicion->sentence(), HasSubstr(fmt::format("`--estimate {}` reads", to_string(GetParam()))));
+}
+
+TEST_P(Misread, EstimateIsNamedWhateverItsScale) {
+  for (const double scale : {30.0, 0.03}) {
+    auto matched = sound();
+    for (MatchedPose& pose : matched) {
+      pose.estimate = misread(pose.estimate, GetParam());
+      pose.estimate.translation() *= scale;
+    }
+    const auto suspicion = suspect_convention(matched, true);
+    ASSERT_TRUE(suspicion) << scale;
+    EXPECT_EQ(suspicion->convention, GetParam());
+    EXPECT_NEAR(suspicion->mended.scale * scale, 1.0, 0.01);
+    EXPECT_THAT(suspicion->sentence(),
+                HasSubstr(fmt::format("lengths are multiplied by {:.3g}", suspicion->mended.scale)));
+    EXPECT_FALSE(suspect_convention(matched, false)) << "our own lengths are depth's";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Suspicion, Misread,
                          testing::Values(PoseConvention::inverse, PoseConvention::w_first,
                                          PoseConvention::mirrored_x, PoseConvention::mirrored_y,
-                                         PoseConvention::mirrored_z),
+                                         PoseConvention::mirrored_z, PoseConvention::opengl),
                          [](const auto& tested) {
                            std::string name(to_string(tested.param));
                            std::erase(name, '-');
@@ -118,6 +137,116 @@ TEST(Suspicion, ABodyThatCarriesTheCameraIsFoundWithItsTurn) {
   EXPECT_NEAR(rotation_angle(suspicion->body_from_camera->linear()) * 180 / std::numbers::pi, 173.0, 0.2);
   EXPECT_NEAR(suspicion->body_from_camera->translation().norm(), camera_from_body.translation().norm(), 0.02);
   EXPECT_THAT(suspicion->sentence(), HasSubstr("173.0 deg"));
+}
+
+/// sound(), whose estimate is of a body that carries the camera.
+std::vector<MatchedPose> carried_poses(double turned_deg) {
+  auto matched = sound();
+  Pose camera_from_body = Pose::Identity();
+  camera_from_body.linear() =
+      so3_exp(Eigen::Vector3d(0.2, 2.9, -0.4).normalized() * (turned_deg / 180 * std::numbers::pi));
+  camera_from_body.translation() = Eigen::Vector3d(0.1, -0.05, 0.2);
+  for (MatchedPose& pose : matched) pose.estimate = pose.estimate * camera_from_body;
+  return matched;
+}
+
+TEST(Suspicion, ABodyMayBeTheEstimatesWhateverItsScale) {
+  for (const double scale : {1.0, 10.0}) {
+    auto matched = carried_poses(120);
+    for (MatchedPose& pose : matched) pose.estimate.translation() *= scale;
+    const auto suspicion = suspect_convention(matched, true);
+    ASSERT_TRUE(suspicion) << scale;
+    EXPECT_EQ(suspicion->of, Suspicion::Of::either);
+    EXPECT_NEAR(suspicion->mended.scale * scale, 1.0, 0.01);
+    EXPECT_THAT(suspicion->sentence(), HasSubstr("ground truth and estimate seem to follow two bodies"));
+    EXPECT_THAT(suspicion->sentence(), HasSubstr("turned 120.0 deg"));
+  }
+}
+
+std::vector<std::string> doubts_of(const std::vector<MatchedPose>& matched, AlignBy align = AlignBy::rigid) {
+  Trajectory truth, estimate;
+  for (const MatchedPose& pose : matched) {
+    truth.push_back({pose.timestamp, pose.truth});
+    estimate.push_back({pose.timestamp, pose.estimate});
+  }
+  EvaluationOptions options;
+  options.align = align;
+  std::vector<std::string> sentences;
+  for (const Doubt& doubt :
+       doubts_about(truth, estimate, evaluate_trajectory(truth, estimate, options), align, "evaluate "))
+    sentences.push_back(doubt.sentence);
+  return sentences;
+}
+
+TEST(Doubts, AreNoneOfSoundPosesAndElseWhatIsWrong) {
+  using testing::ElementsAre;
+  using testing::IsEmpty;
+  EXPECT_THAT(doubts_of(sound()), IsEmpty());
+  EXPECT_THAT(doubts_of(sound(), AlignBy::origin), IsEmpty());
+  auto small = sound();
+  for (MatchedPose& pose : small) pose.estimate.translation() *= 0.2;
+  EXPECT_THAT(doubts_of(small), ElementsAre(HasSubstr("multiplied by 5.0")));
+  EXPECT_THAT(doubts_of(small), ElementsAre(HasSubstr("(`evaluate --align sim3` does so)")));
+  EXPECT_THAT(doubts_of(small, AlignBy::similarity), IsEmpty());
+  // Over two thirds of a second no body can be found, and what is turned is seen all the same.
+  auto turned = carried_poses(120);
+  turned.resize(40);
+  EXPECT_THAT(doubts_of(turned), testing::Contains(HasSubstr("all orientations are off by 119.0 deg")));
+  auto at_random = sound();
+  for (std::size_t i = 0; i < at_random.size(); ++i) {
+    const auto t = static_cast<double>(i);
+    at_random[i].estimate = Pose::Identity();
+    at_random[i].estimate.translation() = Eigen::Vector3d(std::sin(t), std::cos(1.7 * t), std::sin(2.3 * t));
+  }
+  EXPECT_THAT(doubts_of(at_random), ElementsAre(HasSubstr("it tells next to nothing of the path")));
+}
+
+TEST(Doubts, AScaleThatChangesOnTheWayIsTold) {
+  auto matched = sound(180);
+  EXPECT_EQ(scale_drift_sentence(matched), "");
+  for (MatchedPose& pose : matched) pose.estimate.translation() *= 0.5;
+  EXPECT_EQ(scale_drift_sentence(matched), "") << "one scale for all of it";
+  Eigen::Vector3d at = Eigen::Vector3d::Zero(), last = at;
+  for (std::size_t i = 0; i < matched.size(); ++i) {
+    const Eigen::Vector3d step = matched[i].estimate.translation() - last;
+    last = matched[i].estimate.translation();
+    at += step * (1.0 + 2.0 * static_cast<double>(i) / static_cast<double>(matched.size()));
+    matched[i].estimate.translation() = at;
+  }
+  EXPECT_THAT(doubts_of(matched), testing::Contains(HasSubstr("scale changes on the way")));
+}
+
+/// A camera that goes straight on, a few millimetres beside a line, by an estimate that misses by `missing_m`
+/// and whose world is turned about that line.
+std::vector<MatchedPose> along_a_line(double missing_m, double turned_deg) {
+  std::vector<MatchedPose> matched;
+  for (int i = 0; i < 60; ++i) {
+    const double t = i / 30.0;
+    MatchedPose pose;
+    pose.timestamp = pose.truth_timestamp = t;
+    pose.truth.translation() = Eigen::Vector3d(t, 0.014 * std::sin(3 * t), 0.0);
+    pose.estimate = pose.truth;
+    pose.estimate.translation().z() += missing_m * std::sqrt(2.0) * std::sin(3 * t);
+    pose.estimate.linear() = so3_exp({turned_deg / 180 * std::numbers::pi, 0, 0});
+    matched.push_back(pose);
+  }
+  return matched;
+}
+
+TEST(OpenRotation, IsToldWhereTheMissExplainsTheAngle) {
+  const auto told = [](const std::vector<MatchedPose>& matched, double scale = 1.0) {
+    Trajectory truth, estimate;
+    for (const MatchedPose& pose : matched) {
+      truth.push_back({pose.timestamp, pose.truth});
+      estimate.push_back({pose.timestamp, pose.estimate});
+      estimate.back().world_from_camera.translation() *= scale;
+    }
+    return open_rotation_sentence(evaluate_trajectory(truth, estimate));
+  };
+  EXPECT_THAT(told(along_a_line(0.03, 0)), HasSubstr("they do not tell the rotation about it"));
+  EXPECT_EQ(told(along_a_line(0.0, 0)), "");
+  EXPECT_EQ(told(along_a_line(0.0, 178)), "") << "the axes are wrong, and the positions say so";
+  EXPECT_EQ(told(along_a_line(0.0, 178), 30.0), "") << "… whatever the scale";
 }
 
 /// A camera that is waved to and fro with a period of 2.6 s while it is carried on, 30 poses a second.
@@ -228,6 +357,19 @@ TEST(TrajectoryMetrics, NothingToMeasureIsADashAndAReason) {
   EXPECT_TRUE(half.has_figures());
   EXPECT_EQ(half.rpe_time.why_none, "no two matched poses are 1 s apart");
   EXPECT_THAT(to_text(half), HasSubstr("span 0.500 s of the truth's 2.967 s (16.9 %)"));
+}
+
+TEST(TrajectoryMetrics, FewerPosesThanAreToBeAlignedByAreTold) {
+  Trajectory truth;
+  for (const MatchedPose& pose : sound()) truth.push_back({pose.timestamp, pose.truth});
+  EvaluationOptions options;
+  options.align = AlignBy::first;
+  options.align_first = 90;
+  EXPECT_THAT(to_text(evaluate_trajectory(truth, truth, options), options),
+              HasSubstr("by the first 90 matched poses\n"));
+  options.align_first = 91;
+  EXPECT_THAT(to_text(evaluate_trajectory(truth, truth, options), options),
+              HasSubstr("by all 90 matched poses, fewer than the first 91 asked for"));
 }
 
 }  // namespace

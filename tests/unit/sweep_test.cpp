@@ -92,6 +92,24 @@ TEST(Sweep, EachValueIsARunOfItsOwn) {
   EXPECT_FALSE(sweep_point(*source, config, "features.count", 600, 36, &stop));
 }
 
+TEST(Sweep, WhatARangeDoesNotGiveIsTold) {
+  const Config config;
+  const auto remarks = [&config](const char* text) {
+    const SweepRange range = sweep_range(text);
+    return sweep_remarks(config, range, sweep_values(config, range));
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(remarks("features.count=400:600:3"), ElementsAre());
+  EXPECT_THAT(remarks("features.count=500:500:1"), ElementsAre());
+  EXPECT_THAT(remarks("features.count=500:1000:1"),
+              ElementsAre(::testing::HasSubstr("the lower end alone, 500")));
+  EXPECT_THAT(remarks("features.count=1000:500"),
+              ElementsAre(::testing::HasSubstr("go up, from 500 to 1000")));
+  EXPECT_THAT(remarks("features.count=500:502:7"),
+              ElementsAre(::testing::HasSubstr("there are 3 values and no 7")));
+  EXPECT_THAT(remarks("tracking.soft_weights=0:1:7"), ElementsAre()) << "on and off are all there are";
+}
+
 TEST(Sweep, TheBestKeptAsManyFramesAsAny) {
   const auto point = [](double value, std::optional<double> rpe, double coverage) {
     SweepPoint one{value, {}};
