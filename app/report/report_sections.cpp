@@ -185,11 +185,10 @@ std::string stage_timings(const ReportGroup& group) {
   double widest = 1e-9;
   for (const ReportRun& run : group.runs) widest = std::max(widest, sum_of(run.report.speed.mean));
   std::string html = "<p class=\"dim\">Mean milliseconds a frame, decoding excluded.";
-  if (std::any_of(group.runs.begin(), group.runs.end(),
-                  [](const ReportRun& run) { return run.report.method == "paper"; }))
-    html +=
-        " Motion detection of method paper goes on beside feature extraction, so the stages may add up to "
-        "more than the frame takes.";
+  if (std::any_of(group.runs.begin(), group.runs.end(), [](const ReportRun& run) {
+        return sum_of(run.report.speed.mean) > run.report.speed.mean.total;
+      }))
+    html += " Stages that go on beside each other add up to more than the frame takes.";
   html += "</p>\n<p>";
   for (const TimedStage& stage : kStages)
     html += fmt::format("<span class=\"key\" style=\"background:{}\"></span>{}", hex_of(stage.colour),

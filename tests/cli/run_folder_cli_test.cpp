@@ -148,7 +148,7 @@ TEST_F(RunFolder, ReportIsOnePageThatNeedsNothingElse) {
                            ">stillpoint<",
                            "Worst frames of none",
                            "Worst frames of stillpoint",
-                           "Mean milliseconds a frame, decoding excluded.</p>",
+                           "Mean milliseconds a frame, decoding excluded.",
                            "Error over time",
                            "Trajectories",
                            "Stage timings",
