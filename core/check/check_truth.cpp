@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/check/findings.hpp"
-#include "core/evaluation/suspicion.hpp"
+#include "core/evaluation/doubts.hpp"
 #include "core/evaluation/time_offset.hpp"
 #include "core/run/run_sequence.hpp"
 #include "core/sequence/source.hpp"

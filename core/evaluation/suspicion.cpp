@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/evaluation/time_offset.hpp"
+#include "core/evaluation/pose_pairs.hpp"
 #include "core/geometry/normal_equations.hpp"
 #include "core/geometry/rotation_fit.hpp"
 #include "core/median.hpp"
@@ -19,24 +19,6 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;  // degrees a radian
 constexpr double kShareLeft = 0.4;                     // of the error, for a reading to be suspected
 constexpr double kFarBetter =
     0.5;  // of the error a convention leaves, for six free numbers to be preferred to it
-constexpr double kWorthAWord = 0.02;    // m, combined: what fits as well leaves no doubt about its convention
-constexpr double kShareOfMotion = 0.4;  // of the true motions, that a reading which tells them may err by
-constexpr double kRemarkableScale = 0.03;  // log of it
-constexpr std::size_t kFewestPoses = 8;    // below, anything fits
-
-/// Pairs of poses some time apart: (i, i + step).
-struct Pairs {
-  std::size_t step = 1, count = 0;
-};
-
-Pairs pairs_of(const std::vector<MatchedPose>& matched) {
-  if (matched.size() < 2) return {};
-  std::size_t step = 1;
-  while (step < matched.size() / 2 && matched[step].timestamp - matched[0].timestamp < 1.0) ++step;
-  return {step, matched.size() - step};
-}
-
-Pose relative(const Pose& a, const Pose& b) { return a.inverse() * b; }
 
 /// Pairs that are left out: `begin` to `end`, the latter not among them.
 struct LeftOut {
@@ -53,12 +35,13 @@ struct Body {
 /// The rotation X that carries the estimate's turns into the truth's, log(A) = X log(B); then the lever arm.
 std::optional<Body> hand_eye(const std::vector<MatchedPose>& matched, bool scale_is_free,
                              const LeftOut& left_out = {}) {
-  const Pairs pairs = pairs_of(matched);
+  const PosePairs pairs = pairs_of(matched);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < pairs.count; ++i) {
     if (left_out.has(i)) continue;
-    sum += so3_log(relative(matched[i].truth, matched[i + pairs.step].truth).linear()) *
-           so3_log(relative(matched[i].estimate, matched[i + pairs.step].estimate).linear()).transpose();
+    sum +=
+        so3_log(motion_between(matched[i].truth, matched[i + pairs.step].truth).linear()) *
+        so3_log(motion_between(matched[i].estimate, matched[i + pairs.step].estimate).linear()).transpose();
   }
   const RotationFit fit = fit_rotation(sum);
   // Turns about one axis leave the rotation about it open.
@@ -71,8 +54,8 @@ std::optional<Body> hand_eye(const std::vector<MatchedPose>& matched, bool scale
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   for (std::size_t i = 0; i < pairs.count; ++i) {
     if (left_out.has(i)) continue;
-    const Pose a = relative(matched[i].truth, matched[i + pairs.step].truth);
-    const Pose b = relative(matched[i].estimate, matched[i + pairs.step].estimate);
+    const Pose a = motion_between(matched[i].truth, matched[i + pairs.step].truth);
+    const Pose b = motion_between(matched[i].estimate, matched[i + pairs.step].estimate);
     Eigen::Matrix<double, 3, 4> row;
     row << a.linear() - Eigen::Matrix3d::Identity(), -(fit.rotation * b.translation());
     normal += row.transpose() * row;
@@ -105,7 +88,7 @@ std::vector<MatchedPose> read_by(const Body& body, std::vector<MatchedPose> matc
 bool tells_what_was_left_out(const std::vector<MatchedPose>& matched, const MotionFit& as_is,
                              bool scale_is_free) {
   constexpr std::size_t kParts = 5;  // of the pairs: four fifths still tell a body
-  const Pairs pairs = pairs_of(matched);
+  const PosePairs pairs = pairs_of(matched);
   double translation = 0.0, rotation = 0.0;
   for (std::size_t part = 0; part < kParts; ++part) {
     const LeftOut left_out{part * pairs.count / kParts, (part + 1) * pairs.count / kParts};
@@ -114,7 +97,7 @@ bool tells_what_was_left_out(const std::vector<MatchedPose>& matched, const Moti
     const std::vector<MatchedPose> read = read_by(*body, matched);
     for (std::size_t i = left_out.begin; i < left_out.end; ++i) {
       const MatchedPose &a = read[i], &b = read[i + pairs.step];
-      const Pose error = relative(a.truth, b.truth).inverse() * relative(a.estimate, b.estimate);
+      const Pose error = motion_between(a.truth, b.truth).inverse() * motion_between(a.estimate, b.estimate);
       translation += error.translation().squaredNorm();
       rotation += std::pow(rotation_angle(error.linear()), 2);
     }
@@ -139,46 +122,6 @@ std::optional<Suspicion> suspect_body(const std::vector<MatchedPose>& matched, c
   suspicion.mended.scale = body->scale;
   return suspicion;
 }
-
-/// RMS distance of the true positions from their mean, m.
-double truth_spread_m(const std::vector<MatchedPose>& matched) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const MatchedPose& pose : matched)
-    mean += pose.truth.translation() / static_cast<double>(matched.size());
-  double squares = 0;
-  for (const MatchedPose& pose : matched) squares += (pose.truth.translation() - mean).squaredNorm();
-  return matched.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(matched.size()));
-}
-
-/// RMS distance of the true positions from the line that fits them best, along their second axis, m.
-double second_spread_m(const std::vector<MatchedPose>& matched) {
-  if (matched.size() < 2) return 0.0;
-  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(matched.size()));
-  for (Eigen::Index i = 0; i < positions.cols(); ++i)
-    positions.col(i) = matched[static_cast<std::size_t>(i)].truth.translation();
-  positions.colwise() -= Eigen::Vector3d(positions.rowwise().mean());
-  const RotationFit fit = fit_rotation(positions * positions.transpose());
-  return std::sqrt(std::max(0.0, fit.singular_values[1]) / static_cast<double>(matched.size()));
-}
-
-/// How the lengths of pairs `begin` to `end` fit, the latter not among them.
-struct LengthFit {
-  double along = 0.0, squares = 0.0, moved = 0.0;  // m², of estimate and truth, of the estimate, of the truth
-
-  LengthFit(const std::vector<MatchedPose>& matched, std::size_t step, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d a = relative(matched[i].truth, matched[i + step].truth).translation(),
-                            b = relative(matched[i].estimate, matched[i + step].estimate).translation();
-      along += a.dot(b), squares += b.squaredNorm(), moved += a.squaredNorm();
-    }
-  }
-  /// By what the estimate's lengths fit best; 0 where they point the other way.
-  [[nodiscard]] double scale() const { return squares > 0 ? std::max(0.0, along / squares) : 1.0; }
-  /// Sum of the squares that this scale leaves, m².
-  [[nodiscard]] double left() const {
-    return std::max(0.0, moved - 2.0 * scale() * along + scale() * scale() * squares);
-  }
-};
 
 /// suspect_convention, the estimate's scale being as it is or free.
 std::optional<Suspicion> suspect_reading(const std::vector<MatchedPose>& matched, bool estimate_may_err,
@@ -217,31 +160,6 @@ std::optional<Suspicion> suspect_reading(const std::vector<MatchedPose>& matched
   return best;
 }
 
-/// What is left of the positions after the best scale, m: orientations are no less right for a wrong one.
-double left_after_scale_m(const TrajectoryEvaluation& evaluation) {
-  const double rmse = evaluation.ate.translation_m.rmse;
-  return evaluation.ate.similarity ? std::min(rmse, evaluation.ate.similarity->rmse_m) : rmse;
-}
-
-/// How far positions that miss lie beside a line: what is left of them over that is the angle, rad, by which
-/// an alignment may be turned about the line.
-struct BesideLine {
-  double beside_m = 0.0, missing_m = 0.0;
-  [[nodiscard]] bool explains(double angle_deg) const {
-    constexpr double kTellsRotation = 3.0;  // times that angle
-    return kDegrees * kTellsRotation * missing_m >= angle_deg * beside_m;
-  }
-};
-
-/// The mean ATE rotation, deg, where all poses have it alike and it is `far_deg` or more; otherwise 0.
-double steady_rotation_deg(const TrajectoryEvaluation& evaluation, double far_deg) {
-  constexpr double kSteady = 0.2;  // of the mean, how far a constant angle scatters
-  const ErrorStatistics& rotation = evaluation.ate.rotation_deg;
-  const bool is_one =
-      rotation.count > 0 && rotation.mean >= far_deg && rotation.stddev <= kSteady * rotation.mean;
-  return is_one ? rotation.mean : 0.0;
-}
-
 }  // namespace
 
 double MotionFit::combined_m() const { return translation_m + rotation_deg / kDegrees; }
@@ -249,7 +167,7 @@ double MotionFit::combined_m() const { return translation_m + rotation_deg / kDe
 bool MotionFit::tells_motions() const { return pairs > 0 && combined_m() < kShareOfMotion * moved_m; }
 
 MotionFit motion_fit(const std::vector<MatchedPose>& matched, bool scale_is_free) {
-  const Pairs pairs = pairs_of(matched);
+  const PosePairs pairs = pairs_of(matched);
   MotionFit fit;
   fit.pairs = static_cast<int>(pairs.count);
   if (pairs.count == 0) return fit;
@@ -258,8 +176,8 @@ MotionFit motion_fit(const std::vector<MatchedPose>& matched, bool scale_is_free
   double moved = 0.0, turned = 0.0;
   for (std::size_t i = 0; i < pairs.count; ++i) {
     const MatchedPose &a = matched[i], &b = matched[i + pairs.step];
-    const Pose truth = relative(a.truth, b.truth);
-    Pose estimate = relative(a.estimate, b.estimate);
+    const Pose truth = motion_between(a.truth, b.truth);
+    Pose estimate = motion_between(a.estimate, b.estimate);
     estimate.translation() *= fit.scale;
     const Pose error = truth.inverse() * estimate;
     fit.translation_m += error.translation().squaredNorm();
@@ -308,165 +226,6 @@ std::optional<Suspicion> suspect_convention(const std::vector<MatchedPose>& matc
   if (matched.size() < kFewestPoses) return std::nullopt;
   if (auto found = suspect_reading(matched, estimate_may_err, false)) return found;
   return estimate_may_err ? suspect_reading(matched, true, true) : std::nullopt;
-}
-
-std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
-  // Poses that have nothing to do with the truth also fit better when they are shrunk to a point.
-  constexpr double kMostOfSpread = 0.2;
-  constexpr double kCertain = 4.0;  // standard errors
-  const auto& similarity = evaluation.ate.similarity;
-  const std::size_t poses = evaluation.matched.size();
-  if (!similarity || poses < kFewestPoses) return "";
-  // Of a scale that is fitted to residuals of this size over a path of that spread.
-  const double spread = truth_spread_m(evaluation.matched),
-               standard_error = similarity->rmse_m / (spread * std::sqrt(static_cast<double>(poses)));
-  if (!(std::abs(std::log(similarity->scale)) > kCertain * standard_error) ||
-      std::abs(std::log(similarity->scale)) < kRemarkableScale ||
-      similarity->rmse_m > 0.5 * evaluation.ate.translation_m.rmse ||
-      similarity->rmse_m > kMostOfSpread * spread)
-    return "";
-  return fmt::format(
-      "the estimate fits {:.4f} m instead of {:.4f} m when its lengths are multiplied by {:.3f}",
-      similarity->rmse_m, evaluation.ate.translation_m.rmse, similarity->scale);
-}
-
-std::string scale_drift_sentence(const std::vector<MatchedPose>& matched) {
-  constexpr std::size_t kParts = 3;    // of the pairs: a change shows, and each still tells a scale
-  constexpr double kLeft = 0.6;        // of the error under one scale
-  constexpr double kRemarkable = 0.1;  // log of the last scale over the first
-  const Pairs pairs = pairs_of(matched);
-  if (pairs.count < kParts * kFewestPoses) return "";
-  const LengthFit whole(matched, pairs.step, 0, pairs.count);
-  double left = 0.0;
-  std::vector<double> scales;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const LengthFit fit(matched, pairs.step, part * pairs.count / kParts, (part + 1) * pairs.count / kParts);
-    left += fit.left();
-    scales.push_back(fit.scale());
-  }
-  const auto rms = [&pairs](double squares) { return std::sqrt(squares / static_cast<double>(pairs.count)); };
-  if (rms(whole.left()) < kWorthAWord || rms(left) > kLeft * rms(whole.left()) ||
-      rms(left) > kShareOfMotion * rms(whole.moved) ||
-      !(std::abs(std::log(scales.back() / scales.front())) > kRemarkable))
-    return "";
-  return fmt::format(
-      "the estimate's scale changes on the way: motions of its first third fit when their lengths are "
-      "multiplied by {:.3g}, of its last by {:.3g}, and miss by {:.4f} m instead of {:.4f} m then",
-      scales.front(), scales.back(), rms(left), rms(whole.left()));
-}
-
-std::string clock_sentence(const Trajectory& truth, const Trajectory& estimate,
-                           const TrajectoryEvaluation& evaluation) {
-  constexpr double kShareExplained = 0.3;  // of the squared errors, by speed times one delay: worth a search
-  constexpr std::size_t kMost = 400;       // poses that are searched by
-  constexpr double kRemarkable = 0.005;    // s
-  constexpr double kMostLeft = 0.5;        // of the error
-  const auto& matched = evaluation.matched;
-  if (matched.size() < kFewestPoses) return "";
-  // An estimate that is late lies behind, along the truth's velocity.
-  double along = 0, speeds = 0, errors = 0;
-  for (std::size_t i = 1; i + 1 < matched.size(); ++i) {
-    const double dt = matched[i + 1].truth_timestamp - matched[i - 1].truth_timestamp;
-    if (!(dt > 0)) continue;
-    const Eigen::Vector3d velocity =
-        (matched[i + 1].truth.translation() - matched[i - 1].truth.translation()) / dt;
-    const Eigen::Vector3d error =
-        (evaluation.ate.alignment.truth_from_estimate * matched[i].estimate).translation() -
-        matched[i].truth.translation();
-    along += error.dot(velocity), speeds += velocity.squaredNorm(), errors += error.squaredNorm();
-  }
-  if (!(along * along > kShareExplained * speeds * errors)) return "";
-  Trajectory thinned;
-  const std::size_t step = estimate.size() / kMost + 1;
-  for (std::size_t i = 0; i < estimate.size(); i += step) thinned.push_back(estimate[i]);
-  const auto found = estimate_time_offset(truth, thinned);
-  if (!found || std::abs(found->offset_s) < kRemarkable ||
-      found->rmse_after_m > kMostLeft * found->rmse_before_m)
-    return "";
-  return fmt::format("the estimate fits {:.4f} m instead of {:.4f} m when {:+.3f} s are added to its stamps",
-                     found->rmse_after_m, found->rmse_before_m, found->offset_s);
-}
-
-std::string held_pose_sentence(const std::vector<MatchedPose>& matched) {
-  constexpr int kFewest = 3;           // poses: one may be a frame that was read twice
-  constexpr double kMovedM = 1e-3;     // m; a camera that stands still may well be told to
-  constexpr double kTurnedRad = 2e-3;  // rad, a tenth of a degree
-  int held = 0;
-  double from = 0, to = 0;
-  for (std::size_t i = 1; i < matched.size(); ++i) {
-    const Pose moved = relative(matched[i - 1].truth, matched[i].truth);
-    if (matched[i].estimate.matrix() != matched[i - 1].estimate.matrix() ||
-        (moved.translation().norm() < kMovedM && rotation_angle(moved.linear()) < kTurnedRad))
-      continue;
-    if (held++ == 0) from = matched[i].timestamp;
-    to = matched[i].timestamp;
-  }
-  if (held < kFewest) return "";
-  return fmt::format(
-      "{} of its poses are the same number for number as the one before, while the truth moves ({:.3f} s to "
-      "{:.3f} s): a program that lost the camera may write so, and they count as poses until they are taken "
-      "out",
-      held, from, to);
-}
-
-std::string open_rotation_sentence(const TrajectoryEvaluation& evaluation) {
-  constexpr double kFarDeg = 5.0;  // deg: below, it is an error as any
-  const double rotation = steady_rotation_deg(evaluation, kFarDeg);
-  const BesideLine line{second_spread_m(evaluation.matched), left_after_scale_m(evaluation)};
-  if (rotation == 0.0 || !line.explains(rotation)) return "";
-  return fmt::format(
-      "the positions lie within {:.3f} m of a line and miss by {:.3f} m: they do not tell the rotation about "
-      "it, and an ATE rotation of {:.1f} deg means nothing (`--align origin` goes by the first pose)",
-      line.beside_m, line.missing_m, rotation);
-}
-
-std::string turned_axes_sentence(const TrajectoryEvaluation& evaluation) {
-  constexpr double kFarDeg = 20.0;  // deg: no camera is mounted or calibrated so far off unnoticed
-  const double rotation = steady_rotation_deg(evaluation, kFarDeg);
-  const BesideLine line{second_spread_m(evaluation.matched), left_after_scale_m(evaluation)};
-  if (rotation == 0.0 || line.explains(rotation)) return "";
-  return fmt::format(
-      "where the positions fit by {:.4f} m all orientations are off by {:.1f} deg: ground truth and estimate "
-      "are poses of two bodies, or of other axes",
-      line.missing_m, rotation);
-}
-
-std::string no_better_than_rest_sentence(const TrajectoryEvaluation& evaluation) {
-  constexpr double kNearlyAll = 0.8;  // of what an estimate at rest misses by
-  const double spread = truth_spread_m(evaluation.matched), missing = left_after_scale_m(evaluation);
-  if (evaluation.matched.size() < kFewestPoses || missing < kWorthAWord || missing < kNearlyAll * spread)
-    return "";
-  return fmt::format(
-      "the estimate misses by {:.4f} m even after the best scale, and one that never moves would by {:.4f} "
-      "m: "
-      "it tells next to nothing of the path",
-      missing, spread);
-}
-
-std::vector<Doubt> doubts_about(const Trajectory& truth, const Trajectory& estimate,
-                                const TrajectoryEvaluation& evaluation, AlignBy align,
-                                const std::string& command) {
-  const bool by_positions =
-      align == AlignBy::rigid || align == AlignBy::similarity || align == AlignBy::first;
-  std::vector<Doubt> doubts;
-  const auto add = [&doubts](const std::string& sentence, const std::string& way_on = "") {
-    if (!sentence.empty()) doubts.push_back({Suspicion::Of::estimate, sentence + way_on});
-    return !sentence.empty();
-  };
-  const bool is_held = add(held_pose_sentence(evaluation.matched));
-  if (const auto suspicion = suspect_convention(evaluation.matched, true)) {
-    doubts.push_back({suspicion->of, suspicion->sentence()});
-    return doubts;  // what else is off shows once this is mended
-  }
-  if (by_positions && add(clock_sentence(truth, estimate, evaluation),
-                          fmt::format(" (`{}--time-offset auto` finds how much)", command)))
-    return doubts;
-  if (align == AlignBy::rigid)
-    add(scale_sentence(evaluation), fmt::format(" (`{}--align sim3` does so)", command));
-  if (!is_held) add(scale_drift_sentence(evaluation.matched));
-  if (by_positions) add(turned_axes_sentence(evaluation));
-  if (doubts.empty() && by_positions) add(no_better_than_rest_sentence(evaluation));
-  return doubts;
 }
 
 }  // namespace stillpoint

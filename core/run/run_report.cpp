@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/counted.hpp"
+#include "core/evaluation/doubts.hpp"
 #include "core/evaluation/evaluation_json.hpp"
-#include "core/evaluation/suspicion.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"

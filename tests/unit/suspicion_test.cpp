@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/evaluation/doubts.hpp"
+
 namespace stillpoint {
 namespace {
 
