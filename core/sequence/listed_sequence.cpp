@@ -125,9 +125,12 @@ void ListedSequence::join_depth(FolderLists& lists) {
     if (joined > kMostJoined * static_cast<double>(listed)) {
       std::vector<double> depth_stamps;
       for (const ListEntry& depth : lists.depths->entries) depth_stamps.push_back(depth.timestamp);
-      warnings_.push_back(fmt::format(
-          "{}: there are only {}, one every {:.3f} s where colour images come every {:.3f} s", without,
-          counted(listed, "depth image"), usual_interval(depth_stamps), usual_interval(stamps())));
+      warnings_.push_back(
+          listed < 2 ? fmt::format("{}: there is only {}", without, counted(listed, "depth image"))
+                     : fmt::format("{}: there are only {}, one every {:.3f} s where colour images come every "
+                                   "{:.3f} s",
+                                   without, counted(listed, "depth image"), usual_interval(depth_stamps),
+                                   usual_interval(stamps())));
       return;
     }
     if (std::abs(later) < kAssociationTolerance) {

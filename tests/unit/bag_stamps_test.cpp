@@ -159,5 +159,18 @@ TEST(BagStamps, DepthAtHalfTheRateIsNotBlamedOnItsClock) {
   }
 }
 
+TEST(BagStamps, ASingleDepthImageHasNoInterval) {
+  auto messages = stamped_messages(false, true, [](int, std::int64_t time) { return time; });
+  std::erase_if(messages, [](const LogMessage& message) {
+    return message.topic == "/cam/depth/image" && message.time != small_stamp(0);
+  });
+  const Recording bag(".bag");
+  write_ros1_bag(bag.path, messages);
+  EXPECT_THAT(open_sequence(bag.path)->warnings(),
+              AllOf(Contains(HasSubstr("29 of 30 colour images have no depth image within 0.02 s: there is "
+                                       "only 1 depth image")),
+                    Each(Not(HasSubstr("one every")))));
+}
+
 }  // namespace
 }  // namespace stillpoint
