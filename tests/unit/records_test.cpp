@@ -13,7 +13,6 @@
 #include "core/run/records_file.hpp"
 #include "core/run/run_folder.hpp"
 #include "core/run/run_report.hpp"
-#include "core/run/worst_frames.hpp"
 #include "core/sequence/fingerprint.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -353,118 +352,12 @@ TEST_F(Records, BadFilesAreToldInOneSentence) {
   EXPECT_THAT(error_when_opened(), HasSubstr("has no records.bin"));
 }
 
-TEST(PackedMasks, GiveBackWhatWasPacked) {
-  EXPECT_TRUE(pack_mask({}).empty());
-  EXPECT_TRUE(unpack_mask({}).empty());
-  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(0));
-  for (const int fill : {0, 255}) {
-    mask.setTo(fill);  // one run, longer than sixteen bits count
-    EXPECT_EQ(cv::norm(unpack_mask(pack_mask(mask)), mask, cv::NORM_INF), 0.0);
-  }
-  cv::randu(mask, 0, 2);
-  mask *= 255;
-  EXPECT_EQ(cv::norm(unpack_mask(pack_mask(mask)), mask, cv::NORM_INF), 0.0);
-  PackedMask cut = pack_mask(mask);
-  cut.resize(cut.size() / 2);
-  EXPECT_THROW((void)unpack_mask(cut), ByteStreamReader::Exhausted);
-}
-
-TEST(PackedMasks, AreTheLengthsOfTheirRuns) {
-  // Any value but zero is set; runs go on from row to row, and end within and between eight pixels.
-  constexpr int kSide = 37;
-  for (const int longest : {1, 3, 9, 40, 200}) {
-    cv::RNG random(static_cast<std::uint64_t>(longest));
-    cv::Mat mask(kSide, kSide, CV_8UC1, cv::Scalar(0));
-    PackedMask wanted = {kSide, 0, kSide, 0};
-    bool set = false;
-    for (int at = 0; at < kSide * kSide; set = !set) {
-      const int length =
-          std::min(random.uniform(wanted.size() == 4 ? 0 : 1, longest + 1), kSide * kSide - at);
-      wanted.insert(wanted.end(),
-                    {static_cast<std::uint8_t>(length & 0xFF), static_cast<std::uint8_t>(length >> 8)});
-      for (const int end = at + length; at < end; ++at)
-        mask.at<std::uint8_t>(at / kSide, at % kSide) =
-            set ? static_cast<std::uint8_t>(random.uniform(1, 256)) : 0;
-    }
-    EXPECT_EQ(pack_mask(mask), wanted) << longest;
-    cv::Mat wide(kSide, 2 * kSide, CV_8UC1, cv::Scalar(255));
-    cv::Mat part = wide.colRange(3, 3 + kSide);  // whose rows do not lie one behind the other
-    mask.copyTo(part);
-    EXPECT_EQ(pack_mask(part), wanted) << longest;
-  }
-}
-
-TEST(PackedMasks, OfNoImagesSizeAreRefused) {
-  const PackedMask vast = {0xFF, 0xFF, 0xFF, 0xFF, 0, 0};  // 65535 px a side, and no pixels
-  EXPECT_THROW(check_mask(vast), ByteStreamReader::Exhausted);
-  EXPECT_EQ(check_mask(pack_mask(cv::Mat::zeros(3, 5, CV_8UC1))), cv::Size(5, 3));
-  EXPECT_EQ(check_mask({}), cv::Size());
-}
-
-TEST(RecordCodec, RefusesWhatIsOfNoKnownKind) {
-  FrameRecord record;
-  record.features.resize(2);
-  const auto comes_back = [&record] {
-    ByteStreamWriter to;
-    write_record(to, record);
-    ByteStreamReader from(to.bytes());
-    (void)read_record(from);
-  };
-  EXPECT_NO_THROW(comes_back());
-  record.features[1].fate = static_cast<FeatureFate>(9);
-  EXPECT_THROW(comes_back(), ByteStreamReader::Exhausted);
-  record.features[1].fate = FeatureFate::removed;
-  record.status = static_cast<FrameStatus>(200);
-  EXPECT_THROW(comes_back(), ByteStreamReader::Exhausted);
-}
-
 TEST(Fingerprints, DependOnContentAlone) {
   const SmallSequence one(4), same(4), longer(5);
   EXPECT_EQ(sequence_fingerprint(*open_sequence(one.path())),
             sequence_fingerprint(*open_sequence(same.path())));
   EXPECT_NE(sequence_fingerprint(*open_sequence(one.path())),
             sequence_fingerprint(*open_sequence(longer.path())));
-}
-
-FrameRecord record_of(int index, bool estimated, int inliers) {
-  FrameRecord record;
-  record.index = index;
-  record.timestamp = index;
-  record.estimated = estimated;
-  record.status = estimated ? FrameStatus::tracked : FrameStatus::lost;
-  record.note = estimated ? "" : "too few inliers";
-  record.inliers = inliers;
-  return record;
-}
-
-TEST(WorstFrames, LostStretchesComeFirstThenLargestErrorsApart) {
-  std::vector<FrameRecord> records;
-  for (int i = 0; i < 40; ++i) records.push_back(record_of(i, i != 20 && i != 21, 100 + i));
-  TrajectoryEvaluation evaluation;
-  for (int i = 1; i < 40; ++i) {
-    const double error = i == 5 ? 0.03 : i == 6 ? 0.04 : i == 30 ? 0.01 : i == 35 ? 0.02 : 0.001;
-    if (i != 20 && i != 21)
-      evaluation.rpe_frame.errors.push_back({i - 1.0, static_cast<double>(i), error, 0.0});
-  }
-  const MeasuredFrames frames{records, &evaluation};
-  const auto worst = worst_frames(frames, usual_figure(frames), 5, 3);
-  ASSERT_EQ(worst.size(), 3U);
-  EXPECT_EQ(worst[0].index, 20);
-  EXPECT_THAT(worst[0].why, HasSubstr("too few inliers"));
-  EXPECT_EQ(worst[1].index, 6);  // 5 is too near to it
-  EXPECT_EQ(worst[1].why, "step error 40.00 mm");
-  EXPECT_EQ(worst[2].index, 35);
-  EXPECT_TRUE(worst_frames(frames, usual_figure(frames), 5, 0).empty());
-}
-
-TEST(WorstFrames, WithoutTruthGoByInliers) {
-  std::vector<FrameRecord> records;
-  for (int i = 0; i < 10; ++i) records.push_back(record_of(i, true, i == 7 ? 21 : 100));
-  const MeasuredFrames frames{records};
-  const auto worst = worst_frames(frames, usual_figure(frames), 1, 1);
-  ASSERT_EQ(worst.size(), 1U);
-  EXPECT_EQ(worst[0].index, 7);
-  EXPECT_EQ(worst[0].why, "inliers 21");
 }
 
 }  // namespace
