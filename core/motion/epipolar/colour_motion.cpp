@@ -111,8 +111,8 @@ cv::Mat moving_pixels(const cv::Mat& image, const PropagatedEvidence& spread, co
   cv::morphologyEx(near, near, cv::MORPH_OPEN, cv::Mat());
   cv::morphologyEx(far, far, cv::MORPH_OPEN, cv::Mat());
   if (config.close_px > 0) cv::morphologyEx(near, near, cv::MORPH_CLOSE, disc(config.close_px));
-  cv::Mat sure = near;
-  if (config.shave_px > 0) cv::erode(near, sure, disc(config.shave_px));
+  cv::Mat sure;  // an image of its own: what is near stays as it is
+  cv::erode(near, sure, config.shave_px > 0 ? disc(config.shave_px) : cv::Mat::ones(1, 1, CV_8UC1));
   cv::Mat mask = settle_outline(image, sure, near | far, kAbout);
   cv::morphologyEx(mask, mask, cv::MORPH_OPEN, disc(2));
   return mask;
