@@ -59,8 +59,8 @@ std::optional<double> mean_iou(const AblationRow& row) {
 
 AblationCell ablated_cell_from(const nlohmann::json& json) {
   AblationCell cell;
-  if (!json.at("rpe_1s_m").is_null()) cell.rpe_m = json.at("rpe_1s_m").get<double>();
-  if (!json.at("mask_iou").is_null()) cell.mask_iou = json.at("mask_iou").get<double>();
+  if (!json.at("rpe_m").is_null()) cell.rpe_m = json.at("rpe_m").get<double>();
+  if (!json.at("iou").is_null()) cell.mask_iou = json.at("iou").get<double>();
   json.at("coverage").get_to(cell.coverage);
   json.at("median_ms").get_to(cell.median_ms);
   json.at("run_hash").get_to(cell.hash);
@@ -138,8 +138,8 @@ AblationCell ablation_cell(const RunReport& report) {
 }
 
 nlohmann::ordered_json to_json(const AblationCell& cell) {
-  return {{"rpe_1s_m", or_null(cell.rpe_m)},
-          {"mask_iou", or_null(cell.mask_iou)},
+  return {{"rpe_m", or_null(cell.rpe_m)},
+          {"iou", or_null(cell.mask_iou)},
           {"coverage", cell.coverage},
           {"median_ms", cell.median_ms},
           {"run_hash", cell.hash},
@@ -233,7 +233,7 @@ std::vector<RunNote> notes_on(const std::vector<AblationRow>& rows,
 
 Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
   Table table;
-  table.header = {"sequence", "without", "rpe_1s_m", "mask_iou", "coverage", "median_ms", "run_hash"};
+  table.header = {"sequence", "without", "rpe_m", "iou", "coverage", "median_ms", "run_hash"};
   for (const AblationRow& row : rows)
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const AblationCell& cell = row.cells[i];
@@ -262,7 +262,7 @@ nlohmann::ordered_json ablation_json(const std::string& method, const std::vecto
     if (!row.without.empty()) {
       variant["set"] = row.assignments;
       variant["rpe_mean_change"] = or_null(change.mean);
-      variant["mask_iou_change"] = or_null(change.mask_iou);
+      variant["iou_change"] = or_null(change.mask_iou);
     }
     variant["runs"] = runs;
     variants.push_back(variant);

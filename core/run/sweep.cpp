@@ -193,25 +193,12 @@ Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points
 
 nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange& range,
                                   const std::vector<SweepPoint>& points) {
-  const auto number = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
-  };
-  const auto sentence = [](const std::string& text) {
-    return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
-  };
   nlohmann::ordered_json json{{"sequence", sequence}, {"parameter", range.parameter}};
   json["points"] = nlohmann::ordered_json::array();
-  for (const SweepPoint& point : points)
-    json["points"].push_back({{"value", point.value},
-                              {"rpe_m", number(point.reached.rpe_m)},
-                              {"iou", number(point.reached.mask_iou)},
-                              {"coverage", point.reached.coverage},
-                              {"median_ms", point.reached.median_ms},
-                              {"run_hash", point.reached.hash},
-                              {"ate_m", number(point.reached.ate_m)},
-                              {"rpe_frame_m", number(point.reached.rpe_frame_m)},
-                              {"rpe_why_none", sentence(point.reached.why_no_rpe)},
-                              {"doubt", sentence(point.reached.doubt)}});
+  for (const SweepPoint& point : points) {
+    json["points"].push_back({{"value", point.value}});
+    json["points"].back().update(to_json(point.reached));
+  }
   return json;
 }
 

@@ -78,8 +78,8 @@ TEST(Ablation, TablesHoldEveryRun) {
   const Provenance made{"1.2", "abc", "two cores", "2026-01-02", "stillpoint ablate one two"};
   const auto json = ablation_json("stillpoint", rows, sequences, made);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
-  EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_1s_m"], 0.04);
-  EXPECT_TRUE(json["variants"][1]["runs"][1]["mask_iou"].is_null());
+  EXPECT_EQ(json["variants"][1]["runs"][1]["rpe_m"], 0.04);
+  EXPECT_TRUE(json["variants"][1]["runs"][1]["iou"].is_null());
   // (3 * 2)^(1/2) - 1
   EXPECT_NEAR(json["variants"][1]["rpe_mean_change"].get<double>(), std::sqrt(6.0) - 1.0, 1e-12);
 }
