@@ -111,8 +111,11 @@ void add_report_command(CLI::App& app) {
       ->required();
   command->add_option("--out", arguments->out, "The page, one HTML file with its pictures in it")->required();
   command
-      ->add_option("--worst", arguments->worst,
-                   "How many of each run's worst frames to show; each is 10 frames or more from a worse one")
+      ->add_option(
+          "--worst", arguments->worst,
+          fmt::format(
+              "How many of each run's worst frames to show; each is {} frames or more from a worse one",
+              kWorstApart))
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   CLI::Option* interactive = command->add_flag("--interactive", arguments->interactive,

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::pair<int, int> kPlotSize = {1130, 300}, kScenePanel = {720, 560},
                               kFramePanel = {640, 540};  // px
-constexpr int kApart = 10;                               // frames between two worst ones
 
 struct Curve {
   std::string name;
@@ -113,7 +112,7 @@ std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count) {
   const RunResult& result = run.result();
   const MeasuredFrames frames{result.records, run.report.evaluation ? &*run.report.evaluation : nullptr,
                               &result.scores};
-  return worst_frames(frames, usual_figure(frames), kApart, static_cast<std::size_t>(count));
+  return worst_frames(frames, usual_figure(frames), kWorstApart, static_cast<std::size_t>(count));
 }
 
 std::string frame_anchor(const ReportGroup& group, const ReportRun& run, int frame) {
@@ -157,7 +156,7 @@ std::string worst_frame_panels(Painter& painter, const ReportGroup& group, const
   const double start = run.result().records.front().timestamp;
   std::string html = fmt::format("<h3>Worst frames of {}</h3>\n", escaped(run.label));
   if (count > 1)
-    html += fmt::format("<p class=\"dim\">Each is {} frames or more from a worse one.</p>\n", kApart);
+    html += fmt::format("<p class=\"dim\">Each is {} frames or more from a worse one.</p>\n", kWorstApart);
   for (const WorstFrame& frame : worst) {
     session->go_to(frame.index, [&](const FrameRecord&) {
       progress(fmt::format("{} ({}): stages of frame {}", group.sequence, run.label, frame.index));

@@ -19,7 +19,10 @@ using ReportProgress = std::function<void(const std::string& what)>;
 /// @param place among its group's runs
 [[nodiscard]] RunLook look_of_run(const ReportRun& run, std::size_t place, ThemeName theme);
 
-/// A run's frames to look at first, worst first, each a failure of its own.
+/// Frames between two of a run's worst, at least: each is to be a failure of its own.
+inline constexpr int kWorstApart = 10;
+
+/// A run's frames to look at first, worst first, kWorstApart from each other.
 [[nodiscard]] std::vector<WorstFrame> worst_frames_of(const ReportRun& run, int count);
 
 /// Where in the page a run's frame is shown, among its worst.
