@@ -204,7 +204,8 @@ TEST(Answers, DoubtsStandUnderTablesToo) {
   const auto json = [&sequence](const char* file) {
     return nlohmann::json::parse(sequence.folder.read(file));
   };
-  for (const auto& run : json("out/results.json").at("runs"))
+  const auto results = json("out/results.json");
+  for (const auto& run : results.at("runs"))
     EXPECT_THAT(run.at("doubt").get<std::string>(), HasSubstr("its lengths are multiplied by"));
   const CliResult sweep = run_cli({"sweep", sequence.path(), "--method", "none", "--parameter",
                                    "features.count=400:500:2", "--out", sequence.path("swept")});
