@@ -10,6 +10,7 @@
 namespace stillpoint {
 namespace {
 
+constexpr double kFarAside = 0.2;  // of a side: no lens sits so far off its sensor's middle
 constexpr double kSameSides =
     0.01;  // relative difference of the two scales: a rounded pixel, not another shape
 
@@ -46,6 +47,12 @@ Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& gi
 
 Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
                        std::vector<std::string>& warnings) {
+  const auto is_aside = [](double centre, int side) { return std::abs(centre / side - 0.5) > kFarAside; };
+  if (is_aside(camera.cx, camera.width) || is_aside(camera.cy, camera.height))
+    warnings.push_back(fmt::format(
+        "{}: the principal point of camera {} is ({:.0f}, {:.0f}) of {}x{} px, far from the middle: are its "
+        "intrinsics of images of another size?",
+        folder, camera.name, camera.cx, camera.cy, camera.width, camera.height));
   if (size == cv::Size(camera.width, camera.height)) return camera;
   const double sx = static_cast<double>(size.width) / camera.width;
   const double sy = static_cast<double>(size.height) / camera.height;

@@ -141,5 +141,15 @@ TEST(CameraForSize, IsNeverStretched) {
   EXPECT_THAT(warnings, IsEmpty());
 }
 
+TEST(CameraForSize, APrincipalPointFarFromTheMiddleIsTold) {
+  Camera doubled = camera_by_name("freiburg1");  // intrinsics of 1280x960 px, and the size of 640x480
+  doubled.fx *= 2, doubled.fy *= 2, doubled.cx *= 2, doubled.cy *= 2;
+  std::vector<std::string> warnings;
+  (void)camera_for_size(doubled, {640, 480}, "f", warnings);
+  EXPECT_THAT(warnings,
+              ElementsAre(HasSubstr("(637, 511) of 640x480 px, far from the middle: are its intrinsics of "
+                                    "images of another size?")));
+}
+
 }  // namespace
 }  // namespace stillpoint
