@@ -157,18 +157,20 @@ bool holds_stamped_matrices(const std::vector<TextLine>& lines, const Trajectory
   return false;
 }
 
-/// Whether rows of 7 numbers are poses without a stamp: a stamp and six numbers end in no quaternion. The
-/// first row that has all its numbers tells.
+/// Whether rows of 7 numbers are poses without a stamp: a stamp and six numbers end in no quaternion. All
+/// rows that have their numbers tell, and one alone does not.
 bool holds_bare_poses(const std::vector<TextLine>& lines, const TrajectoryLayout& layout) {
   const std::size_t end = std::min(lines.size(), layout.header_rows + kRowsLookedAt);
+  int poses = 0;
   for (auto at = static_cast<std::size_t>(layout.header_rows); at < end; ++at) {
     std::vector<double> n;
     for (const std::string_view column : layout.split(lines[at].text))
       if (const auto value = layout.number(column); value && std::isfinite(*value)) n.push_back(*value);
     if (static_cast<int>(n.size()) != kTartanAirColumns) continue;
-    return std::abs(n[3] * n[3] + n[4] * n[4] + n[5] * n[5] + n[6] * n[6] - 1) < kRowLength;
+    if (std::abs(n[3] * n[3] + n[4] * n[4] + n[5] * n[5] + n[6] * n[6] - 1) > kRowLength) return false;
+    ++poses;
   }
-  return false;
+  return poses > 1;
 }
 
 }  // namespace

@@ -10,7 +10,9 @@
 namespace stillpoint {
 namespace {
 
-constexpr double kFarAside = 0.2;  // of a side: no lens sits so far off its sensor's middle
+// Of both sides, where a principal point is that of images of half or twice the size: a lens sits near the
+// middle.
+constexpr double kHalved = 0.3, kDoubled = 0.85;
 constexpr double kSameSides =
     0.01;  // relative difference of the two scales: a rounded pixel, not another shape
 
@@ -47,8 +49,10 @@ Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& gi
 
 Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
                        std::vector<std::string>& warnings) {
-  const auto is_aside = [](double centre, int side) { return std::abs(centre / side - 0.5) > kFarAside; };
-  if (is_aside(camera.cx, camera.width) || is_aside(camera.cy, camera.height))
+  // Of images of twice or half the size both coordinates are off by that; a crop may leave one of them
+  // anywhere.
+  const double right = camera.cx / camera.width, down = camera.cy / camera.height;
+  if (std::max(right, down) < kHalved || std::min(right, down) > kDoubled)
     warnings.push_back(fmt::format(
         "{}: the principal point of camera {} is ({:.0f}, {:.0f}) of {}x{} px, far from the middle: are its "
         "intrinsics of images of another size?",

@@ -89,7 +89,8 @@ TEST_F(TrajectoryFiles, TartanAirsSevenNumbersHaveNoStamps) {
   ASSERT_EQ(file.poses.size(), 2U);
   EXPECT_EQ(file.poses[1].timestamp, 2.0) << "a row without a pose keeps its place";
   EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("NaN or infinity")));
-  expect_the_pose(read("0.25 -1.5 2 0.8 0.6 0 0\n", QuaternionOrder::wxyz), 0.0);
+  const std::string w_first = "0.25 -1.5 2 0.8 0.6 0 0\n";
+  expect_the_pose(read(w_first + w_first, QuaternionOrder::wxyz), 0.0);
   // A stamp, a place and three angles.
   EXPECT_THAT(input_error_of([&] { (void)read("1.5 0.25 -1.5 2 0.1 0.2 0.3\n"); }),
               HasSubstr("found 7 columns, expected the 8 numbers timestamp tx ty tz"));
