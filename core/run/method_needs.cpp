@@ -30,7 +30,7 @@ std::string why_no_true_masks(const FrameSource& source, const std::string& wher
 }
 
 std::string why_no_mask_fits(const Config& config, const FrameSource& source) {
-  constexpr int kMostFrames = 60;
+  constexpr int kMostFrames = 60;  // evenly chosen: masks of a sixtieth of the frames, in one piece, are met
   const OutsideMasks outside(config);
   if (!outside.any() || !outside.problem().empty()) return "";
   const int count = std::min(kMostFrames, source.size());

@@ -84,22 +84,29 @@ TEST(Yi2013, OfOneAgeNoMixtureIsOlder) {
 }
 
 TEST(Yi2013, TheFrameAfterTheFirstJudgesNoPixel) {
-  auto method = method_named("yi2013").make(Camera{}, Config{});
-  cv::Mat noise(240, 320, CV_8UC1);
+  cv::Mat noise(480, 640, CV_8UC1);
   cv::RNG random(5);
   random.fill(noise, cv::RNG::UNIFORM, 0, 256);
   cv::GaussianBlur(noise, noise, {0, 0}, 1.5);
-  cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
-  for (int i = 0; i < 2; ++i) {
-    Frame frame;
-    frame.index = i;
-    // Half a block to the side, and lit otherwise: whatever is judged would move.
-    cv::warpAffine(noise, frame.gray, cv::Matx23d(1, 0, 1.7 * i, 0, 1, 0.9 * i), noise.size(),
-                   cv::INTER_LINEAR, cv::BORDER_REFLECT);
-    const MotionInput input{frame, nullptr};
-    const MotionResult result = method->detect(input);
-    EXPECT_EQ(result.mask_share, 0.0) << i;
-    method->commit(input, result, {});
+  cv::normalize(noise, noise, 60, 140, cv::NORM_MINMAX);
+  for (int turn = 1; turn < 6; ++turn) {
+    auto method = method_named("yi2013").make(Camera{}, Config{});
+    for (int i = 0; i < 2; ++i) {
+      Frame frame;
+      frame.index = i;
+      // A turn about the corner shares blocks in every way there is.
+      const double angle = 0.004 * turn * i;
+      cv::warpAffine(
+          noise, frame.gray,
+          cv::Matx23d(std::cos(angle), -std::sin(angle), 1.3 * i, std::sin(angle), std::cos(angle), 0.9 * i),
+          noise.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+      // Something bright has come, on a fifth of the view.
+      if (i == 1) frame.gray(cv::Rect(100, 100, 300, 200)) += 110;
+      const MotionInput input{frame, nullptr};
+      const MotionResult result = method->detect(input);
+      EXPECT_EQ(result.mask_share, 0.0) << i << ", " << turn;
+      method->commit(input, result, {});
+    }
   }
 }
 
