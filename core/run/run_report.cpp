@@ -204,17 +204,19 @@ std::string doubt_of(const TrajectoryEvaluation& evaluation, const RunResult& ru
 }
 
 /// That masks made elsewhere hold what stands still, where the truth says so; empty otherwise.
-std::string inverted_doubt(const MaskScore& mask, const Config& config) {
+/// @param ours whether they are removed by in a run of ours, or another program's own
+std::string inverted_doubt(const MaskScore& mask, const MasksConfig& config, bool ours) {
   constexpr double kGood = 0.5, kBetter = 4.0;  // IoU the other way round, and over that as they are read
-  if (config.of<MasksConfig>().sources.empty()) return {};
+  if (ours && config.sources.empty()) return {};
   // What the masks leave, held against the truth.
   const MaskScore other{mask.missed, mask.left_rightly, mask.found_rightly, mask.found_wrongly};
   const double as_read = mask.iou().value_or(0.0), otherwise = other.iou().value_or(0.0);
-  if (otherwise < kGood || otherwise < kBetter * as_read) return {};
+  if (mask.found_rightly + mask.found_wrongly == 0 || otherwise < kGood || otherwise < kBetter * as_read)
+    return {};
   return fmt::format(
-      "the masks hold what stands still: the other way round their IoU is {:.2f} instead of {:.2f} "
-      "(`--set masks.inverted={}` reads them so)",
-      otherwise, as_read, !config.of<MasksConfig>().inverted);
+      "the masks hold what stands still: the other way round their IoU is {:.2f} instead of {:.2f}{}",
+      otherwise, as_read,
+      ours ? fmt::format(" (`--set masks.inverted={}` reads them so)", !config.inverted) : "");
 }
 
 std::string share_text(const std::optional<double>& share) {
@@ -249,9 +251,11 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.measured = parts_of(run);
   if (report.evaluation) report.doubt = doubt_of(*report.evaluation, run, source, report.measured.solving);
-  // Masks that leave nothing but what moves are to blame for all else.
-  if (std::string inverted = inverted_doubt(report.scores.mask, run.config); !inverted.empty())
-    report.doubt = std::move(inverted);
+  // Masks of ours that leave nothing but what moves are to blame for all else.
+  const bool ours = report.measured.solving;
+  if (std::string inverted = inverted_doubt(report.scores.mask, run.config.of<MasksConfig>(), ours);
+      !inverted.empty())
+    report.doubt = ours || report.doubt.empty() ? std::move(inverted) : report.doubt + "; " + inverted;
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();

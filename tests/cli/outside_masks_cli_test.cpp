@@ -110,6 +110,22 @@ TEST_F(OutsideMasksCli, InvertedOnesAreToldByTheTruth) {
                         "of 0.00 (`--set masks.inverted=true` reads them so)"));
 }
 
+TEST_F(OutsideMasksCli, OfAnotherProgramsRunTheyAreToldAsWell) {
+  run("sound", {"--method", "oracle"});
+  fs::create_directories(folder_->path("another/masks"));
+  fs::copy(folder_->path("sound/trajectory.txt"), folder_->path("another/trajectory.txt"));
+  for (const auto& entry : fs::directory_iterator(folder_->path("film/mask"))) {
+    const cv::Mat mask = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::imwrite(folder_->path("another/masks/" + entry.path().filename().string()), cv::Mat(255 - mask));
+  }
+  const CliResult result = run_cli({"import", folder_->path("film"), "another=" + folder_->path("another"),
+                                    "--out", folder_->path("imported")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(
+      result.out,
+      HasSubstr("the masks hold what stands still: the other way round their IoU is 1.00 instead of 0.00\n"));
+}
+
 TEST_F(OutsideMasksCli, WhatCannotBeMeantIsRefused) {
   cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(0));
   mask.colRange(100, 200).setTo(255);
