@@ -294,6 +294,7 @@ std::unique_ptr<FrameSource> SequenceArguments::open(const std::string& where, c
   }
   if (needs.oracle)
     if (const std::string why = why_no_true_masks(*source, where); !why.empty()) throw InputError(why);
+  if (const std::string why = why_no_mask_fits(config, *source); !why.empty()) throw InputError(why);
   tell_what_is_of_no_use(where, *source);
   for (const std::string& warning : source->warnings())
     std::fprintf(stderr, "stillpoint: warning: %s\n", warning.c_str());

@@ -56,15 +56,18 @@ struct SequenceNeeds {
 /// What SEQUENCE may be, for the help of commands that take one, several, or also a finished run.
 inline constexpr const char* kSequenceHelp =
     "A folder (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
-    "stereo as KITTI odometry, EuRoC or left/ and right/), an archive of one (.tgz, .tar, .zip, …), a bag "
+    "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/), an archive of one (.tgz, .tar, .zip, "
+    "…), a bag "
     "(.bag, .mcap, .db3), generated:KIND, or generated:KIND:stereo";
 inline constexpr const char* kSequencesHelp =
     "Folders (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
-    "stereo as KITTI odometry, EuRoC or left/ and right/), archives of them (.tgz, .tar, .zip, …), bags "
+    "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/), archives of them (.tgz, .tar, .zip, "
+    "…), bags "
     "(.bag, .mcap, .db3), generated:KIND, generated:KIND:stereo, or generated:all";
 inline constexpr const char* kSequenceOrRunHelp =
     "A folder (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
-    "stereo as KITTI odometry, EuRoC or left/ and right/; colour frames), an archive of one (.tgz, .tar, "
+    "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/; colour frames), an archive of one "
+    "(.tgz, .tar, "
     ".zip, …), a bag (.bag, .mcap, .db3), a video (.mp4, .mkv, .avi), generated:KIND, generated:KIND:stereo, "
     "or a finished run's folder";
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -26,10 +27,17 @@ std::string table_one_text(const BenchmarkResults& results, const BenchmarkColum
 /// What is to be known beside the figures, and which runs are missing, where there is anything.
 std::string after_tables(const BenchmarkResults& results, const BenchmarkColumns& columns) {
   std::string text;
-  for (const std::string& part :
-       {notes_text(notes_on(results)), missing_text(results.missing, columns.asked)})
+  for (const std::string& part : {published_notes(results.sequences()) + notes_text(notes_on(results)),
+                                  missing_text(results.missing, columns.asked)})
     if (!part.empty()) text += "\n" + part;
   return text;
+}
+
+/// Another program's run has none, whatever it is called.
+bool has_partial_mask(const std::string& method) {
+  return std::any_of(methods().begin(), methods().end(), [&method](const MethodInfo& info) {
+    return info.name == method && !info.partial_mask.empty();
+  });
 }
 
 }  // namespace
@@ -54,7 +62,7 @@ BenchmarkResult result_of(const RunReport& report, bool judges) {
     result.precision = report.scores.mask.precision();
     result.recall = report.scores.mask.recall();
     result.iou = report.scores.mask.iou();
-    result.partial_recall = report.scores.partial_mask.recall();
+    if (has_partial_mask(report.method)) result.partial_recall = report.scores.partial_mask.recall();
     if (report.measured.features) {
       result.right = report.scores.removal.removed_rightly;
       result.wrong = report.scores.removal.removed_wrongly;
@@ -73,8 +81,8 @@ std::string tables_text(const BenchmarkResults& results, const BenchmarkColumns&
   const std::string after = after_tables(results, columns);
   if (!columns.repeated)
     return fmt::format(
-        "Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}{}",
-        table_one_text(results, columns), to_markdown(details_table(results)), after);
+        "Translational RPE over 1 s, RMSE in m (published columns: Niu & Li 2019, Table 1)\n\n{}\n{}\n{}{}",
+        table_one_text(results, columns), to_markdown(details_table(results)), details_legend(), after);
   const SpreadTable table = spread_of_runs(results, columns.engines, columns.methods);
   return fmt::format(
       "Translational RPE over 1 s, RMSE in m: median of several runs and half the distance of their "
@@ -93,8 +101,8 @@ void write_tables(const BenchmarkResults& results, const BenchmarkColumns& colum
     write_text_file(
         folder / (engine == columns.engines.front() ? "table1.csv" : fmt::format("table1_{}.csv", engine)),
         to_csv(table_one(results, engine, columns.methods, baseline_method().name)));
-  write_text_file(folder / "details.md",
-                  to_markdown(details_table(results)) + after_tables(results, columns));
+  write_text_file(folder / "details.md", to_markdown(details_table(results)) + "\n" + details_legend() +
+                                             after_tables(results, columns));
   write_text_file(folder / "details.csv", to_csv(details_table(results)));
   if (!columns.repeated) return;
   const SpreadTable table = spread_of_runs(results, columns.engines, columns.methods);

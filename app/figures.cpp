@@ -61,13 +61,12 @@ class Figures {
       // Each alone as well, for pages that set their own captions.
       write_image(folder_ / fmt::format("figure1{}.png", cell.letter), cell.picture);
     }
-    FigureSheet sheet(fmt::format("Figure 1   Motion mask by method {}: {}",
-                                  stages_with(*view.current, "compensated")->method, where),
-                      cells, 3);
+    const std::string& method = stages_with(*view.current, "union_mask")->method;
+    FigureSheet sheet(fmt::format("Figure 1   Motion mask by method {}: {}", method, where), cells, 3);
     write("1", painter_.paint_frame([&](UiFrame& frame) { sheet.draw(frame); }, sheet.size(scale_)),
-          fmt::format("frames, compensated frame, forward, backward and union mask of {}; figure1a.png to "
-                      "figure1f.png are its pictures alone",
-                      where));
+          fmt::format("frames, compensated frame, forward, backward and union mask by method {} of {}; "
+                      "figure1a.png to figure1f.png are its pictures alone",
+                      method, where));
   }
 
   void write_panel(const std::string& number, const SessionView& view, const std::string& panel,

@@ -31,7 +31,7 @@ struct SweepResults {
   Provenance made = made_here();
   std::string markdown;
   Table list{{"sequence", "parameter", "value", "rpe_m", "iou", "coverage", "median_ms", "run_hash", "ate_m",
-              "rpe_frame_m", "doubt"},
+              "rpe_frame_m", "doubt", "pairs"},
              {}};
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
 
@@ -52,7 +52,7 @@ struct SweepResults {
           {sequence, range.parameter, fmt::format("{}", point.value), number(point.reached.rpe_m),
            number(point.reached.mask_iou), fmt::format("{}", point.reached.coverage),
            fmt::format("{:.3f}", point.reached.median_ms), point.reached.hash, number(point.reached.ate_m),
-           number(point.reached.rpe_frame_m), point.reached.doubt});
+           number(point.reached.rpe_frame_m), point.reached.doubt, fmt::format("{}", point.reached.pairs)});
   }
 
   void write(const std::filesystem::path& folder) const {

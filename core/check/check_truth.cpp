@@ -108,7 +108,8 @@ std::optional<TimeShift> find_time_shift(const Trajectory& truth, const Trajecto
   return holds_without_any_part(best->seconds, kShiftsApart, motions.samples(), find) ? best : std::nullopt;
 }
 
-std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate, bool estimate_may_err) {
+std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate, bool estimate_may_err,
+                                 double baseline_m) {
   std::vector<Finding> findings;
   const TrajectoryEvaluation evaluation = evaluate_trajectory(truth, estimate);
   if (estimate_may_err) {
@@ -120,7 +121,9 @@ std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& esti
     findings.push_back({"truth", suspicion->sentence()});
     return findings;  // what else is off shows once this is mended
   } else if (const std::string scale = scale_sentence(evaluation); !scale.empty()) {
-    findings.push_back({"depth", scale + ": `--depth-scale` sets the depth's"});
+    findings.push_back({"depth", scale + ": " +
+                                     (baseline_m > 0.0 ? scale_question(evaluation, baseline_m)
+                                                       : "`--depth-scale` sets the depth's")});
   }
   if (const auto shift = find_time_shift(truth, estimate))
     findings.push_back(
@@ -151,7 +154,7 @@ std::vector<Finding> check_odometry(const FrameSource& source, int frames, const
                                  run.tracked(), run.records.size(), lost->index, lost->note)});
   }
   if (source.ground_truth().empty()) return findings;
-  auto truth = check_truth(source.ground_truth(), run.trajectory, false);
+  auto truth = check_truth(source.ground_truth(), run.trajectory, false, source.camera().baseline_m);
   // Depth of another time makes lengths wrong as well: its clock comes first, and is a finding already.
   if (source.depth_late_s()) std::erase_if(truth, [](const Finding& f) { return f.about == "depth"; });
   findings.insert(findings.end(), truth.begin(), truth.end());

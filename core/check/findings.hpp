@@ -33,7 +33,7 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// program's estimate all that `evaluate` doubts (doubts_about).
 /// @param estimate_may_err false where the estimate is our own, whose convention is known
 [[nodiscard]] std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate,
-                                               bool estimate_may_err);
+                                               bool estimate_may_err, double baseline_m = 0.0);
 
 /// The odometry's (method `none`) poses of the sequence's first frames, and what they say: few frames that
 /// can be tracked, and, where there is ground truth, check_truth.

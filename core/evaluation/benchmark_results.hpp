@@ -91,6 +91,8 @@ struct BenchmarkResults : Provenance {
 
 /// What Table 1 leaves out: a row a run with its other errors, coverage, masks and speed.
 [[nodiscard]] Table details_table(const BenchmarkResults& results);
+/// What the columns of details_table hold, and what a dash in them means.
+[[nodiscard]] std::string details_legend();
 
 /// What is to be known beside these figures.
 [[nodiscard]] std::vector<RunNote> notes_on(const BenchmarkResults& results);

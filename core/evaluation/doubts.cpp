@@ -83,6 +83,12 @@ std::string scale_sentence(const TrajectoryEvaluation& evaluation) {
       similarity->rmse_m, evaluation.ate.translation_m.rmse, similarity->scale);
 }
 
+std::string scale_question(const TrajectoryEvaluation& evaluation, double baseline_m) {
+  if (baseline_m <= 0.0) return "is the depth scale right?";
+  return fmt::format("is the pair's baseline right? It is {:.3g} m, and {:.3g} m would fit", baseline_m,
+                     baseline_m * (evaluation.ate.similarity ? evaluation.ate.similarity->scale : 1.0));
+}
+
 std::string scale_drift_sentence(const std::vector<MatchedPose>& matched) {
   constexpr std::size_t kParts = 3;    // of the pairs: a change shows, and each still tells a scale
   constexpr double kLeft = 0.6;        // of the error under one scale

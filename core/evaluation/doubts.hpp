@@ -12,6 +12,9 @@ namespace stillpoint {
 /// The scale, when it explains more than half of the absolute error, is off one by more than 3 % and surely
 /// so (8 poses, 4 standard errors): one sentence.
 [[nodiscard]] std::string scale_sentence(const TrajectoryEvaluation& evaluation);
+/// What gives an odometry's lengths their scale, as a question after that sentence. @param baseline_m of the
+/// stereo pair whose depth it went by; 0: a depth sensor's
+[[nodiscard]] std::string scale_question(const TrajectoryEvaluation& evaluation, double baseline_m);
 
 /// That the estimate's scale changes on the way: motions of a third of it each, multiplied by a scale of
 /// their own, leave less than 60 % of the error that one scale leaves, and the last one's is 10 % off the

@@ -71,10 +71,14 @@ struct BenchmarkRow {
   std::vector<BenchmarkCell> cells;
 };
 
-/// The paper's Table 1 with our columns beside the published ones: sequence, ORB-SLAM2 VO, paper, ref 7, ref
-/// 12, the published gain, then each of `methods` and, for each but `baseline`, its gain over it. A gain is
-/// the share by which the error fell. A cell tells its coverage where that is below 1. The last row is the
-/// mean of the gains, as the paper averages; it is of all rows that have the figure.
+/// What is to be known of the published columns of these sequences, a line each; empty where they have none.
+[[nodiscard]] std::string published_notes(const std::vector<std::string>& sequences);
+
+/// The paper's Table 1 with our columns beside the published ones: sequence, ORB-SLAM2 VO, paper, Gao
+/// 2019 and BaMVO as it quotes them, the published gain, then each of `methods` and, for each but `baseline`,
+/// its gain over it. A gain is the share by which the error fell. A cell tells its coverage where that is
+/// below 1. The last row is the mean of the gains, as the paper averages; it is of all rows that have the
+/// figure.
 [[nodiscard]] Table table_one(const std::vector<BenchmarkRow>& rows, const std::vector<std::string>& methods,
                               const std::string& baseline);
 

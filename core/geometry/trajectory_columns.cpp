@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kRowsLookedAt = 64;  // rows: enough to tell a layout
 // A stamp and a pose's 7 numbers; 3x4 of a matrix; a stamp, 7 and 9 more of the IMU's; a 4x4 matrix.
 constexpr int kTumColumns = 8, kKittiColumns = 12, kEurocColumns = 17, kReplicaColumns = 16;
+constexpr int kTartanAirColumns = 7;  // a pose's alone
 constexpr int kStampedKittiColumns = kKittiColumns + 1, kStampedReplicaColumns = kReplicaColumns + 1;
 constexpr double kRowLength = 0.02;  // of a matrix's row, how far from 1 its squared length may be
 
@@ -156,10 +157,27 @@ bool holds_stamped_matrices(const std::vector<TextLine>& lines, const Trajectory
   return false;
 }
 
+/// Whether rows of 7 numbers are poses without a stamp: a stamp and six numbers end in no quaternion. All
+/// rows that have their numbers tell, and one alone does not.
+bool holds_bare_poses(const std::vector<TextLine>& lines, const TrajectoryLayout& layout) {
+  const std::size_t end = std::min(lines.size(), layout.header_rows + kRowsLookedAt);
+  int poses = 0;
+  for (auto at = static_cast<std::size_t>(layout.header_rows); at < end; ++at) {
+    std::vector<double> n;
+    for (const std::string_view column : layout.split(lines[at].text))
+      if (const auto value = layout.number(column); value && std::isfinite(*value)) n.push_back(*value);
+    if (static_cast<int>(n.size()) != kTartanAirColumns) continue;
+    if (std::abs(n[3] * n[3] + n[4] * n[4] + n[5] * n[5] + n[6] * n[6] - 1) > kRowLength) return false;
+    ++poses;
+  }
+  return poses > 1;
+}
+
 }  // namespace
 
 bool TrajectoryLayout::has_stamps() const {
-  return !is_matrix || columns == kStampedKittiColumns || columns == kStampedReplicaColumns;
+  if (!is_matrix) return time >= 0;
+  return columns == kStampedKittiColumns || columns == kStampedReplicaColumns;
 }
 
 void TrajectoryLayout::set_order(QuaternionOrder wanted_order) {
@@ -188,7 +206,7 @@ std::vector<int> TrajectoryLayout::wanted() const {
     if (has_stamps()) all.push_back(time);
     return all;
   }
-  std::vector<int> columns_wanted = {time};
+  std::vector<int> columns_wanted = {std::max(0, time)};
   columns_wanted.insert(columns_wanted.end(), position.begin(), position.end());
   columns_wanted.insert(columns_wanted.end(), quaternion.begin(), quaternion.end());
   if (nanoseconds >= 0) columns_wanted.push_back(nanoseconds);
@@ -203,6 +221,7 @@ std::string TrajectoryLayout::expected() const {
   }
   const bool w_first = order == QuaternionOrder::wxyz;
   const std::string tum = w_first ? "timestamp tx ty tz qw qx qy qz" : "timestamp tx ty tz qx qy qz qw";
+  if (!has_stamps()) return "the 7 numbers tx ty tz qx qy qz qw";
   return columns == kTumColumns ? "the 8 numbers " + tum
                                 : std::to_string(columns) + " columns with " + tum + " among them";
 }
@@ -231,6 +250,10 @@ TrajectoryLayout find_layout(const std::vector<TextLine>& lines, const std::vect
     layout.set_order(QuaternionOrder::wxyz);
   } else if (layout.columns == kKittiColumns || layout.columns == kReplicaColumns) {
     layout.is_matrix = true;
+  } else if (layout.columns == kTartanAirColumns && holds_bare_poses(lines, layout)) {
+    layout.time = -1;
+    layout.position = {0, 1, 2};
+    layout.quaternion = {3, 4, 5, 6};
   } else {
     layout.columns = kTumColumns;
   }

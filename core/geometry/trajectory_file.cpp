@@ -127,10 +127,10 @@ class TrajectoryReader {
       fault(line, "found a stamp or a position beyond all measure");
       return Fault::absurd;
     }
-    return layout_.is_matrix ? from_matrix(line, row, n, pose) : from_quaternion(line, n, pose);
+    return layout_.is_matrix ? from_matrix(line, row, n, pose) : from_quaternion(line, row, n, pose);
   }
 
-  Fault from_quaternion(const TextLine& line, const Numbers& n, StampedPose& pose) {
+  Fault from_quaternion(const TextLine& line, int row, const Numbers& n, StampedPose& pose) {
     const Eigen::Quaterniond q(n[7], n[4], n[5], n[6]);
     const double length = q.norm();
     if (!(std::abs(length - 1.0) < kLengthTolerance)) {
@@ -138,7 +138,8 @@ class TrajectoryReader {
       return Fault::quaternion;
     }
     if (std::abs(length - 1.0) > kLengthRemarkable) normalised_.note(line.number);
-    pose.timestamp = n[0] + (layout_.nanoseconds >= 0 ? 1e-9 * n[kNanoseconds] : 0.0);
+    pose.timestamp = layout_.has_stamps() ? n[0] + (layout_.nanoseconds >= 0 ? 1e-9 * n[kNanoseconds] : 0.0)
+                                          : static_cast<double>(row);
     pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
     pose.world_from_camera.translation() = Eigen::Vector3d(n[1], n[2], n[3]);
     return Fault::none;

@@ -18,7 +18,7 @@ struct TrajectoryFile {
   QuaternionOrder order = QuaternionOrder::xyzw;  ///< that was read
   bool order_is_named =
       false;               ///< a header or the format says so; otherwise it is the TUM format's, or asked for
-  bool has_stamps = true;  ///< false where a row's number stands for its time (KITTI)
+  bool has_stamps = true;  ///< false where a row's number stands for its time (KITTI, TartanAir)
   int rows = 0;            ///< that were meant to hold a pose
   int skipped = 0;         ///< of these, rows that hold none; `warnings` tell why
   std::vector<std::string> warnings;
@@ -30,6 +30,7 @@ struct TrajectoryFile {
 /// - any table of 8 or more columns whose header names them (`timestamp, x, y, z, qw, qx, qy, qz`, …), in any
 ///   order; of a ROS message's columns its header's stamp, whole or as seconds and nanoseconds, goes before
 ///   the time of recording;
+/// - TartanAir: tx ty tz qx qy qz qw, no stamps;
 /// - KITTI: the 12 numbers of a 3x4 matrix, no stamps; Replica: the 16 of a 4x4 matrix; either behind a stamp
 ///   or a frame's number, where rows have 13 or 17.
 /// Columns are parted by blanks, tabs, commas or semicolons; decimal commas are read where blanks, tabs or

@@ -57,6 +57,19 @@ std::optional<double> mean_iou(const AblationRow& row) {
   return sum / count;
 }
 
+/// How many pairs a sequence's errors are of: "11", or "7-11" where variants lost frames.
+std::string pairs_of(const std::vector<AblationRow>& rows, std::size_t sequence) {
+  std::optional<std::size_t> least, most;
+  for (const AblationRow& row : rows) {
+    if (sequence >= row.cells.size() || !row.cells[sequence].rpe_m) continue;
+    const std::size_t pairs = row.cells[sequence].pairs;
+    least = std::min(least.value_or(pairs), pairs);
+    most = std::max(most.value_or(pairs), pairs);
+  }
+  if (!least || *most == 0) return kNothing;  // files of earlier versions do not say
+  return *least == *most ? fmt::format("{}", *most) : fmt::format("{}-{}", *least, *most);
+}
+
 AblationCell ablated_cell_from(const nlohmann::json& json) {
   AblationCell cell;
   if (!json.at("rpe_m").is_null()) cell.rpe_m = json.at("rpe_m").get<double>();
@@ -66,6 +79,7 @@ AblationCell ablated_cell_from(const nlohmann::json& json) {
   json.at("run_hash").get_to(cell.hash);
   cell.ate_m = optional_in<double>(json, "ate_m");
   cell.rpe_frame_m = optional_in<double>(json, "rpe_frame_m");
+  cell.pairs = optional_in<std::size_t>(json, "pairs").value_or(0);
   cell.why_no_rpe = optional_in<std::string>(json, "rpe_why_none").value_or("");
   cell.doubt = optional_in<std::string>(json, "doubt").value_or("");
   return cell;
@@ -124,6 +138,7 @@ AblationCell ablation_cell(const RunReport& report) {
   };
   if (const auto& e = report.evaluation) {
     cell.rpe_m = rmse(e->rpe_time.translation_m);
+    cell.pairs = static_cast<std::size_t>(e->rpe_time.translation_m.count);
     cell.ate_m = rmse(e->ate.translation_m);
     cell.rpe_frame_m = rmse(e->rpe_frame.translation_m);
   }
@@ -145,6 +160,7 @@ nlohmann::ordered_json to_json(const AblationCell& cell) {
           {"run_hash", cell.hash},
           {"ate_m", or_null(cell.ate_m)},
           {"rpe_frame_m", or_null(cell.rpe_frame_m)},
+          {"pairs", cell.pairs},
           {"rpe_why_none", or_null(sentence(cell.why_no_rpe))},
           {"doubt", or_null(sentence(cell.doubt))}};
 }
@@ -209,9 +225,11 @@ Table ablation_errors(const std::vector<AblationRow>& rows, const std::vector<st
   const bool by_frame = !any(&AblationCell::rpe_m) && any(&AblationCell::rpe_frame_m);
   Table table;
   table.header = {by_frame ? "RPE 1 frame, RMSE [m]" : "RPE 1 s, RMSE [m]"};
+  if (!by_frame) table.header.push_back("pairs");
   for (const AblationRow& row : rows) table.header.push_back(name_of(row));
   for (std::size_t i = 0; i < sequences.size(); ++i) {
     std::vector<std::string> cells = {sequences[i]};
+    if (!by_frame) cells.push_back(pairs_of(rows, i));
     for (const AblationRow& row : rows)
       cells.push_back(i >= row.cells.size() ? kNothing
                       : by_frame            ? number(row.cells[i].rpe_frame_m, 5)
@@ -233,14 +251,14 @@ std::vector<RunNote> notes_on(const std::vector<AblationRow>& rows,
 
 Table ablation_list(const std::vector<AblationRow>& rows, const std::vector<std::string>& sequences) {
   Table table;
-  table.header = {"sequence", "without", "rpe_m", "iou", "coverage", "median_ms", "run_hash"};
+  table.header = {"sequence", "without", "rpe_m", "iou", "coverage", "median_ms", "run_hash", "pairs"};
   for (const AblationRow& row : rows)
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
       const AblationCell& cell = row.cells[i];
       table.rows.push_back({sequences[i], row.without, cell.rpe_m ? fmt::format("{:.6f}", *cell.rpe_m) : "",
                             cell.mask_iou ? fmt::format("{:.4f}", *cell.mask_iou) : "",
                             fmt::format("{:.4f}", cell.coverage), fmt::format("{:.2f}", cell.median_ms),
-                            cell.hash});
+                            cell.hash, fmt::format("{}", cell.pairs)});
     }
   return table;
 }

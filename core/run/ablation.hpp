@@ -36,6 +36,7 @@ struct AblationCell {
   std::string hash;  ///< of the run's frames: equal to the whole method's where leaving out changed none
   std::optional<double> ate_m{};        ///< RMSE, m
   std::optional<double> rpe_frame_m{};  ///< translational RPE over one frame, RMSE, m
+  std::size_t pairs = 0;                ///< poses 1 s apart that rpe_m is the error of
   std::string why_no_rpe{};             ///< of the RPE over 1 s; empty where there is one
   std::string doubt{};                  ///< RunReport::doubt
 };
@@ -72,7 +73,8 @@ struct AblationChange {
 [[nodiscard]] Table ablation_summary(const std::string& method, const std::vector<AblationRow>& rows,
                                      const std::vector<std::string>& sequences);
 
-/// A row a sequence: RPE over 1 s of each variant, or over one frame where no run lasts a second.
+/// A row a sequence: RPE over 1 s of each variant and of how many pairs it is, or over one frame where no run
+/// lasts a second.
 [[nodiscard]] Table ablation_errors(const std::vector<AblationRow>& rows,
                                     const std::vector<std::string>& sequences);
 

@@ -1,6 +1,9 @@
 #include "core/run/method_needs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
@@ -24,6 +27,27 @@ std::string why_no_true_masks(const FrameSource& source, const std::string& wher
   const std::string why = source.why_not(FramePart::masks);
   return fmt::format("{}: a method that is given the ground-truth masks needs them, and {}", where,
                      why.empty() ? "there is no mask.txt" : "the masks are of no use: " + why);
+}
+
+std::string why_no_mask_fits(const Config& config, const FrameSource& source) {
+  constexpr int kMostFrames = 60;  // evenly chosen: masks of a sixtieth of the frames, in one piece, are met
+  const OutsideMasks outside(config);
+  if (!outside.any() || !outside.problem().empty()) return "";
+  const int count = std::min(kMostFrames, source.size());
+  std::string first;
+  for (int i = 0; i < count; ++i) {
+    const Frame frame = source.read(count == 1 ? 0 : i * (source.size() - 1) / (count - 1));
+    if (!frame.readable()) continue;
+    const auto found = outside.read(frame);
+    if (!found->mask.empty()) return "";
+    if (first.empty())
+      first = fmt::format("frame {}, {}{:.3f} s: {}", frame.index,
+                          frame.name.empty() ? "" : fmt::format("named '{}', ", frame.name), frame.timestamp,
+                          found->problem);
+  }
+  if (first.empty()) return "";  // no frame can be read: that is told elsewhere
+  return fmt::format("{}: none of {} frames looked at has a mask that can be used ({}). {}", source.name(),
+                     count, first, fmt::join(outside.namings(), "; "));
 }
 
 }  // namespace stillpoint

@@ -10,6 +10,7 @@
 #include "core/counted.hpp"
 #include "core/evaluation/doubts.hpp"
 #include "core/evaluation/evaluation_json.hpp"
+#include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_hash.hpp"
 #include "core/run/run_sequence.hpp"
@@ -199,7 +200,23 @@ std::string doubt_of(const TrajectoryEvaluation& evaluation, const RunResult& ru
         "its lengths do not fit the ground truth, as happens where depth is of another time than colour: the "
         "clock of depth, which seems {:.3f} s {}, comes first",
         std::abs(*late), *late > 0 ? "late" : "early");
-  return scale + ": is the depth scale right?";
+  return scale + ": " + scale_question(evaluation, source.camera().baseline_m);
+}
+
+/// That masks made elsewhere hold what stands still, where the truth says so; empty otherwise.
+/// @param ours whether they are removed by in a run of ours, or another program's own
+std::string inverted_doubt(const MaskScore& mask, const MasksConfig& config, bool ours) {
+  constexpr double kGood = 0.5, kBetter = 4.0;  // IoU the other way round, and over that as they are read
+  if (ours && config.sources.empty()) return {};
+  // What the masks leave, held against the truth.
+  const MaskScore other{mask.missed, mask.left_rightly, mask.found_rightly, mask.found_wrongly};
+  const double as_read = mask.iou().value_or(0.0), otherwise = other.iou().value_or(0.0);
+  if (mask.found_rightly + mask.found_wrongly == 0 || otherwise < kGood || otherwise < kBetter * as_read)
+    return {};
+  return fmt::format(
+      "the masks hold what stands still: the other way round their IoU is {:.2f} instead of {:.2f}{}",
+      otherwise, as_read,
+      ours ? fmt::format(" (`--set masks.inverted={}` reads them so)", !config.inverted) : "");
 }
 
 std::string share_text(const std::optional<double>& share) {
@@ -234,6 +251,11 @@ RunReport report_on(const RunResult& run, const FrameSource& source) {
   for (const FrameScores& scores : run.scores) report.scores += scores;
   report.measured = parts_of(run);
   if (report.evaluation) report.doubt = doubt_of(*report.evaluation, run, source, report.measured.solving);
+  // Masks of ours that leave nothing but what moves are to blame for all else.
+  const bool ours = report.measured.solving;
+  if (std::string inverted = inverted_doubt(report.scores.mask, run.config.of<MasksConfig>(), ours);
+      !inverted.empty())
+    report.doubt = ours || report.doubt.empty() ? std::move(inverted) : report.doubt + "; " + inverted;
   report.speed = speed_of(run);
   report.hash = run_hash(run.records);
   report.peak_memory_mb = peak_memory_mb();

@@ -177,13 +177,14 @@ std::optional<std::size_t> best_of(const std::vector<SweepPoint>& points) {
 }
 
 Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points) {
-  Table table{{range.parameter, "RPE 1 s, m", "RPE 1 frame, m", "ATE, m", "mask IoU", "frames with a pose",
-               "median ms a frame"},
+  Table table{{range.parameter, "RPE 1 s, m", "pairs", "RPE 1 frame, m", "ATE, m", "mask IoU",
+               "frames with a pose", "median ms a frame"},
               {}};
   for (const SweepPoint& point : points) {
     const AblationCell& cell = point.reached;
-    table.rows.push_back({fmt::format("{:.6g}", point.value), metres(cell.rpe_m), metres(cell.rpe_frame_m, 5),
-                          metres(cell.ate_m), cell.mask_iou ? fmt::format("{:.3f}", *cell.mask_iou) : "–",
+    table.rows.push_back({fmt::format("{:.6g}", point.value), metres(cell.rpe_m),
+                          fmt::format("{}", cell.pairs), metres(cell.rpe_frame_m, 5), metres(cell.ate_m),
+                          cell.mask_iou ? fmt::format("{:.3f}", *cell.mask_iou) : "–",
                           // Rounded down, so that a frame lost never reads as 100 %.
                           fmt::format("{:.1f} %", std::floor(1000.0 * cell.coverage) / 10.0),
                           fmt::format("{:.1f}", cell.median_ms)});

@@ -60,7 +60,8 @@ struct SweepPoint {
 /// What is to be known beside these figures.
 [[nodiscard]] std::vector<RunNote> notes_on(const SweepRange& range, const std::vector<SweepPoint>& points);
 
-/// A row a value: RPE over 1 s and over a frame, ATE, IoU, frames with a pose, median time.
+/// A row a value: RPE over 1 s, of how many pairs, and over a frame, ATE, IoU, frames with a pose, median
+/// time.
 [[nodiscard]] Table sweep_table(const SweepRange& range, const std::vector<SweepPoint>& points);
 [[nodiscard]] nlohmann::ordered_json sweep_json(const std::string& sequence, const SweepRange& range,
                                                 const std::vector<SweepPoint>& points);

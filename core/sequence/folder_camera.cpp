@@ -10,6 +10,9 @@
 namespace stillpoint {
 namespace {
 
+// Of both sides, where a principal point is that of images of half or twice the size: a lens sits near the
+// middle.
+constexpr double kHalved = 0.3, kDoubled = 0.85;
 constexpr double kSameSides =
     0.01;  // relative difference of the two scales: a rounded pixel, not another shape
 
@@ -46,6 +49,14 @@ Camera camera_of_folder(const FileStore& folder, const std::optional<Camera>& gi
 
 Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
                        std::vector<std::string>& warnings) {
+  // Of images of twice or half the size both coordinates are off by that; a crop may leave one of them
+  // anywhere.
+  const double right = camera.cx / camera.width, down = camera.cy / camera.height;
+  if (std::max(right, down) < kHalved || std::min(right, down) > kDoubled)
+    warnings.push_back(fmt::format(
+        "{}: the principal point of camera {} is ({:.0f}, {:.0f}) of {}x{} px, far from the middle: are its "
+        "intrinsics of images of another size?",
+        folder, camera.name, camera.cx, camera.cy, camera.width, camera.height));
   if (size == cv::Size(camera.width, camera.height)) return camera;
   const double sx = static_cast<double>(size.width) / camera.width;
   const double sy = static_cast<double>(size.height) / camera.height;

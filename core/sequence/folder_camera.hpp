@@ -25,7 +25,8 @@ void check_camera(const std::string& path, const Camera& camera);
                                       std::vector<std::string>& warnings);
 
 /// The camera for images of this size. Images of the same sides are scaled. Images of other sides are taken
-/// for the middle of what the camera sees, as sensors crop them, and never for stretched; either is told.
+/// for the middle of what the camera sees, as sensors crop them, and never for stretched; either is told, as
+/// is a principal point far from the middle.
 [[nodiscard]] Camera camera_for_size(const Camera& camera, cv::Size size, const std::string& folder,
                                      std::vector<std::string>& warnings);
 

@@ -209,8 +209,10 @@ void read_mask_list(const FileStore& folder, FolderLists& lists) {
     lists.masks = read_image_list(folder, *masks, kMaskFolders, lists.warnings);
 }
 
+StampUnit stamp_unit(const ImageList& list) { return unit_of(stamps_of(list)); }
+
 void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known) {
-  lists.unit = known ? *known : unit_of(stamps_of(lists.colours));
+  lists.unit = known ? *known : stamp_unit(lists.colours);
   convert(lists.colours, lists.unit, frame_rate);
   // A layout that says what its stamps are leaves nothing to wonder at.
   if (!known && lists.unit == StampUnit::frames)
@@ -231,7 +233,7 @@ void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUni
     const StampUnit unit =
         is_known ? *known
                  : unit_beside(stamps_of(**list), reference, lists.unit, frame_rate, kAssociationTolerance);
-    if (unit != lists.unit)
+    if (unit != lists.unit && !known)
       lists.warnings.push_back(fmt::format("{}: the stamps are {}, where those of {} are {}", (*list)->path,
                                            to_string(unit), lists.colours.path, to_string(lists.unit)));
     convert(**list, unit, frame_rate);

@@ -58,9 +58,12 @@ struct FolderLists {
 /// Reads the list of masks, where there is one. @throws InputError for one that cannot be read
 void read_mask_list(const FileStore& folder, FolderLists& lists);
 
+/// What the stamps of a list as it was read seem to be.
+[[nodiscard]] StampUnit stamp_unit(const ImageList& list);
+
 /// Converts the stamps of all lists to seconds. @param frame_rate Hz, of stamps that are frame numbers
 /// @param known the unit of the colour and depth stamps by the layout; nothing = they tell it themselves, and
-/// one that is not seconds is told
+/// one that is not seconds is told, as is a list in another unit than they
 void settle_stamps(FolderLists& lists, double frame_rate, std::optional<StampUnit> known = {});
 
 }  // namespace stillpoint

@@ -61,7 +61,7 @@ struct ScaleDoubt {
 
 /// How a sequence's masks say what is dynamic.
 enum class MaskCoding {
-  bright,   ///< above half of the type's range: 0 and 255
+  bright,   ///< above half of the type's range, of a coloured image in any colour: 0 and 255
   nonzero,  ///< anything but 0: 0 and 1, or labels
 };
 
@@ -72,12 +72,18 @@ struct MaskSurvey {
   double largest = 0;         ///< value
   int labels = 0;             ///< different values but 0, at most
   double moving_share = 0.0;  ///< of all pixels
+  double gray_share = 0.0;    ///< neither nearly black nor nearly white, of those that are not nearly black
+  bool coloured = false;      ///< some have colours
   cv::Size size;              ///< of the first that could be read
 };
 [[nodiscard]] MaskSurvey survey_masks(const ImagePaths& paths,
                                       const ImageReader& read_image = stillpoint::read_image);
 
-/// A mask image as 255 = moving, 0 = not, of its own size.
+/// How masks are read, where that could be doubted; empty for those that are black and white.
+/// @param become what happens to the pixels that are set: "taken out"
+[[nodiscard]] std::string how_read(const MaskSurvey& survey, const std::string& become);
+
+/// A mask image as 255 = moving, 0 = not, of its own size. Of an image whose alpha varies alpha is the mask.
 [[nodiscard]] cv::Mat moving_pixels(const cv::Mat& image, MaskCoding coding);
 
 }  // namespace stillpoint

@@ -280,12 +280,8 @@ void ListedSequence::survey_mask_images(cv::Size colour) {
                     mask_list_, survey.size.width, survey.size.height, colour.width, colour.height);
     return;
   }
-  if (survey.coding == MaskCoding::nonzero)
-    warnings_.push_back(survey.labels <= 1
-                            ? fmt::format("{}: the masks hold 0 and {:g}; what is {:g} is read as moving",
-                                          mask_list_, survey.largest, survey.largest)
-                            : fmt::format("{}: the masks hold {} labels; whatever is not 0 is read as moving",
-                                          mask_list_, survey.labels));
+  if (const std::string how = how_read(survey, "read as moving"); !how.empty())
+    warnings_.push_back(fmt::format("{}: {}", mask_list_, how));
   const double moving = options_.inverted_masks ? 1.0 - survey.moving_share : survey.moving_share;
   if (moving > kMostMoving)
     warnings_.push_back(fmt::format(

@@ -59,6 +59,8 @@ class ListedSequence final : public FrameSource {
   void read_lists();
   void join_depth(FolderLists& lists);
   void join_right(const FolderLists& lists);
+  /// Tells right images that were not taken with their left ones.
+  void question_exposures();
   void join_masks(const ImageList& masks);
   /// Files that are missing or empty, by their names: what reading them would tell frame by frame.
   void tell_files_without_bytes();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "core/sequence/association.hpp"
@@ -28,6 +29,22 @@ void ListedSequence::join_right(const FolderLists& lists) {
         fmt::format("{}: has {} images where {} has {}; {} pairs were found, and frames without a "
                     "right image have no depth",
                     depth_list_, right, colour_list_, left, joined));
+  question_exposures();
+}
+
+void ListedSequence::question_exposures() {
+  constexpr double kAtOnce = 0.001;  // s: a camera that turns by 1 rad/s moves half a pixel in it
+  std::vector<double> late;
+  for (const Entry& frame : frames_)
+    if (frame.depth) late.push_back(frame.depth->timestamp - frame.colour.timestamp);
+  if (late.empty()) return;
+  const auto middle = late.begin() + static_cast<std::ptrdiff_t>(late.size() / 2);
+  std::nth_element(late.begin(), middle, late.end());
+  if (std::abs(*middle) <= kAtOnce) return;
+  warnings_.push_back(fmt::format(
+      "{}: its images were taken {:.1f} ms {} than those of {}, in the median: what camera and "
+      "things move in between is taken for depth",
+      depth_list_, 1000.0 * std::abs(*middle), *middle > 0.0 ? "later" : "earlier", colour_list_));
 }
 
 void ListedSequence::begin_stereo() {
@@ -59,9 +76,10 @@ void ListedSequence::survey_stereo() {
         depth_list_, 100.0 * survey.to_the_left, survey.matches, colour_list_));
   else if (is_unrectified(survey))
     warnings_.push_back(
-        fmt::format("{}: matched corners lie {:.1f} px lower than in {}, give or take {:.1f} px: the "
+        fmt::format("{}: matched corners lie {:.1f} px {} than in {}, give or take {:.1f} px: the "
                     "pair is not rectified, and its depth is of little use",
-                    depth_list_, survey.row_offset_px, colour_list_, survey.row_spread_px));
+                    depth_list_, std::abs(survey.row_offset_px),
+                    survey.row_offset_px < 0.0 ? "higher" : "lower", colour_list_, survey.row_spread_px));
 }
 
 void ListedSequence::read_right(const Entry& listed, Frame& frame) const {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "core/counted.hpp"
 #include "core/error.hpp"
 #include "core/sequence/association.hpp"
 #include "core/sequence/image_file.hpp"
@@ -185,20 +186,30 @@ void MaskFiles::survey() {
     if (i++ % step == 0) sample.push_back(files.front());
   const MaskSurvey found = survey_masks(sample);
   coding_ = found.coding;
-  if (coding_ == MaskCoding::nonzero)
+  if (const std::string how = how_read(found, "taken out"); !how.empty()) {
+    const bool of_things = found.coloured || found.labels > 1;
+    warnings_.push_back(fmt::format("{}: {}{}", where_, how, of_things ? " (masks.labels chooses)" : ""));
+  }
+  if (found.read > 0 && found.moving_share == 0.0 && !reading_.inverted)
     warnings_.push_back(
-        found.labels > 1
-            ? fmt::format(
-                  "{}: the masks hold {} labels; whatever is not 0 is taken out (masks.labels chooses)",
-                  where_, found.labels)
-            : fmt::format("{}: the masks hold 0 and {:g}; what is {:g} is taken out", where_, found.largest,
-                          found.largest));
+        fmt::format("{}: {} looked at, nothing is taken out by any", where_, counted(found.read, "mask")));
   const double moving = reading_.inverted ? 1.0 - found.moving_share : found.moving_share;
   if (found.read > 0 && moving > kMostMoving)
     warnings_.push_back(fmt::format(
         "{}: {:.0f} % of the masks' pixels are said to move; if white is what is static, masks.inverted={} "
         "reads them so",
         where_, 100.0 * moving, reading_.inverted ? "false" : "true"));
+}
+
+std::string MaskFiles::naming() const {
+  const auto files = [](std::size_t count) {
+    return count == 1 ? std::string("its one file is") : fmt::format("its {} files are", count);
+  };
+  if (by_number_.empty())
+    return fmt::format("{} named by no numbers, '{}' first", files(by_name_.size()), by_name_.begin()->first);
+  const double first = by_number_.begin()->first, last = by_number_.rbegin()->first;
+  if (stamps_) return fmt::format("{} of {:.3f} s to {:.3f} s", files(by_name_.size()), first, last);
+  return fmt::format("{} numbered from {:.0f} to {:.0f}", files(by_name_.size()), first, last);
 }
 
 const MaskFiles::Files* MaskFiles::files_named(const std::string& name) const {

@@ -42,6 +42,8 @@ class MaskFiles {
   [[nodiscard]] FoundMask read(const Frame& frame) const;
 
   [[nodiscard]] const std::string& where() const { return where_; }
+  /// What its files are named by, some words: "its 40 files are of 5.000 s to 6.300 s".
+  [[nodiscard]] std::string naming() const;
   /// How the images were understood, where that could be doubted, one sentence each.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 

@@ -98,7 +98,41 @@ TEST_F(OutsideMasksCli, WithAMethodOfOurOwn) {
   EXPECT_LT(common["masks"]["mask"]["recall"].get<double>(), 1.0);
 }
 
+TEST_F(OutsideMasksCli, InvertedOnesAreToldByTheTruth) {
+  fs::create_directories(folder_->path("inverted"));
+  for (const auto& entry : fs::directory_iterator(folder_->path("film/mask"))) {
+    const cv::Mat mask = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::imwrite(folder_->path("inverted/" + entry.path().filename().string()), cv::Mat(255 - mask));
+  }
+  const CliResult result = run("turned", {"--masks", folder_->path("inverted")});
+  EXPECT_THAT(result.out,
+              HasSubstr("the masks hold what stands still: the other way round their IoU is 1.00 instead "
+                        "of 0.00 (`--set masks.inverted=true` reads them so)"));
+}
+
+TEST_F(OutsideMasksCli, OfAnotherProgramsRunTheyAreToldAsWell) {
+  run("sound", {"--method", "oracle"});
+  fs::create_directories(folder_->path("another/masks"));
+  fs::copy(folder_->path("sound/trajectory.txt"), folder_->path("another/trajectory.txt"));
+  for (const auto& entry : fs::directory_iterator(folder_->path("film/mask"))) {
+    const cv::Mat mask = cv::imread(entry.path().string(), cv::IMREAD_GRAYSCALE);
+    cv::imwrite(folder_->path("another/masks/" + entry.path().filename().string()), cv::Mat(255 - mask));
+  }
+  const CliResult result = run_cli({"import", folder_->path("film"), "another=" + folder_->path("another"),
+                                    "--out", folder_->path("imported")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(
+      result.out,
+      HasSubstr("the masks hold what stands still: the other way round their IoU is 1.00 instead of 0.00\n"));
+}
+
 TEST_F(OutsideMasksCli, WhatCannotBeMeantIsRefused) {
+  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(0));
+  mask.colRange(100, 200).setTo(255);
+  fs::create_directories(folder_->path("other"));
+  cv::imwrite(folder_->path("other/hall.png"), mask);
+  expect_one_sentence(run_cli({"run", folder_->path("film"), "--masks", folder_->path("other")}),
+                      "none of 8 frames looked at has a mask that can be used");
   expect_one_sentence(run_cli({"run", folder_->path("film"), "--method", "masks"}),
                       "method masks removes by masks made elsewhere: name them by --masks DIR|LIST");
   expect_one_sentence(run_cli({"run", folder_->path("film"), "--masks", folder_->path("nowhere")}),

@@ -321,6 +321,14 @@ TEST(Figures, AreThePapersOfAnySequence) {
   ASSERT_EQ(small.exit_code, 0) << small.err;
   EXPECT_GT(cv::imread(out + "/figure1.png").rows, whole - 2 * 120);
 
+  // Of a method that has a compensated frame of its own figure 1 shows the paper's masks, as of any other.
+  const CliResult other =
+      run_cli({"figures", sequence.path(), "--frame", "4", "--method", "yi2013", "--out", out, "--force"});
+  EXPECT_THAT(other.out,
+              HasSubstr("figure1.png: frames, compensated frame, forward, backward and union mask by "
+                        "method paper of"));
+  EXPECT_THAT(other.out, HasSubstr("features before removal, those that method yi2013 removes told apart"));
+
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "4", "--out", out}), "--force");
   expect_one_sentence(run_cli({"figures", sequence.path(), "--frame", "9", "--out", out}),
                       "--frame 9: the sequence has frames 0 to 5");

@@ -64,17 +64,22 @@ TEST(Ablation, NothingToCompareIsSaidSo) {
 }
 
 TEST(Ablation, TablesHoldEveryRun) {
-  const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
-                                         {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+  std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
+                                   {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
   const std::vector<std::string> sequences = {"one", "two"};
+  rows[0].cells[0].pairs = rows[1].cells[0].pairs = 7;
+  rows[0].cells[1].pairs = 11, rows[1].cells[1].pairs = 4;
   const Table errors = ablation_errors(rows, sequences);
-  EXPECT_THAT(errors.header, ::testing::ElementsAre("RPE 1 s, RMSE [m]", "whole method", "without prior"));
-  EXPECT_THAT(errors.rows.at(1), ::testing::ElementsAre("two", "0.0200", "0.0400"));
+  EXPECT_THAT(errors.header,
+              ::testing::ElementsAre("RPE 1 s, RMSE [m]", "pairs", "whole method", "without prior"));
+  EXPECT_THAT(errors.rows.at(0), ::testing::ElementsAre("one", "7", "0.0100", "0.0300"));
+  EXPECT_THAT(errors.rows.at(1), ::testing::ElementsAre("two", "4-11", "0.0200", "0.0400"));
+  EXPECT_EQ(ablation_cell_from_json(to_json(rows[1].cells[1]).dump(), "it").pairs, 4U);
   const Table list = ablation_list(rows, sequences);
   ASSERT_EQ(list.rows.size(), 4U);
   for (const auto& row : list.rows) EXPECT_EQ(row.size(), list.header.size());
   EXPECT_THAT(list.rows.at(2),
-              ::testing::ElementsAre("one", "prior", "0.030000", "0.6000", "1.0000", "8.00", "x"));
+              ::testing::ElementsAre("one", "prior", "0.030000", "0.6000", "1.0000", "8.00", "x", "7"));
   const Provenance made{"1.2", "abc", "two cores", "2026-01-02", "stillpoint ablate one two"};
   const auto json = ablation_json("stillpoint", rows, sequences, made);
   EXPECT_TRUE(json["variants"][0]["without"].is_null());
@@ -109,8 +114,8 @@ TEST(Notes, AreAsManyAsFitAScreen) {
 }
 
 TEST(Ablation, IsReadBackAndSaysWhatItWasMadeBy) {
-  const std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
-                                         {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
+  std::vector<AblationRow> rows = {{"", {}, {cell(0.01, 0.8, 10, "a"), cell(0.02, {}, 12, "b")}},
+                                   {"prior", {}, {cell(0.03, 0.6, 8, "x"), cell(0.04, {}, 8, "y")}}};
   const std::vector<std::string> sequences = {"one", "two"};
   const Provenance made{"1.2", "abc", "two cores", "2026-01-02", "stillpoint ablate one two"};
   const TemporaryFolder folder;

@@ -141,5 +141,25 @@ TEST(CameraForSize, IsNeverStretched) {
   EXPECT_THAT(warnings, IsEmpty());
 }
 
+TEST(CameraForSize, APrincipalPointFarFromTheMiddleIsTold) {
+  Camera doubled = camera_by_name("freiburg1");  // intrinsics of 1280x960 px, and the size of 640x480
+  doubled.fx *= 2, doubled.fy *= 2, doubled.cx *= 2, doubled.cy *= 2;
+  std::vector<std::string> warnings;
+  (void)camera_for_size(doubled, {640, 480}, "f", warnings);
+  EXPECT_THAT(warnings,
+              ElementsAre(HasSubstr("(637, 511) of 640x480 px, far from the middle: are its intrinsics of "
+                                    "images of another size?")));
+  warnings.clear();
+  Camera halved = camera_by_name("freiburg1");
+  halved.fx /= 2, halved.fy /= 2, halved.cx /= 2, halved.cy /= 2;
+  (void)camera_for_size(halved, {640, 480}, "f", warnings);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("(159, 128) of 640x480 px, far from the middle")));
+  warnings.clear();
+  Camera cropped = camera_by_name("freiburg1");  // the left half of a sensor's upper rows
+  cropped.cx = 620;
+  (void)camera_for_size(cropped, {640, 480}, "f", warnings);
+  EXPECT_THAT(warnings, IsEmpty());
+}
+
 }  // namespace
 }  // namespace stillpoint

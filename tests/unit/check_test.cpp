@@ -105,6 +105,8 @@ TEST(Check, NamesConventionsAndScales) {
   Trajectory small = estimate;
   for (StampedPose& pose : small) pose.world_from_camera.translation() *= 0.2;
   EXPECT_THAT(check_truth(estimate, small, false), Contains(says("depth", "multiplied by 5.000")));
+  EXPECT_THAT(check_truth(estimate, small, false, 0.024),
+              Contains(says("depth", "is the pair's baseline right? It is 0.024 m, and 0.12 m would fit")));
   EXPECT_THAT(check_truth(estimate, small, true),
               Contains(says("estimate", "`stillpoint evaluate --align sim3`")));
   Trajectory held = estimate;

@@ -332,6 +332,27 @@ TEST(Gao2019, AFrameThatWasNotJudgedGoesIntoTheModelAllTheSame) {
   EXPECT_FALSE(judge->settled());
 }
 
+TEST(Gao2019, WhereNothingTellsTheCamerasMotionItSaysSo) {
+  const WallAndBoard scene;
+  Config config;
+  config.of<Gao2019Config>().min_patches = 10000;  // alignment never has enough
+  const auto judge = method_named("gao2019").make(scene.camera, config);
+  const auto note_of = [&](int i, bool estimated) {
+    const Frame frame = scene.frame(i);
+    const auto features = scene.features(i);
+    MotionInput input{frame, judge->prepare(frame, {}, 1)};
+    input.camera_from_world = scene.camera_from_world(i);
+    input.features = features;
+    const MotionResult result = judge->detect(input);
+    judge->commit(input, result, {estimated, scene.camera_from_world(i)});
+    return result.note;
+  };
+  (void)note_of(0, true);
+  EXPECT_NE(note_of(1, false).find(": the odometry's first pose stands in"), std::string::npos);
+  EXPECT_NE(note_of(2, true).find(": the camera is taken to be static, for the last frame has no pose"),
+            std::string::npos);
+}
+
 TEST(Gao2019, ThePresetHoldsTheDefaults) {
   const Config config = load_config("gao2019");
   EXPECT_EQ(config.run.method, "gao2019");

@@ -4,6 +4,7 @@
 
 #include "core/config.hpp"
 #include "core/motion/lin2017/feature_flow.hpp"
+#include "core/motion/lin2017/lin2017_stages.hpp"
 #include "core/motion/lin2017/virtual_points.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_report.hpp"
@@ -249,6 +250,34 @@ TEST(Lin2017, KeepsOutWhatPausesForSomeFramesAndNoLonger) {
   SceneRun forgetful(scene, *method(scene, config));
   for (int i = 0; i < 4; ++i) (void)forgetful.next();
   EXPECT_LT(dropped(scene, 4, forgetful.next()).on_board, 0.1);
+}
+
+TEST(Lin2017, VirtualPointsGoOnWhileFramesAreNotJudged) {
+  const WallAndBoard scene;  // the board goes 30 mm a frame, the camera 4 mm
+  const auto judge = method(scene);
+  std::shared_ptr<const Lin2017Trace> before, after;
+  for (int i = 0; i < 7; ++i) {
+    const Frame frame = scene.frame(i);
+    const auto features = scene.features(i);
+    MotionInput input{frame, judge->prepare(frame, {}, 1)};
+    input.camera_from_world = scene.camera_from_world(i);
+    input.features = features;
+    const MotionResult result = judge->detect(input);
+    if (i == 4) before = std::static_pointer_cast<const Lin2017Trace>(result.trace);
+    if (i == 6) after = std::static_pointer_cast<const Lin2017Trace>(result.trace);
+    // Frame 4 is lost, so that frame 5 has nothing to be compared with.
+    EXPECT_EQ(result.trace == nullptr, i == 0 || i == 5) << i;
+    judge->commit(input, result, {i != 4, scene.camera_from_world(i)});
+  }
+  ASSERT_TRUE(before && after);
+  const auto middle = [](const std::vector<VirtualPoint>& points) {
+    double sum = 0.0;
+    for (const VirtualPoint& point : points) sum += point.position.x();
+    return sum / static_cast<double>(points.size());
+  };
+  ASSERT_GT(before->virtual_after.size(), 10U);
+  ASSERT_EQ(after->virtual_before.size(), before->virtual_after.size());
+  EXPECT_NEAR(middle(after->virtual_before) - middle(before->virtual_after), 2 * (0.030 - 0.004), 0.004);
 }
 
 TEST(Lin2017, ClonesThreadsAndLookingTwiceChangeNothing) {

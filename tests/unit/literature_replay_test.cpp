@@ -2,9 +2,13 @@
 // checkpoint.
 #include <gtest/gtest.h>
 
+#include "core/config.hpp"
+#include "core/error.hpp"
 #include "core/inspect/replayable_run.hpp"
 #include "core/motion/methods.hpp"
 #include "core/run/run_hash.hpp"
+#include "core/run/run_report.hpp"
+#include "core/run/run_sequence.hpp"
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "tests/support/rendered.hpp"
 #include "tests/unit/wall_and_board.hpp"
@@ -63,6 +67,62 @@ TEST_P(Literature, GoesOnPastBrokenFramesAndBackToAnyFrame) {
     if (a.trace != nullptr && i != PatchySource::kNoDepth) ++judged;
   }
   EXPECT_GE(judged, 4);
+}
+
+/// Frames of a pair, read once, under any camera.
+class SomeFrames final : public FrameSource {
+ public:
+  SomeFrames(const FrameSource& source, const Camera& camera) : camera_(camera), name_(source.name()) {
+    for (int i = 0; i < source.size(); ++i) frames_.push_back(source.read(i));
+  }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const Camera& camera() const override { return camera_; }
+  [[nodiscard]] int size() const override { return static_cast<int>(frames_.size()); }
+  [[nodiscard]] double timestamp(int index) const override { return read(index).timestamp; }
+  [[nodiscard]] Frame read(int index) const override { return frames_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] FrameTruth truth(int) const override { return {}; }
+  [[nodiscard]] const Trajectory& ground_truth() const override { return none_; }
+  [[nodiscard]] bool has_depth() const override { return true; }
+  [[nodiscard]] bool has_masks() const override { return false; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return told_; }
+
+ private:
+  Camera camera_;
+  std::string name_;
+  std::vector<Frame> frames_;
+  Trajectory none_;
+  std::vector<std::string> told_;
+};
+
+/// Of every method whose constants name the noise of a depth sensor.
+TEST(LiteratureOfPairs, AStereoPairsNoiseGoesBeforeASensors) {
+  const auto pairs = make_generated_sequence("walking_xyz:stereo", 9, 1);
+  const SomeFrames stereo(*pairs, pairs->camera());
+  Camera sensor = pairs->camera();
+  sensor.baseline_m = 0.0;
+  const SomeFrames depth(stereo, sensor);
+  int asked = 0;
+  for (const MethodInfo& info : methods()) {
+    Config usual;
+    usual.run.method = info.name;
+    const auto hash = [&usual](const FrameSource& source, const std::string& noise) {
+      Config config = usual;
+      if (!noise.empty()) set_parameter(config, noise);
+      return run_hash(run_sequence(source, config).records);
+    };
+    Config noisy = usual;
+    const std::string noise = info.name + ".depth_sigma_per_m2=0.09";
+    try {
+      set_parameter(noisy, noise);
+    } catch (const InputError&) {
+      continue;
+    }
+    ++asked;
+    if (info.name == "dai2020") set_parameter(usual, "dai2020.settle_frames=3");
+    EXPECT_EQ(hash(stereo, noise), hash(stereo, "")) << info.name;
+    EXPECT_NE(hash(depth, noise), hash(depth, "")) << info.name << " takes no heed of it at all";
+  }
+  EXPECT_GE(asked, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Literature,

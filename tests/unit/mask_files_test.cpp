@@ -1,6 +1,7 @@
 // Masks made elsewhere: which file belongs to which frame, and what its values say.
 #include "core/sequence/mask_files.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,11 +9,15 @@
 
 #include "core/config.hpp"
 #include "core/motion/masks/outside_masks.hpp"
+#include "core/run/method_needs.hpp"
+#include "core/sequence/source.hpp"
 #include "tests/unit/temporary_folder.hpp"
 
 namespace stillpoint {
 namespace {
 
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -156,6 +161,119 @@ TEST(MaskFiles, LabelsAsColours) {
   EXPECT_THAT(refused.problem, HasSubstr("is a coloured image, and a label is given as a number"));
   reading.labels = {"person"};
   EXPECT_THAT(input_error_of([&] { MaskFiles(folder.path(), reading); }), HasSubstr("'person' is no label"));
+}
+
+TEST(MaskFiles, ColouredThingsOnBlackAreTakenOut) {
+  // Networks draw people red or in a palette's colours, of which grey levels make less than half.
+  for (const cv::Scalar& colour : {cv::Scalar(0, 0, 255), cv::Scalar(128, 0, 192), cv::Scalar(255, 0, 0)}) {
+    const TemporaryFolder folder;
+    cv::Mat drawn(kHeight, kWidth, CV_8UC3, cv::Scalar(0, 0, 0));
+    drawn.col(3).setTo(colour);
+    folder.write("0.png", drawn);
+    EXPECT_THAT(columns_for(folder, frame(0)), ElementsAre(3)) << colour;
+    EXPECT_THAT(MaskFiles(folder.path(), {}).warnings(),
+                ElementsAre(HasSubstr("the masks are coloured; what is bright in one of its colours is taken "
+                                      "out (masks.labels chooses)")));
+  }
+}
+
+TEST(MaskFiles, WhatIsCutOutByAlphaIsTakenOut) {
+  const TemporaryFolder folder;
+  cv::Mat cut(kHeight, kWidth, CV_8UC4, cv::Scalar(0, 0, 0, 0));
+  cut.col(5).setTo(cv::Scalar(0, 0, 0, 255));
+  cut.col(7).setTo(cv::Scalar(200, 210, 220, 0));  // what nobody sees
+  folder.write("0.png", cut);
+  // Without a hole the colours tell.
+  cv::Mat opaque(kHeight, kWidth, CV_8UC4, cv::Scalar(0, 0, 0, 255));
+  opaque.col(2).setTo(cv::Scalar(255, 255, 255, 255));
+  folder.write("1.png", opaque);
+  EXPECT_THAT(columns_for(folder, frame(0)), ElementsAre(5));
+  EXPECT_THAT(columns_for(folder, frame(1)), ElementsAre(2));
+}
+
+TEST(MaskFiles, ProbabilitiesAreHalvedWhateverTheirRangeInAFrame) {
+  const TemporaryFolder folder;
+  cv::Mat somebody(kHeight, kWidth, CV_32FC1, cv::Scalar(0.02F)), nobody = somebody.clone();
+  somebody.col(4).setTo(0.9F);
+  nobody.col(6).setTo(0.1F);
+  folder.write("0.tiff", somebody);
+  folder.write("1.tiff", nobody);
+  EXPECT_THAT(columns_for(folder, frame(0)), ElementsAre(4));
+  const FoundMask none = MaskFiles(folder.path(), {}).read(frame(1));
+  ASSERT_FALSE(none.mask.empty());
+  EXPECT_EQ(cv::countNonZero(none.mask), 0);
+}
+
+TEST(MaskFiles, ManyValuesAreNoBlackAndWhiteAndTold) {
+  const TemporaryFolder folder;
+  cv::Mat instances(64, 250, CV_8UC1);
+  for (int x = 0; x < 250; ++x) instances.col(x).setTo(x);
+  folder.write("0.png", instances);
+  EXPECT_THAT(
+      MaskFiles(folder.path(), {}).warnings(),
+      Contains(HasSubstr("100 % of what is not black in the masks is grey; what is brighter than half is "
+                         "taken out (masks.labels chooses)")));
+  // Edges that a network smoothed are not worth a word.
+  cv::Mat smooth(64, 64, CV_8UC1, cv::Scalar(0));
+  smooth.colRange(20, 44).setTo(255);
+  smooth.col(19).setTo(120), smooth.col(44).setTo(90);
+  folder.write("0.png", smooth);
+  EXPECT_THAT(MaskFiles(folder.path(), {}).warnings(), IsEmpty());
+}
+
+TEST(MaskFiles, ThatTakeOutNothingAreTold) {
+  const TemporaryFolder folder;
+  folder.write("0.png", column(0, 0));
+  folder.write("1.png", column(0, 0));
+  EXPECT_THAT(MaskFiles(folder.path(), {}).warnings(),
+              ElementsAre(HasSubstr("2 masks looked at, nothing is taken out by any")));
+}
+
+/// Frames of no picture to speak of, as a sequence.
+class PlainFrames final : public FrameSource {
+ public:
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const Camera& camera() const override { return camera_; }
+  [[nodiscard]] int size() const override { return 4; }
+  [[nodiscard]] double timestamp(int index) const override { return 1000.0 + 0.1 * index; }
+  [[nodiscard]] Frame read(int index) const override {
+    return frame(index, fmt::format("{:.6f}", timestamp(index)), timestamp(index));
+  }
+  [[nodiscard]] FrameTruth truth(int) const override { return {}; }
+  [[nodiscard]] const Trajectory& ground_truth() const override { return none_; }
+  [[nodiscard]] bool has_depth() const override { return false; }
+  [[nodiscard]] bool has_masks() const override { return false; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return told_; }
+
+ private:
+  std::string name_ = "kitchen";
+  Camera camera_;
+  Trajectory none_;
+  std::vector<std::string> told_;
+};
+
+TEST(MaskFiles, ThatBelongToNoFrameAreRefusedWithTheirNames) {
+  const PlainFrames source;
+  const auto why = [&source](const TemporaryFolder& folder) {
+    Config config;
+    config.of<MasksConfig>().sources = folder.path();
+    return why_no_mask_fits(config, source);
+  };
+  EXPECT_EQ(why_no_mask_fits(Config{}, source), "");
+  const TemporaryFolder other_day, other_names, other_size, one;
+  other_day.write("5000000.000000.png", column(1));
+  other_day.write("5000000.100000.png", column(1));
+  EXPECT_THAT(why(other_day),
+              AllOf(HasSubstr("kitchen: none of 4 frames looked at has a mask that can be used (frame "
+                              "0, named '1000.000000', 1000.000 s: "),
+                    HasSubstr("has no mask for this frame"),
+                    HasSubstr("its 2 files are of 5000000.000 s to 5000000.100 s")));
+  other_names.write("hall.png", column(1));
+  EXPECT_THAT(why(other_names), HasSubstr("its one file is named by no numbers, 'hall' first"));
+  other_size.write("1000.100000.png", cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)));
+  EXPECT_THAT(why(other_size), HasSubstr("none of 4 frames"));
+  one.write("1000.300000.png", column(1));  // the last frame's
+  EXPECT_EQ(why(one), "");
 }
 
 TEST(MaskFiles, WhatIsNearlyAllWhiteIsToldWithTheSwitch) {

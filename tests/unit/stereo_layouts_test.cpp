@@ -289,7 +289,87 @@ TEST(StereoLayouts, KittiPosesAreCarriedToTheColourCamera) {
   EXPECT_TRUE(off.translation().isApprox(Eigen::Vector3d(-32.124 / 535.4, 0, 0), 1e-6)) << off.translation();
 }
 
+TEST(StereoLayouts, LeftAndRightGoByOtherNamesToo) {
+  const auto usual = open_sequence(miniature(SequenceLayout::left_right).string());
+  for (const auto& [left, right] : {std::pair("Left", "Right"), std::pair("image_left", "image_right")}) {
+    const Spoilt renamed(SequenceLayout::left_right);
+    renamed.rename("left", left);
+    renamed.rename("right", right);
+    const auto source = renamed.open();
+    EXPECT_TRUE(same(source->read(2).depth, usual->read(2).depth)) << left;
+    renamed.remove(right);
+    EXPECT_THAT(renamed.error(), HasSubstr(fmt::format("{}: is missing", right)));
+  }
+}
+
+/// The miniature of left and right as TartanAir has its sequences.
+struct TartanAir : Spoilt {
+  TartanAir() : Spoilt(SequenceLayout::left_right) {
+    const auto source = open_sequence(miniature(SequenceLayout::left_right).string());
+    std::string poses;
+    for (int i = 0; i < kFrames; ++i) {
+      for (const std::string side : {"left", "right"}) {
+        fs::create_directories(folder.path("image_" + side));
+        fs::rename(folder.path(fmt::format("{}/{:.6f}.png", side, source->timestamp(i))),
+                   folder.path(fmt::format("image_{0}/{1:06}_{0}.png", side, i)));
+      }
+      // Forward of its body is a camera's z, right its x, down its y.
+      Pose camera_from_body = Pose::Identity();
+      camera_from_body.linear() << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+      const Pose body = *source->truth(i).world_from_camera * camera_from_body;
+      const Eigen::Vector3d p = body.translation();
+      const Eigen::Quaterniond q(body.linear());
+      poses += fmt::format("{:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", p.x(), p.y(), p.z(), q.x(),
+                           q.y(), q.z(), q.w());
+    }
+    folder.write("pose_left.txt", poses);
+    for (const char* gone : {"left", "right", "groundtruth.txt"}) remove(gone);
+  }
+};
+
+TEST(StereoLayouts, TartanAirIsReadWithItsPoses) {
+  const TartanAir sequence;
+  const auto usual = open_sequence(miniature(SequenceLayout::left_right).string()), source = sequence.open();
+  ASSERT_EQ(source->size(), kFrames);
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_TRUE(same(source->read(i).depth, usual->read(i).depth)) << i;
+    EXPECT_NEAR(source->timestamp(i), i / 30.0, 1e-9);
+    ASSERT_TRUE(source->truth(i).world_from_camera) << i;
+    const Pose off = usual->truth(i).world_from_camera->inverse() * *source->truth(i).world_from_camera;
+    EXPECT_LT(off.translation().norm(), 1e-6) << i;      // m
+    EXPECT_LT(rotation_angle(off.linear()), 1e-6) << i;  // rad
+  }
+  // A part of it keeps its numbers.
+  sequence.remove("image_left/000000_left.png");
+  sequence.remove("image_right/000000_right.png");
+  const auto part = sequence.open();
+  ASSERT_TRUE(part->truth(0).world_from_camera);
+  EXPECT_TRUE(part->truth(0).world_from_camera->isApprox(*source->truth(1).world_from_camera, 1e-9));
+  // As it is downloaded no camera lies beside it.
+  sequence.remove("camera.toml");
+  const Camera camera = sequence.open()->camera();
+  EXPECT_EQ(camera.name, "tartanair");
+  EXPECT_EQ(camera.fx, 320.0);
+  EXPECT_EQ(camera.baseline_m, 0.25);
+}
+
+TEST(StereoLayouts, WhatEurocSaysOfItsStampsIsNoFinding) {
+  EXPECT_THAT(all_of(open_sequence(miniature(SequenceLayout::euroc).string())->warnings()),
+              Not(HasSubstr("the stamps are")));
+}
+
 // ---- pairs that are none
+
+TEST(StereoLayouts, RightImagesOfAnotherMomentAreTold) {
+  const Spoilt spoilt(SequenceLayout::left_right);
+  const auto usual = spoilt.open();
+  EXPECT_THAT(all_of(usual->warnings()), Not(HasSubstr("were taken")));
+  for (int i = 0; i < kFrames; ++i)
+    spoilt.rename(fmt::format("right/{:.6f}.png", usual->timestamp(i)),
+                  fmt::format("right/{:.6f}.png", usual->timestamp(i) - 0.0065));
+  EXPECT_THAT(all_of(spoilt.open()->warnings()),
+              HasSubstr("right: its images were taken 6.5 ms earlier than those of"));
+}
 
 TEST(StereoLayouts, ExchangedFoldersAreSaid) {
   const Spoilt spoilt(SequenceLayout::left_right);

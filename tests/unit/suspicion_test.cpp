@@ -321,6 +321,9 @@ TEST(Scale, IsToldWhereItExplainsTheError) {
   EXPECT_LT(evaluation.ate.similarity->rmse_m, 0.004);
   EXPECT_GT(evaluation.ate.translation_m.rmse, 0.1);
   EXPECT_THAT(scale_sentence(evaluation), HasSubstr("multiplied by 2.5"));
+  EXPECT_EQ(scale_question(evaluation, 0.0), "is the depth scale right?");
+  EXPECT_EQ(scale_question(evaluation, 0.048),
+            "is the pair's baseline right? It is 0.048 m, and 0.12 m would fit");
   EvaluationOptions options;
   options.align = AlignBy::similarity;
   evaluation = evaluate_trajectory(truth, estimate, options);

@@ -88,6 +88,7 @@ TEST(Sweep, EachValueIsARunOfItsOwn) {
   EXPECT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][1]["run_hash"], own.hash);
   EXPECT_EQ(sweep_table({"features.count", 400, 600, 2}, points).rows[1][0], "600");
+  EXPECT_EQ(sweep_table({"features.count", 400, 600, 2}, points).rows[1][2], "7");  // 36 frames of 30 Hz
   const std::atomic<bool> stop = true;
   EXPECT_FALSE(sweep_point(*source, config, "features.count", 600, 36, &stop));
 }

@@ -82,6 +82,20 @@ TEST_F(TrajectoryFiles, KittisMatricesHaveNoStamps) {
               HasSubstr("no rotation and translation"));
 }
 
+TEST_F(TrajectoryFiles, TartanAirsSevenNumbersHaveNoStamps) {
+  const TrajectoryFile file = read("0.25 -1.5 2 0.6 0 0 0.8\nnan 0 0 0 0 0 1\n0.25 -1.5 2 0.6 0 0 0.8\n");
+  expect_the_pose(file, 0.0);
+  EXPECT_FALSE(file.has_stamps);
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.poses[1].timestamp, 2.0) << "a row without a pose keeps its place";
+  EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("NaN or infinity")));
+  const std::string w_first = "0.25 -1.5 2 0.8 0.6 0 0\n";
+  expect_the_pose(read(w_first + w_first, QuaternionOrder::wxyz), 0.0);
+  // A stamp, a place and three angles.
+  EXPECT_THAT(input_error_of([&] { (void)read("1.5 0.25 -1.5 2 0.1 0.2 0.3\n"); }),
+              HasSubstr("found 7 columns, expected the 8 numbers timestamp tx ty tz"));
+}
+
 TEST_F(TrajectoryFiles, MatricesMayStandBehindAStamp) {
   const std::string rows = "1 0 0 0.25 0 0.28 -0.96 -1.5 0 0.96 0.28 2";
   const TrajectoryFile kitti = read("1.5 " + rows + "\n2.5 " + rows + "\n");

@@ -71,6 +71,45 @@ TEST(Yi2013, BlocksHoldMeanAndExtremesOfTheirPixelsAndNoOthers) {
   EXPECT_EQ(blocks.most.at<std::uint8_t>(0, 1), 132);
 }
 
+TEST(Yi2013, OfOneAgeNoMixtureIsOlder) {
+  // Shares of a place between blocks, rounded to floats, may add up to more than one.
+  const Yi2013Blocks blocks = flat_blocks({12, 9}, 100);
+  const Yi2013Model young{filled({12, 9}, {100, 400, 1}), filled({12, 9}, {100, 400, 1})};
+  for (int i = 0; i < 40; ++i) {
+    const cv::Matx33d moved = shift(0.37 * i - 7.0, 5.0 - 0.29 * i);
+    const cv::Mat age = yi2013_warped(young, moved, blocks, kConfig)[0].age;
+    EXPECT_EQ(cv::countNonZero((age != 0.0F) & (age != 1.0F)), 0) << i;
+    EXPECT_GT(cv::countNonZero(age == 1.0F), 20) << i;
+  }
+}
+
+TEST(Yi2013, TheFrameAfterTheFirstJudgesNoPixel) {
+  cv::Mat noise(480, 640, CV_8UC1);
+  cv::RNG random(5);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(noise, noise, {0, 0}, 1.5);
+  cv::normalize(noise, noise, 60, 140, cv::NORM_MINMAX);
+  for (int turn = 1; turn < 6; ++turn) {
+    auto method = method_named("yi2013").make(Camera{}, Config{});
+    for (int i = 0; i < 2; ++i) {
+      Frame frame;
+      frame.index = i;
+      // A turn about the corner shares blocks in every way there is.
+      const double angle = 0.004 * turn * i;
+      cv::warpAffine(
+          noise, frame.gray,
+          cv::Matx23d(std::cos(angle), -std::sin(angle), 1.3 * i, std::sin(angle), std::cos(angle), 0.9 * i),
+          noise.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+      // Something bright has come, on a fifth of the view.
+      if (i == 1) frame.gray(cv::Rect(100, 100, 300, 200)) += 110;
+      const MotionInput input{frame, nullptr};
+      const MotionResult result = method->detect(input);
+      EXPECT_EQ(result.mask_share, 0.0) << i << ", " << turn;
+      method->commit(input, result, {});
+    }
+  }
+}
+
 /// Four unlike blocks in the middle of six by six.
 Yi2013Model four_unlike() {
   Yi2013Model model{filled({6, 6}, {100, 25, 4}), filled({6, 6}, {10, 25, 1})};

@@ -38,7 +38,8 @@ std::string figure_of(const Stage& stage, const std::string& name) {
 
 std::vector<FigureCell> figure_1_cells(const SessionView& session) {
   const FrameView& view = *session.current;
-  const StageLog* log = stages_with(view, "compensated");
+  // Others have a compensated frame, too; this mask is of that method alone.
+  const StageLog* log = stages_with(view, "union_mask");
   const Layer* united = log == nullptr ? nullptr : log->layer("union_mask");
   if (united == nullptr || united->image.empty()) return {};
   const cv::Mat forward = log->layer("forward_mask")->image,

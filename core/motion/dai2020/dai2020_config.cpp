@@ -40,4 +40,10 @@ void Dai2020Config::list(ParameterTable& table) {
                "a feature takes after the nearest judged point no farther away");
 }
 
+Dai2020Config Dai2020Config::for_camera(const Camera& camera) const {
+  Dai2020Config fitted = *this;
+  if (camera.is_stereo()) fitted.depth_sigma_per_m2 = camera.depth_sigma_per_m2;
+  return fitted;
+}
+
 }  // namespace stillpoint

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/geometry/camera.hpp"
 #include "core/motion/dai2020/point_graph.hpp"
 #include "core/parameter.hpp"
 
@@ -14,6 +15,8 @@ struct Dai2020Config {
   Dai2020Config() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const Dai2020Config&) const = default;
+  /// The same, with a stereo pair's noise of depth where the camera is one.
+  [[nodiscard]] Dai2020Config for_camera(const Camera& camera) const;
 
   [[nodiscard]] FollowRule follow() const { return {window_px, levels, forward_backward_px}; }
   [[nodiscard]] EdgeRule edges() const { return {most_edge_m, most_step_m, least_dropped_px}; }

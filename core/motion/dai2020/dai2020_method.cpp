@@ -20,7 +20,9 @@ struct Preparation final : MotionPreparation {
 class Dai2020Method final : public MotionMethod {
  public:
   Dai2020Method(const Camera& camera, const Dai2020Config& config)
-      : camera_(camera), config_(config), rays_(camera, {camera.width, camera.height}, 1) {}
+      : camera_(camera),
+        config_(config.for_camera(camera)),
+        rays_(camera, {camera.width, camera.height}, 1) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Dai2020Method>(*this);
@@ -80,7 +82,7 @@ class Dai2020Method final : public MotionMethod {
   [[nodiscard]] int frames_back() const override { return 1; }
 
   [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
-    return config.of<Dai2020Config>() == config_ ? clone() : nullptr;
+    return config.of<Dai2020Config>().for_camera(camera_) == config_ ? clone() : nullptr;
   }
 
   [[nodiscard]] StageLog describe(const Frame& frame, const MotionResult& result) const override {

@@ -1,5 +1,6 @@
-// Method `gao2019`: a first pose by sparse image alignment warps a background model of one Gaussian a block,
-// by depth; features in blocks whose variance changes are dropped, and the pose is solved again.
+// Method `gao2019`: a first pose by sparse image alignment warps a background model of blocks, a Gaussian and
+// a candidate each, by depth; features in blocks whose variance changes are dropped, and the pose is solved
+// again.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -75,7 +76,10 @@ class Gao2019Method final : public MotionMethod {
     if (!trace->last)
       result.note = "the background model begins with this frame";
     else if (!trace->aligned && config_.first_pose == "alignment")
-      result.note = trace->alignment.note + ": the odometry's first pose stands in";
+      result.note =
+          trace->alignment.note + (trace->by_odometry ? ": the odometry's first pose stands in"
+                                                      : ": the camera is taken to be static, for the "
+                                                        "last frame has no pose");
     result.trace = std::move(trace);
     return result;
   }
@@ -131,7 +135,7 @@ class Gao2019Method final : public MotionMethod {
   void find_first_pose(const MotionInput& input, const Gao2019Frame& here, const Camera& camera,
                        Gao2019Trace& trace) const {
     if (pose_) trace.by_odometry = *input.camera_from_world * pose_->inverse();
-    trace.first = trace.by_odometry;
+    trace.first = trace.by_odometry.value_or(Pose::Identity());
     // Constant velocity is where alignment begins; from where the odometry ends it would take its outcome
     // over.
     trace.alignment = align_sparsely(trace.last->frame->pyramid, trace.last->points, here.pyramid,
@@ -232,8 +236,9 @@ MethodInfo gao2019_method() {
   info.name = "gao2019";
   info.title = "Gao et al. 2019";
   info.summary =
-      "A background of one Gaussian a block, warped by a first pose and depth; moving is where its variance "
-      "changes.";
+      "A background of blocks, a Gaussian and a candidate each, warped by a first pose and depth; moving is "
+      "where "
+      "variance grows.";
   info.citation =
       "Gao C., Zhang Y., Wang X., Deng Y., Jiang H.: Semi-direct RGB-D SLAM algorithm for dynamic indoor "
       "environments, "

@@ -87,7 +87,7 @@ class Stages {
         .figure("Sigma of the residuals", alignment.sigma, "grey levels", 1)
         .figure("Steps", alignment.iterations);
     add_motion(stage, "first pose", trace_.first);
-    add_motion(stage, "odometry", trace_.by_odometry);
+    if (trace_.by_odometry) add_motion(stage, "odometry", *trace_.by_odometry);
     stage.add_side({photo_layer("Last frame", last.pyramid.front(), FrameSpace::kReference)}, patches);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/motion/feature_pose.hpp"
 #include "core/motion/gao2019/block_motion.hpp"
@@ -48,8 +49,8 @@ struct Gao2019Step {
 struct Gao2019Trace final : MotionTrace {
   std::shared_ptr<const Gao2019State> last;  ///< null where the model begins
   SparseAlignment alignment;
-  Pose by_odometry =
-      Pose::Identity();  ///< here_from_last of the odometry's first pose; identity where it is not known
+  /// here_from_last of the odometry's first pose; nothing where the last frame has no pose
+  std::optional<Pose> by_odometry;
   Pose first = Pose::Identity();  ///< here_from_last that warped the model
   bool aligned = false;           ///< it is the alignment's
   Gao2019Step step;

@@ -58,8 +58,8 @@ class Lin2017Method final : public MotionMethod {
     // (d) first: what matches a virtual point is out before any pose is solved.
     const std::vector<BinaryDescriptor> descriptors = upright_descriptors(input.frame.gray, input.features);
     const double seconds = here->timestamp - last.timestamp;
-    trace->virtual_before =
-        transformed(moved_on(virtual_, seconds, config_.virtual_frames), *input.camera_from_world);
+    trace->virtual_before = transformed(
+        moved_on(virtual_, here->timestamp - virtual_s_, config_.virtual_frames), *input.camera_from_world);
     trace->virtual_pixels = projections(trace->virtual_before, camera);
     trace->virtual_matches = match_virtual_points(trace->virtual_before, trace->virtual_pixels,
                                                   input.features, descriptors, config_);
@@ -107,9 +107,9 @@ class Lin2017Method final : public MotionMethod {
       virtual_ = transformed(static_cast<const Lin2017Trace&>(*result.trace).virtual_after,
                              outcome.camera_from_world.inverse());
     } else {
-      virtual_ =
-          moved_on(virtual_, last_ ? here->timestamp - last_->frame->timestamp : 0.0, config_.virtual_frames);
+      virtual_ = moved_on(virtual_, here->timestamp - virtual_s_, config_.virtual_frames);
     }
+    virtual_s_ = here->timestamp;
     last_.reset();
     if (outcome.estimated) last_ = Last{here, outcome.camera_from_world};
   }
@@ -197,7 +197,8 @@ class Lin2017Method final : public MotionMethod {
   Lin2017Config config_;
   PixelRays rays_;
   std::optional<Last> last_;           // where its pose was measured
-  std::vector<VirtualPoint> virtual_;  // in the world
+  std::vector<VirtualPoint> virtual_;  // in the world …
+  double virtual_s_ = 0.0;             // … at this frame's stamp, s
 };
 
 }  // namespace

@@ -103,6 +103,14 @@ std::string OutsideMasks::problem() const {
   return opened_->problem;
 }
 
+std::vector<std::string> OutsideMasks::namings() const {
+  std::vector<std::string> all;
+  if (!any()) return all;
+  for (const MaskFiles& source : opened_->files())
+    all.push_back(fmt::format("{}: {}", source.where(), source.naming()));
+  return all;
+}
+
 std::vector<std::string> OutsideMasks::warnings() const {
   std::vector<std::string> all;
   if (!any()) return all;

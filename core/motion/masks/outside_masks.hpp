@@ -42,6 +42,8 @@ class OutsideMasks {
   [[nodiscard]] bool any() const { return opened_ != nullptr; }
   /// Why a source cannot be used, one sentence, told of each frame; empty when all is well.
   [[nodiscard]] std::string problem() const;
+  /// What each source's files are named by, a few words with its name.
+  [[nodiscard]] std::vector<std::string> namings() const;
   /// How the images were understood, where that could be doubted.
   [[nodiscard]] std::vector<std::string> warnings() const;
 

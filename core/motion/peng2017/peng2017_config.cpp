@@ -30,4 +30,10 @@ void Peng2017Config::list(ParameterTable& table) {
                "a feature takes after the nearest judged point no farther away");
 }
 
+Peng2017Config Peng2017Config::for_camera(const Camera& camera) const {
+  Peng2017Config fitted = *this;
+  if (camera.is_stereo()) fitted.depth_sigma_per_m2 = camera.depth_sigma_per_m2;
+  return fitted;
+}
+
 }  // namespace stillpoint

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/camera.hpp"
 #include "core/motion/dai2020/point_graph.hpp"
 #include "core/parameter.hpp"
 
@@ -12,6 +13,8 @@ struct Peng2017Config {
   Peng2017Config() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const Peng2017Config&) const = default;
+  /// The same, with a stereo pair's noise of depth where the camera is one.
+  [[nodiscard]] Peng2017Config for_camera(const Camera& camera) const;
 
   [[nodiscard]] FollowRule follow() const { return {window_px, levels, forward_backward_px}; }
   [[nodiscard]] EdgeRule edges() const { return {most_edge_m, most_step_m, least_dropped_px}; }

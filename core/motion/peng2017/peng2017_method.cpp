@@ -24,7 +24,9 @@ struct Preparation final : MotionPreparation {
 class Peng2017Method final : public MotionMethod {
  public:
   Peng2017Method(const Camera& camera, const Peng2017Config& config)
-      : camera_(camera), config_(config), rays_(camera, {camera.width, camera.height}, 1) {}
+      : camera_(camera),
+        config_(config.for_camera(camera)),
+        rays_(camera, {camera.width, camera.height}, 1) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Peng2017Method>(*this);
@@ -87,7 +89,7 @@ class Peng2017Method final : public MotionMethod {
 
   [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
     auto method = std::make_unique<Peng2017Method>(*this);
-    method->config_ = config.of<Peng2017Config>();
+    method->config_ = config.of<Peng2017Config>().for_camera(camera_);
     return method;
   }
 

@@ -52,4 +52,11 @@ void Wang2014Config::list(ParameterTable& table) {
   table.number("row_y", row_y, 0.5, 0.0, 1.0, "", "... and from the top; for display alone");
 }
 
+Wang2014Config Wang2014Config::for_camera(const Camera& camera) const {
+  Wang2014Config fitted = *this;
+  if (camera.is_stereo()) fitted.depth_sigma_per_m2 = camera.depth_sigma_per_m2;
+  fitted.most_depth_m = camera.depth_limit(most_depth_m);
+  return fitted;
+}
+
 }  // namespace stillpoint

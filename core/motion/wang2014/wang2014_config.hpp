@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/geometry/camera.hpp"
 #include "core/parameter.hpp"
 
 namespace stillpoint {
@@ -11,6 +12,8 @@ struct Wang2014Config {
   Wang2014Config() { set_defaults(*this); }
   void list(ParameterTable& table);
   bool operator==(const Wang2014Config&) const = default;
+  /// The same, with a stereo pair's noise of depth and limit where the camera is one.
+  [[nodiscard]] Wang2014Config for_camera(const Camera& camera) const;
 
   int grid_px;
   int window_frames;

@@ -28,7 +28,9 @@ struct Preparation final : MotionPreparation {
 class Wang2014Method final : public MotionMethod {
  public:
   Wang2014Method(const Camera& camera, const Wang2014Config& config)
-      : camera_(camera), config_(config), rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
+      : camera_(camera),
+        config_(config.for_camera(camera)),
+        rays_(camera, {camera.width, camera.height}, kFlowFactor) {}
 
   [[nodiscard]] std::unique_ptr<MotionMethod> clone() const override {
     return std::make_unique<Wang2014Method>(*this);
@@ -125,7 +127,7 @@ class Wang2014Method final : public MotionMethod {
   [[nodiscard]] int frames_back() const override { return config_.window_frames + config_.segment_frames; }
 
   [[nodiscard]] std::unique_ptr<MotionMethod> with_config(const Config& config) const override {
-    return config.of<Wang2014Config>() == config_ ? clone() : nullptr;
+    return config.of<Wang2014Config>().for_camera(camera_) == config_ ? clone() : nullptr;
   }
 
   [[nodiscard]] StageLog describe(const Frame& frame, const MotionResult& result) const override {

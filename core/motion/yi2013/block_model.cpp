@@ -138,12 +138,17 @@ Yi2013Model yi2013_warped(const Yi2013Model& last, const Yi2013Places& places, c
       for (std::size_t mode = 0; mode < 2; ++mode) {
         const auto *means = last[mode].mean.ptr<float>(), *variances = last[mode].variance.ptr<float>(),
                    *ages = last[mode].age.ptr<float>();
-        float mean = 0.0F, variance = 0.0F, age = 0.0F;
+        float mean = 0.0F, variance = 0.0F, age = 0.0F, youngest = 0.0F, eldest = 0.0F;
         const auto count = static_cast<std::size_t>(place.count);
         for (std::size_t k = 0; k < count; ++k) {
+          const float old = ages[place.at[k]];
           mean += place.share[k] * means[place.at[k]];
-          age += place.share[k] * ages[place.at[k]];
+          age += place.share[k] * old;
+          youngest = k == 0 ? old : std::min(youngest, old);
+          eldest = std::max(eldest, old);
         }
+        // Rounded shares may add up to more than one, and an age of just above one would judge.
+        age = std::max(youngest, std::min(age, eldest));
         for (std::size_t k = 0; k < count; ++k) {
           const float off = means[place.at[k]] - mean;
           variance += place.share[k] * (variances[place.at[k]] + off * off);

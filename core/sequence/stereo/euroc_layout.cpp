@@ -62,7 +62,7 @@ std::optional<StereoRecording> read_euroc(const FileStore& folder, const OpenOpt
   if (options.camera && options.camera->name != recording.camera.name)
     throw InputError(fmt::format(
         "{}: --camera does not go with two sensor.yaml, which say how to rectify the pair", folder.place()));
-  recording.lists.stereo = true;
+  recording.lists.stereo = recording.stamped_in_ns = true;
   recording.lists.colours = std::move(left.images);
   recording.lists.depths = std::move(right.images);
   recording.body_from_camera = left.body_from_camera * recording.rectification->left_from_rectified();

@@ -25,7 +25,10 @@ class StereoInput final : public SequenceInput {
   [[nodiscard]] FolderLists lists() override {
     FolderLists lists = recording_.lists;
     read_mask_list(*files_, lists);
-    settle_stamps(lists, options_.frame_rate);
+    std::optional<StampUnit> known;
+    if (recording_.stamped_in_ns && stamp_unit(lists.colours) == StampUnit::nanoseconds)
+      known = StampUnit::nanoseconds;
+    settle_stamps(lists, options_.frame_rate, known);
     return lists;
   }
   [[nodiscard]] FolderTruth truth(const std::vector<double>& stamps, StampUnit unit) override {

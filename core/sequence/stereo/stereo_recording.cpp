@@ -50,7 +50,7 @@ void stamp_by_times(const std::string& path, const std::vector<double>& times, F
 }
 
 std::optional<StereoRecording> read_stereo_recording(const FileStore& folder, const OpenOptions& options) {
-  for (const auto read : {read_euroc, read_kitti, read_left_right})
+  for (const auto read : {read_euroc, read_kitti, read_tartanair, read_left_right})
     if (auto recording = read(folder, options)) return recording;
   return std::nullopt;
 }

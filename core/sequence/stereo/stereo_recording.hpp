@@ -25,6 +25,7 @@ struct StereoRecording {
   std::string truth;                         ///< name of the file of ground truth; empty: as for any folder
   bool is_pose_a_row = false;                ///< it has no stamps: row i is that of `row_stamps[i]`
   std::vector<double> row_stamps;            ///< s
+  bool stamped_in_ns = false;                ///< the layout says so, and there is nothing to wonder at
   Pose body_from_camera = Pose::Identity();  ///< of the body whose poses it holds, from the camera
 };
 
@@ -41,8 +42,15 @@ struct StereoRecording {
 /// `state_groundtruth_estimate0/data.csv`.
 [[nodiscard]] std::optional<StereoRecording> read_euroc(const FileStore& folder, const OpenOptions& options);
 
-/// `left/` and `right/`, rectified, with `camera.toml` or `camera.yaml` that has the baseline; images are
-/// stamped by their names' numbers or, in order, by `times.txt`; masks and ground truth as in the TUM layout.
+/// TartanAir: `image_left/` and `image_right/`, rectified, numbered; poses of the left camera, of axes
+/// forward, right and down, a row an image, in `pose_left.txt`; the data set's camera, where no `camera.toml`
+/// says another.
+[[nodiscard]] std::optional<StereoRecording> read_tartanair(const FileStore& folder,
+                                                            const OpenOptions& options);
+
+/// `left/` and `right/` (or `Left/`, `Right/`; `image_left/`, `image_right/`), rectified, with `camera.toml`
+/// or `camera.yaml` that has the baseline; images are stamped by their names' numbers or, in order, by
+/// `times.txt`; masks and ground truth as in the TUM layout.
 [[nodiscard]] std::optional<StereoRecording> read_left_right(const FileStore& folder,
                                                              const OpenOptions& options);
 
