@@ -160,7 +160,7 @@ class StagesPanel final : public FramePanel {
       controls.choice("direction", names, direction_);
     }
     controls.choice("against", {kAgainst.begin(), kAgainst.end()}, against_,
-                    "What the stage is held against to show what changed");
+                    "What the stage is compared with to show what changed");
   }
 
   void draw_list(const UiFrame& frame, std::size_t current) {
@@ -220,7 +220,7 @@ class StagesPanel final : public FramePanel {
           footer.legend.push_back(std::move(entry));
       footer.caption = fmt::format("Against {}: {}.", lower(change_->against), change_->text);
     } else {
-      footer.caption = std::string("There is nothing to hold it against.");
+      footer.caption = std::string("Nothing before it to compare with.");
     }
     const float below = footer.height(frame) + ImGui::GetStyle().ItemSpacing.y;
     draw_pictures(
