@@ -218,7 +218,9 @@ class ComparePanel final : public NamedPanel {
       if (ImGui::SmallButton(frame_text.c_str())) actions.go_to_frame = ghost.diverged;
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("The first frame that differs; click to go there (D)");
     } else {
-      ImGui::TextDisabled(ghost.busy ? "…" : "nowhere");
+      // Two runs part nowhere when both have gone all the way.
+      const bool goes_on = ghost.busy || session.run->records.size() < ghost.run->records.size();
+      ImGui::TextDisabled(goes_on ? "…" : "nowhere");
     }
     ImGui::TableNextColumn();
     if (ImGui::SmallButton(icons::kClose)) {
