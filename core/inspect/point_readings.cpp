@@ -156,8 +156,10 @@ void read_stages(const StageLog& log, const PairGeometry& pair, const Point& tar
 
 ReadingGroup read_result(const FrameView& view, const Point& target) {
   ReadingGroup group{"Result", {}};
-  group.readings.push_back(view.mask.empty() ? Reading{"Removed", "no"}
-                                             : in_mask("Removed", view.mask, target));
+  const bool known = view.record == nullptr || view.record->measured.mask;
+  group.readings.push_back(!known              ? Reading{"Removed", kNothing}
+                           : view.mask.empty() ? Reading{"Removed", "no"}
+                                               : in_mask("Removed", view.mask, target));
   if (!view.truth.moving.empty())
     group.readings.push_back(in_mask("Truly moving", view.truth.moving, target));
   if (view.record == nullptr || view.record->features.empty()) return group;

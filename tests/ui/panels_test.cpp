@@ -336,6 +336,24 @@ TEST(Panels, WithoutMaskAndFeaturesTheFrameIsSeen) {
   }
 }
 
+TEST(Panels, BesideAnotherProgramsRunEachRunLiesInItsOwnWorld) {
+  SessionView session = debug_example();
+  ASSERT_FALSE(session.debug.ghosts.empty());
+  GhostView& ghost = session.debug.ghosts[0];
+  ghost.outside = false;
+  auto run = std::make_shared<RunView>(*ghost.run);
+  run->evaluation.ate.alignment.truth_from_estimate = session.alignment.truth_from_estimate;
+  run->evaluation.ate.alignment.truth_from_estimate.translation().x() += 100.0;
+  ghost.run = run;
+  const auto ghost_x = [&] {
+    const SessionScene scene = scene_of_session(session, {});
+    return scene.data.paths[scene.ghost_paths.at(0)].positions.at(0).x();
+  };
+  const float together = ghost_x();
+  session.outside = "orb3";
+  EXPECT_NEAR(ghost_x() - together, 100.0F, 1e-3F);
+}
+
 TEST(Panels, RemovalIsCheckedOfARunThatRemovesSomething) {
   PanelStage stage("removal", {});
   const auto asked = [&](const SessionView& session) {

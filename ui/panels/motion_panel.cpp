@@ -97,7 +97,7 @@ class MotionPanel final : public FramePanel {
         text += fmt::format(": {} of {} features dynamic", record->features_removed, record->features_found);
       else if (record != nullptr)
         text += fmt::format(": {:.1f} % of the pixels dynamic", 100.0 * record->mask_share);
-      return text + "." + (log.note.empty() ? "" : " " + log.note + ".");
+      return text + (log.note.empty() ? "" : "; " + log.note) + ".";
     }
     for (const StageFigure& figure : stage->figures)
       text += fmt::format("; {} {}", figure.name, figure_text(figure));

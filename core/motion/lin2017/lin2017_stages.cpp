@@ -29,7 +29,7 @@ MarkKind mark_of(FeatureClass kind) {
     case FeatureClass::kStray:
       return MarkKind::kOutlier;
     case FeatureClass::kVirtual:
-      return MarkKind::kLost;
+      return MarkKind::kGained;
     case FeatureClass::kUnjudged:
       break;
   }
@@ -199,7 +199,7 @@ class Stages {
     classes.words = {{MarkKind::kInlier, "static"},
                      {MarkKind::kRemoved, "moving"},
                      {MarkKind::kOutlier, "stray"},
-                     {MarkKind::kLost, "virtual"},
+                     {MarkKind::kGained, "virtual"},
                      {MarkKind::kUnmatched, "not judged"}};
     classes.id = "classes";
     Stage& stage = log_.add(
