@@ -104,10 +104,10 @@ cv::Mat dimmed(const cv::Mat& image) {
   return dim * 0.6;
 }
 
-cv::Mat draw_marks(const cv::Mat& ground, const std::vector<Mark>& marks) {
+cv::Mat draw_marks(const cv::Mat& ground, const Layer& layer) {
   cv::Mat picture = dimmed(ground);
   std::array<int, kMarkStyles.size()> counts{};
-  for (const Mark& mark : marks) {
+  for (const Mark& mark : layer.marks) {
     const auto* style = std::find_if(kMarkStyles.begin(), kMarkStyles.end(),
                                      [&mark](const MarkStyle& one) { return one.kind == mark.kind; });
     if (mark.from)
@@ -121,7 +121,8 @@ cv::Mat draw_marks(const cv::Mat& ground, const std::vector<Mark>& marks) {
     const MarkStyle& style = kMarkStyles[i];
     if (counts[i] > 0)
       legend.push_back(
-          {fmt::format("{} {}", counts[i], style.plural),
+          {fmt::format("{} {}", counts[i],
+                       layer.words.contains(style.kind) ? layer.word_of(style.kind) : style.plural),
            [&style](cv::Mat& image, const cv::Point2f& at) { style.draw(image, at, style.colour); }});
   }
   return with_legend(picture, legend);
@@ -154,6 +155,13 @@ cv::Mat values_as_levels(const Layer& layer) {
   }
 }
 
+/// The highest number white.
+cv::Mat classes_as_levels(const Layer& layer) {
+  cv::Mat levels;
+  layer.image.convertTo(levels, CV_8U, 255.0 / std::max(layer.range, 1.0));
+  return levels;
+}
+
 void tint(cv::Mat& picture, const cv::Mat& where, const cv::Scalar& colour) {
   cv::Mat mixed;
   cv::addWeighted(picture, 0.45, cv::Mat(picture.size(), picture.type(), colour), 0.55, 0.0, mixed);
@@ -164,8 +172,10 @@ void tint(cv::Mat& picture, const cv::Mat& where, const cv::Scalar& colour) {
 
 cv::Mat draw_layer(const Layer& layer) {
   if (layer.image.empty()) return {};
-  const cv::Mat image = layer.image.type() == CV_32FC1 ? values_as_levels(layer) : layer.image;
-  return layer.marks.empty() ? image : draw_marks(image, layer.marks);
+  const cv::Mat image = layer.image.type() == CV_32FC1      ? values_as_levels(layer)
+                        : layer.kind == LayerKind::kClasses ? classes_as_levels(layer)
+                                                            : layer.image;
+  return layer.marks.empty() ? image : draw_marks(image, layer);
 }
 
 cv::Mat draw_mask_overlay(const cv::Mat& colour, const cv::Mat& mask,

@@ -112,6 +112,10 @@ std::string cause_of(const RunView& run, std::size_t row, bool removal_hurt) {
 FrameVerdict::Part part_of(const char* text, Tone tone) { return {fmt::format("{}", text), tone}; }
 
 FrameVerdict::Part mask_part(const FrameRecord& record, const FrameScores* scores) {
+  // A method that judges features, not pixels, has no mask to tell the size of.
+  if (record.mask_share == 0.0 && record.features_removed > 0)
+    return {fmt::format("{} of {} features removed", record.features_removed, record.features_found),
+            Tone::neutral};
   FrameVerdict::Part part{fmt::format("mask {:.1f} %", 100.0 * record.mask_share), Tone::neutral};
   if (scores != nullptr && scores->mask.iou()) {
     part.text += fmt::format(", IoU {}", percent(*scores->mask.iou()));

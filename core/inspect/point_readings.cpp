@@ -105,7 +105,7 @@ Reading read_layer(std::string name, const Layer& layer, const std::optional<Poi
   }
   if (!value) return {std::move(name), kNothing};
   const bool above = layer.limit && *value > *layer.limit;
-  const bool is_level = layer.kind == LayerKind::kLevels;
+  const bool is_level = layer.image.depth() == CV_8U;
   std::string text = is_level                           ? fmt::format("{:.0f}", *value)
                      : layer.kind == LayerKind::kSigned ? fmt::format("{:+.2f}", *value)
                                                         : fmt::format("{:.3f}", *value);
@@ -113,21 +113,6 @@ Reading read_layer(std::string name, const Layer& layer, const std::optional<Poi
     text += fmt::format(" {} {:.{}f}", above ? ">" : "≤", *layer.limit, is_level ? 0 : 2);
   if (!layer.unit.empty()) text += " " + layer.unit;
   return {std::move(name), std::move(text), above};
-}
-
-const char* mark_word(MarkKind kind) {
-  switch (kind) {
-    case MarkKind::kInlier:
-      return "inlier";
-    case MarkKind::kOutlier:
-      return "outlier";
-    case MarkKind::kRemoved:
-      return "dynamic";
-    case MarkKind::kKept:
-      return "static";
-    default:
-      return "undecided";
-  }
 }
 
 /// The mark of a layer that is nearest to a place.
@@ -144,7 +129,7 @@ Reading read_marks(std::string name, const Layer& layer, const std::optional<Poi
   }
   if (nearest == nullptr) return {std::move(name), kNothing};
   const bool speaks = nearest->kind == MarkKind::kRemoved || nearest->kind == MarkKind::kOutlier;
-  return {std::move(name), fmt::format("{:.1f} px off, {}", least, mark_word(nearest->kind)), speaks};
+  return {std::move(name), fmt::format("{:.1f} px off, {}", least, layer.word_of(nearest->kind)), speaks};
 }
 
 /// What a method's stages made, a group of stages after the other; of rounds the newest first.
@@ -171,8 +156,10 @@ void read_stages(const StageLog& log, const PairGeometry& pair, const Point& tar
 
 ReadingGroup read_result(const FrameView& view, const Point& target) {
   ReadingGroup group{"Result", {}};
-  group.readings.push_back(view.mask.empty() ? Reading{"Removed", "no"}
-                                             : in_mask("Removed", view.mask, target));
+  const bool known = view.record == nullptr || view.record->measured.mask;
+  group.readings.push_back(!known              ? Reading{"Removed", kNothing}
+                           : view.mask.empty() ? Reading{"Removed", "no"}
+                                               : in_mask("Removed", view.mask, target));
   if (!view.truth.moving.empty())
     group.readings.push_back(in_mask("Truly moving", view.truth.moving, target));
   if (view.record == nullptr || view.record->features.empty()) return group;

@@ -18,10 +18,22 @@
 namespace stillpoint {
 namespace {
 
-cv::Mat as_float(const cv::Mat& image) {
-  cv::Mat floats;
-  image.convertTo(floats, CV_32F);
-  return floats;
+constexpr double kGreyRange = 40.0;  // grey levels: what is shown as a change of them, at most
+
+/// What is in `now` and not in `before`, CV_32FC1, in an image of its own: both stay as they are.
+cv::Mat difference_of(const cv::Mat& before, const cv::Mat& now) {
+  cv::Mat difference;
+  cv::subtract(now, before, difference, cv::noArray(), CV_32F);
+  return difference;
+}
+
+/// A layer to show a change in: in the place of another, without its image and marks.
+Layer in_place_of(const Layer& now, LayerKind kind, const cv::Mat& image) {
+  Layer layer = now;
+  layer.kind = kind;
+  layer.image = image;  // another header: now's pixels are the run's own
+  layer.marks.clear();
+  return layer;
 }
 
 bool is_grey(const Layer& layer) {
@@ -58,23 +70,27 @@ std::optional<StageChange> compare_images(const Layer& before, const Layer& now)
       before.image.type() != now.image.type() || now.image.channels() != 1)
     return std::nullopt;
   StageChange change;
-  change.layer = now;
-  change.layer.marks.clear();
   if (now.kind == LayerKind::kMask) {
-    change.layer.image = mask_change(before.image, now.image);
-    change.layer.kind = LayerKind::kMaskChange;
-    const auto count = [&](MaskChange kind) { return cv::countNonZero(change.layer.image == kind); };
+    const cv::Mat image = mask_change(before.image, now.image);
+    change.layer = in_place_of(now, LayerKind::kMaskChange, image);
+    const auto count = [&](MaskChange kind) { return cv::countNonZero(image == kind); };
     change.text =
         fmt::format("{} px gained, {} px lost, {} px stay", count(kGained), count(kLost), count(kStays));
     return change;
   }
-  change.layer.kind = LayerKind::kSigned;
-  change.layer.image = as_float(now.image) - as_float(before.image);
-  change.layer.range = is_grey(now) ? 40.0 : now.range;
-  if (is_grey(now)) change.layer.unit = std::string("grey levels");
-  const cv::Mat known = change.layer.image == change.layer.image;
-  change.text = fmt::format("mean change {:.2f} {}", cv::mean(cv::abs(change.layer.image), known)[0],
-                            change.layer.unit);
+  if (now.kind == LayerKind::kClasses) {
+    const cv::Mat other = before.image != now.image;
+    cv::Mat where_other;
+    cv::bitwise_and(now.image, other, where_other);
+    change.layer = in_place_of(now, LayerKind::kClasses, where_other);
+    change.text = fmt::format("{} px of another class", cv::countNonZero(other));
+    return change;
+  }
+  const cv::Mat image = difference_of(before.image, now.image);
+  change.layer = in_place_of(now, LayerKind::kSigned, image);
+  if (is_grey(now)) change.layer.range = kGreyRange, change.layer.unit = "grey levels";
+  const cv::Mat known = image == image;
+  change.text = fmt::format("mean change {:.2f} {}", cv::mean(cv::abs(image), known)[0], change.layer.unit);
   return change;
 }
 

@@ -25,6 +25,7 @@ MethodInfo none_method() {
   info.title = "No removal";
   info.summary = "The baseline: the same odometry with nothing removed.";
   info.baseline = true;
+  info.panels = {"mask"};
   info.make = [](const Camera&, const Config&) -> std::unique_ptr<MotionMethod> {
     return std::make_unique<NoRemoval>();
   };

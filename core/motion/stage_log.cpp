@@ -19,6 +19,27 @@ const Layer* layer_in(const Stage& stage, const std::string& id) {
 
 }  // namespace
 
+std::string Layer::word_of(MarkKind mark) const {
+  if (const auto own = words.find(mark); own != words.end()) return own->second;
+  switch (mark) {
+    case MarkKind::kInlier:
+      return "inlier";
+    case MarkKind::kOutlier:
+      return "outlier";
+    case MarkKind::kRemoved:
+      return "removed";
+    case MarkKind::kKept:
+      return "kept";
+    case MarkKind::kUnmatched:
+      return "unmatched";
+    case MarkKind::kGained:
+      return "gained";
+    case MarkKind::kLost:
+      return "lost";
+  }
+  return {};
+}
+
 Stage& StageLog::add(std::string id, std::string group, std::string name, std::string what) {
   Stage stage;
   stage.id = std::move(id);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ enum class FrameSpace {
 enum class LayerKind {
   kPhoto,       ///< grey or colour image, or grey levels as CV_32FC1
   kLevels,      ///< CV_8UC1, 0 to `range`
+  kClasses,     ///< CV_8UC1: numbers of classes, from 1, `range` of them; 0 = of none
   kMask,        ///< CV_8UC1, non-zero = set, over `ground`
   kMaskChange,  ///< CV_8UC1 of MaskChange, over `ground`
   kSigned,      ///< CV_32FC1, -range to range, NaN = nothing
@@ -54,9 +56,13 @@ struct Layer {
   FrameSpace space = FrameSpace::kTarget;
   std::vector<Mark> marks{};
   std::string id{};  ///< "difference": by which panels and tests find it; empty where none need to
-  std::optional<double> limit{};  ///< a value above it speaks for motion
-  cv::Mat valid{};                ///< CV_8UC1: 0 where the image has no data; empty = all of it has
-  bool elsewhere = false;         ///< of a frame outside the pair: points cannot be mapped into it
+  std::optional<double> limit{};            ///< a value above it speaks for motion
+  cv::Mat valid{};                          ///< CV_8UC1: 0 where the image has no data; empty = all of it has
+  bool elsewhere = false;                   ///< of a frame outside the pair: points cannot be mapped into it
+  std::map<MarkKind, std::string> words{};  ///< what marks stand for here, where not for what they are called
+
+  /// What a kind of mark stands for: "static" where the layer says so, else "inlier".
+  [[nodiscard]] std::string word_of(MarkKind mark) const;
 };
 
 /// A number a stage ends with.

@@ -120,7 +120,7 @@ TEST(AppController, WhatIsOpenedMeanwhileRunsWithTheConfigThatWasChosen) {
   std::promise<void> gate;
   const std::shared_future<void> opened(gate.get_future());
   ControllerOptions options = controller_options();
-  options.config.run.method = "none";
+  options.config.run.method = "paper";
   options.open_source = [opened, &folder](const std::string& where, const Config& config,
                                           const std::vector<std::string>&) {
     if (where == "slow") opened.wait();
@@ -152,7 +152,7 @@ TEST(AppController, WhatIsOpenedMeanwhileRunsWithTheConfigThatWasChosen) {
     gate.set_value();
     EXPECT_TRUE(draw_until(draw, [&] { return controller.idle() && controller.session() != first; }));
     EXPECT_EQ(controller.view()->config.run.check_removal, 1);
-    EXPECT_EQ(controller.view()->config.run.method, "none");
+    EXPECT_EQ(controller.view()->config.run.method, "paper");
     offscreen.make_current();
   }
   EXPECT_THAT(offscreen.take_gl_errors(), IsEmpty());

@@ -317,6 +317,59 @@ TEST(Panels, WhatIsMissingIsSaidInstead) {
   expect_sentence("union_mask", unreadable());
 }
 
+TEST(Panels, WithoutMaskAndFeaturesTheFrameIsSeen) {
+  // Another program's run may have left its poses alone.
+  SessionView session = generated_example();
+  FrameRecord record = *session.current->record;
+  record.measured.mask = record.measured.features = false;
+  record.features.clear();
+  auto current = std::make_shared<FrameView>(*session.current);
+  current->record = &record;
+  current->mask.release();
+  session.current = current;
+  for (const char* name : {"mask", "features_before", "features_after"}) {
+    PanelStage stage(name, {});
+    const cv::Mat image = stage.render(session), middle = image(cv::Rect(180, 150, 160, 120));
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(middle, mean, deviation);
+    EXPECT_GT(deviation[1], 15.0) << name << " shows no picture";
+  }
+}
+
+TEST(Panels, BesideAnotherProgramsRunEachRunLiesInItsOwnWorld) {
+  SessionView session = debug_example();
+  ASSERT_FALSE(session.debug.ghosts.empty());
+  GhostView& ghost = session.debug.ghosts[0];
+  ghost.outside = false;
+  auto run = std::make_shared<RunView>(*ghost.run);
+  run->evaluation.ate.alignment.truth_from_estimate = session.alignment.truth_from_estimate;
+  run->evaluation.ate.alignment.truth_from_estimate.translation().x() += 100.0;
+  ghost.run = run;
+  const auto ghost_x = [&] {
+    const SessionScene scene = scene_of_session(session, {});
+    return scene.data.paths[scene.ghost_paths.at(0)].positions.at(0).x();
+  };
+  const float together = ghost_x();
+  session.outside = "orb3";
+  EXPECT_NEAR(ghost_x() - together, 100.0F, 1e-3F);
+}
+
+TEST(Panels, RemovalIsCheckedOfARunThatRemovesSomething) {
+  PanelStage stage("removal", {});
+  const auto asked = [&](const SessionView& session) {
+    return stage.click(session, 0.115, 0.05).requests.size();
+  };
+  SessionView session = generated_example();
+  ASSERT_TRUE(session.debug.removal->empty());
+  EXPECT_EQ(asked(session), 1U);
+  // Of another program's run nothing can be solved again, and the baseline removes nothing.
+  session.outside = "orb3";
+  EXPECT_EQ(asked(session), 0U);
+  session.outside.clear();
+  session.config.run.method = "none";
+  EXPECT_EQ(asked(session), 0U);
+}
+
 TEST(Panels, ANewFrameIsShownAtOnce) {
   PanelStage stage("input", {});
   const cv::Mat before = stage.render(generated_example());

@@ -54,6 +54,16 @@ TEST(FrameVerdict, NamesInliersOnDynamicObjects) {
   for (const FrameVerdict::Part& part : verdict.parts) EXPECT_EQ(part.tone, Tone::bad) << part.text;
 }
 
+TEST(FrameVerdict, OfAMethodThatJudgesFeaturesTellsOfThese) {
+  RunView run = run_with_a_bad_step();
+  run.records.change(5, [](FrameRecord& record) {
+    record.mask_share = 0.0, record.features_removed = 73, record.features_found = 1000;
+  });
+  EXPECT_THAT(texts(frame_verdict(run, 5)), testing::Contains("73 of 1000 features removed"));
+  run.records.change(5, [](FrameRecord& record) { record.features_removed = 0; });
+  EXPECT_THAT(texts(frame_verdict(run, 5)), testing::Contains("mask 0.0 %"));
+}
+
 TEST(FrameVerdict, WithoutMasksNamesWhatElseWasRecorded) {
   RunView run = run_with_a_bad_step();
   EXPECT_THAT(frame_verdict(run, 5).sentence, HasSubstr("nothing recorded explains it"));

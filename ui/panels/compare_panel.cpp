@@ -218,7 +218,9 @@ class ComparePanel final : public NamedPanel {
       if (ImGui::SmallButton(frame_text.c_str())) actions.go_to_frame = ghost.diverged;
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("The first frame that differs; click to go there (D)");
     } else {
-      ImGui::TextDisabled(ghost.busy ? "…" : "nowhere");
+      // Two runs part nowhere when both have gone all the way.
+      const bool goes_on = ghost.busy || session.run->records.size() < ghost.run->records.size();
+      ImGui::TextDisabled(goes_on ? "…" : "nowhere");
     }
     ImGui::TableNextColumn();
     if (ImGui::SmallButton(icons::kClose)) {
@@ -306,7 +308,9 @@ class ComparePanel final : public NamedPanel {
   void draw_figures(const UiFrame& frame, const SessionView& session, const GhostView& ghost) const {
     ImGui::PushFont(frame.fonts.small);
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(pose_text(difference_, ghost.name, ghost.outside).c_str());
+    ImGui::TextUnformatted(pose_text(difference_, ghost.outside ? ghost.name : session.outside,
+                                     in_worlds_of_their_own(session, ghost))
+                               .c_str());
     ImGui::PopTextWrapPos();
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4.0F * frame.scale, 1.0F * frame.scale});
     const ImVec2 low = ImGui::GetCursorScreenPos();

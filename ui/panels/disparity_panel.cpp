@@ -62,7 +62,7 @@ class DisparityPanel final : public FramePanel {
                                  100.0 * covered_);
     if (median_px_ > 0) {
       const double z = session.camera.fx * session.camera.baseline_m / median_px_;
-      footer.caption += fmt::format(", median {:.1f} px: {:.2f} m, give or take {:.0f} mm", median_px_, z,
+      footer.caption += fmt::format(", median {:.1f} px: {:.2f} m ± {:.0f} mm (1 σ)", median_px_, z,
                                     1000.0 * session.camera.stereo_sigma(z));
     }
     footer.caption +=

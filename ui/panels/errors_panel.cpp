@@ -123,11 +123,18 @@ class ErrorsPanel final : public NamedPanel {
     return session.run->evaluation;
   }
 
-  /// "12.3 mm over 1 s"; errors there are none of are not said to be 0.
+  /// ", 12.3 mm over 1 s"; nothing where no two poses are so far apart.
   [[nodiscard]] static std::string figure(const ErrorStatistics& statistics, double factor, const char* unit,
                                           const std::string& delta) {
-    if (statistics.count == 0) return fmt::format("– over {}", delta);
-    return fmt::format("{:.3g} {} over {}", factor * statistics.rmse, unit, delta);
+    if (statistics.count == 0) return {};
+    return fmt::format(", {:.3g} {} over {}", factor * statistics.rmse, unit, delta);
+  }
+
+  /// "paper: RMSE 28.7 mm over 1 s, ATE 19.4 mm" of such parts.
+  [[nodiscard]] static std::string figures_of(const std::string& name, const std::string& rpe,
+                                              const std::string& ate) {
+    const std::string parts = (rpe.empty() ? "" : ", RMSE" + rpe.substr(1)) + ate;
+    return parts.empty() ? name + ": no figures" : name + ":" + parts.substr(1);
   }
 
   [[nodiscard]] std::string caption(const SessionView& session) const {
@@ -135,16 +142,18 @@ class ErrorsPanel final : public NamedPanel {
       const auto& evaluation = run.evaluation;
       if (evaluation.matched.empty()) return fmt::format("{}: no figures", name);
       if (of_ == kRotation) {
-        return fmt::format("{}: RMSE {}, {}", name,
-                           figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta),
-                           figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta));
+        return figures_of(name,
+                          figure(evaluation.rpe_time.rotation_deg, 1.0, "°", evaluation.rpe_time.delta) +
+                              figure(evaluation.rpe_frame.rotation_deg, 1.0, "°", evaluation.rpe_frame.delta),
+                          {});
       }
       const AbsoluteTrajectoryError& ate = evaluation.ate;
-      return fmt::format("{}: RMSE {}, {}, ATE {}", name,
-                         figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta),
-                         figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
-                         ate.why_none.empty() ? fmt::format("{:.3g} mm", 1000.0 * ate.translation_m.rmse)
-                                              : std::string("–"));
+      return figures_of(
+          name,
+          figure(evaluation.rpe_time.translation_m, 1000.0, "mm", evaluation.rpe_time.delta) +
+              figure(evaluation.rpe_frame.translation_m, 1000.0, "mm", evaluation.rpe_frame.delta),
+          ate.why_none.empty() ? fmt::format(", ATE {:.3g} mm", 1000.0 * ate.translation_m.rmse)
+                               : std::string());
     };
     std::string text = figures(*session.run, session.run->name);
     if (session.baseline) text += ".  " + figures(*session.baseline, baseline_name(session));

@@ -53,7 +53,9 @@ Facts facts_of(const FeatureExplanation& explanation) {
     if (!std::isnan(f.residual_px))
       facts.emplace_back("Reprojection residual", fmt::format("{:.2f} px", f.residual_px));
     if (explanation.measured.solving)
-      facts.emplace_back("Weight in the pose", fmt::format("{:.0f} %", 100.0F * f.static_weight));
+      facts.emplace_back("Weight in the pose", f.fate == FeatureFate::inlier
+                                                   ? fmt::format("{:.0f} %", 100.0F * f.static_weight)
+                                                   : std::string("none: an outlier"));
   } else {
     facts.emplace_back("Map point", f.fate == FeatureFate::removed ? "none looked for" : "none found");
   }

@@ -44,7 +44,8 @@ class FeaturesPanel final : public FramePanel {
     }
     // Features of a record whose image is gone still say where they were.
     if (!view.record->measured.features) {
-      draw_absent(frame, fmt::format("{} left no features of frame {}.", session.run->name, view.index));
+      draw_without(frame, session, actions, ground_, *shared_,
+                   fmt::format("{} left no features of frame {}.", session.run->name, view.index));
       return;
     }
     if (!view.frame.readable() && view.record->features.empty()) {
@@ -130,12 +131,19 @@ class FeaturesPanel final : public FramePanel {
   void draw_feature(const UiFrame& frame, const ImageResponse& response, const FeatureRecord& feature) const {
     if (!shows(feature)) return;
     const LegendEntry look = look_of(feature.fate, frame.theme.name);
-    float radius = (look.sign == Sign::kCircle ? 2.6F : 3.2F) * frame.scale;
+    float radius = (look.sign == Sign::kCircle ? 2.6F : 3.2F) * frame.scale * share_of_sign(frame, response);
     if (by_scale_ && moment_ == FeatureMoment::kAfter)
       radius = std::max(radius, static_cast<float>(response.map.scale()) * 2.0F *
                                     std::pow(1.2F, static_cast<float>(feature.octave)));
     draw_sign(frame, *ImGui::GetWindowDrawList(), response.to_screen(to_raster(feature.pixel)), radius,
               look.sign, to_u32(look.colour, strength(feature)));
+  }
+
+  /// Small pictures get smaller signs, which would hide them.
+  [[nodiscard]] static float share_of_sign(const UiFrame& frame, const ImageResponse& response) {
+    constexpr float kFromScale =
+        0.45F;  // design px an image's pixel: from there on signs have their full size
+    return std::clamp(static_cast<float>(response.map.scale()) / frame.scale / kFromScale, 0.5F, 1.0F);
   }
 
   /// The less a feature weighs in the pose, the fainter it is drawn.
@@ -163,8 +171,7 @@ class FeaturesPanel final : public FramePanel {
       footer.caption = fmt::format("{}: {} found", where, counted(record.features_found, "feature"));
       // Another program's own mask, if it has one, need not be what took its features out.
       if (record.measured.solving)
-        footer.caption += fmt::format("; method {} removes those in its mask, {:.1f} % of the image.",
-                                      judge_of(session), 100.0 * record.mask_share);
+        footer.caption += fmt::format("; method {} removes {}.", judge_of(session), removed_text(record));
       else if (record.measured.mask)
         footer.caption += fmt::format("; the mask is {:.1f} % of the image.", 100.0 * record.mask_share);
       else
@@ -180,6 +187,14 @@ class FeaturesPanel final : public FramePanel {
     if (const int faint = weighing_little(record.features); faint > 0)
       footer.caption += fmt::format(" {} drawn faintly weigh less than half in the pose.", faint);
     return footer;
+  }
+
+  /// "those in its mask, 4.6 % of the image"; methods that judge features have none, and the baseline
+  /// neither.
+  [[nodiscard]] static std::string removed_text(const FrameRecord& record) {
+    if (record.mask_share > 0.0)
+      return fmt::format("those in its mask, {:.1f} % of the image", 100.0 * record.mask_share);
+    return record.features_removed > 0 ? fmt::format("{} of them", record.features_removed) : "none";
   }
 
   FeatureMoment moment_;

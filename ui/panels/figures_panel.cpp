@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "core/inspect/frame_view.hpp"
@@ -152,6 +153,7 @@ class FiguresPanel final : public NamedPanel {
     const auto known = std::count_if(run_.y.begin(), run_.y.end(), [](double v) { return !std::isnan(v); });
     std::string text =
         fmt::format("{}: known of {} of {} frames.", y.help, known, session.run->records.size());
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     if (x_ == kTime) return text;
     if (const auto together = rank_correlation(run_))
       text += fmt::format(" With {} it goes along to {:+.2f} (Spearman's rank correlation).",

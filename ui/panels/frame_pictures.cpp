@@ -15,6 +15,7 @@
 #include "ui/session/shown_runs.hpp"
 #include "ui/theme/fonts.hpp"
 #include "ui/theme/text.hpp"
+#include "ui/view/picture_strips.hpp"
 
 namespace stillpoint {
 namespace {
@@ -199,13 +200,10 @@ ImageResponse draw_frame_image(const UiFrame& frame, const char* id, const Image
 }
 
 void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
-                      FrameTexture& texture, PanelsShared& shared) {
+                      FrameTexture& texture, PanelsShared& shared, Footer footer) {
   // A row of controls and a line below stay free, so that the picture does not jump when they come.
   const float row = ImGui::GetFrameHeightWithSpacing();
   if (frame.controls) ImGui::Dummy({1.0F, ImGui::GetFrameHeight()});
-  Footer footer;
-  footer.legend.push_back({"mask and features follow", frame.theme.text_dim, Sign::kHollowSquare});
-  footer.caption = fmt::format("{}: being worked out.", frame_text(session, session.current->frame));
   ImVec2 room = room_above(frame, footer);
   room.y = std::max(room.y, row);
   ImageContent content;
@@ -214,6 +212,26 @@ void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelAct
   content.values = &session.current->frame.gray;
   draw_frame_image(frame, "image alone", content, shared, room, {session, actions});
   footer.draw(frame);
+}
+
+void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                      FrameTexture& texture, PanelsShared& shared) {
+  Footer footer;
+  footer.legend.push_back({"mask and features follow", frame.theme.text_dim, Sign::kHollowSquare});
+  footer.caption = fmt::format("{}: being worked out.", frame_text(session, session.current->frame));
+  draw_image_alone(frame, session, actions, texture, shared, std::move(footer));
+}
+
+void draw_without(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                  FrameTexture& texture, PanelsShared& shared, const std::string& why) {
+  const bool in_strip = frame.strips != nullptr && frame.strips->pictures_alone();
+  if (in_strip || !session.current->frame.readable()) {
+    draw_absent(frame, why);
+    return;
+  }
+  Footer footer;
+  footer.caption = why;
+  draw_image_alone(frame, session, actions, texture, shared, std::move(footer));
 }
 
 ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const ImageContent& content,

@@ -98,6 +98,15 @@ ImageResponse draw_scaled_image(const UiFrame& frame, const char* id, const Imag
 void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
                       FrameTexture& texture, PanelsShared& shared);
 
+/// The same, with another line below it.
+void draw_image_alone(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                      FrameTexture& texture, PanelsShared& shared, Footer footer);
+
+/// The frame's image, and below it why nothing lies over it; the reason alone where there is no image, and in
+/// a strip, which has no room below.
+void draw_without(const UiFrame& frame, const SessionView& session, PanelActions& actions,
+                  FrameTexture& texture, PanelsShared& shared, const std::string& why);
+
 /// Writes a heading into a picture's upper left corner, cut where there is no room for it.
 void draw_heading(const UiFrame& frame, const ImageResponse& response, const std::string& heading);
 

@@ -28,7 +28,9 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 
 std::string position_text(const Pose& pose) {
   const Eigen::Vector3d t = pose.translation();
-  return fmt::format("{:.3f}, {:.3f}, {:.3f} m", t.x(), t.y(), t.z());
+  // Adding 0 makes -0 of a coordinate that rounds to it 0.
+  const auto rounded = [](double metres) { return std::round(1000.0 * metres) / 1000.0 + 0.0; };
+  return fmt::format("{:.3f}, {:.3f}, {:.3f} m", rounded(t.x()), rounded(t.y()), rounded(t.z()));
 }
 
 /// "static_tracks" as a heading: "Static tracks".

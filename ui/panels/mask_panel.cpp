@@ -54,7 +54,8 @@ class MaskPanel final : public FramePanel {
         return;
       }
       if (!view.record->measured.mask) {
-        draw_absent(frame, fmt::format("{} left no mask of frame {}.", session.run->name, view.index));
+        draw_without(frame, session, actions, ground_, *shared_,
+                     fmt::format("{} left no mask of frame {}.", session.run->name, view.index));
         return;
       }
       log_ = view.motion.get();

@@ -93,9 +93,11 @@ class MotionPanel final : public FramePanel {
     std::string text = frame_text(session, session.current->frame) + ", method " + log.method;
     if (stage == nullptr) {
       const FrameRecord* record = session.current->record;
-      if (record != nullptr)
+      if (record != nullptr && record->mask_share == 0.0 && record->features_removed > 0)
+        text += fmt::format(": {} of {} features dynamic", record->features_removed, record->features_found);
+      else if (record != nullptr)
         text += fmt::format(": {:.1f} % of the pixels dynamic", 100.0 * record->mask_share);
-      return text + "." + (log.note.empty() ? "" : " " + log.note + ".");
+      return text + (log.note.empty() ? "" : "; " + log.note) + ".";
     }
     for (const StageFigure& figure : stage->figures)
       text += fmt::format("; {} {}", figure.name, figure_text(figure));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/inspect/frame_view.hpp"
+#include "core/motion/methods.hpp"
 #include "core/run/removal_errors.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/panel.hpp"
@@ -51,7 +52,13 @@ class RemovalPanel final : public NamedPanel {
 
   /// Why there is nothing to see, and the way to it where there is one.
   static void draw_unchecked(const UiFrame& frame, const SessionView& session, PanelActions& actions) {
-    if (session.ground_truth->empty()) {
+    if (!session.outside.empty()) {
+      draw_absent(frame, fmt::format("{} was run by another program: its poses cannot be solved again here.",
+                                     session.outside));
+    } else if (method_of(session.config).baseline) {
+      draw_absent(frame, fmt::format("Method {} removes nothing: there is nothing to check.",
+                                     session.config.run.method));
+    } else if (session.ground_truth->empty()) {
       draw_absent(frame, "Without ground truth nobody can tell whether removal helped.");
     } else if (session.config.run.check_removal != 0) {
       draw_absent(frame, "No frame has been solved with and without removal yet.");
@@ -71,12 +78,12 @@ class RemovalPanel final : public NamedPanel {
   void collect(const SessionView& session) {
     const auto& errors = *session.debug.removal;
     index_.clear();
-    for (Series* series : {&with_, &without_, &told_, &hurt_}) *series = {};
+    for (Series* series : {&with_, &without_, &oracle_, &hurt_}) *series = {};
     for (const RemovalError& one : errors) {
       const double frame = one.frame;
       // Where frames are missing between, so is the line.
       if (!index_.empty() && one.frame > index_.back() + 1) {
-        for (Series* series : {&with_, &without_, &told_}) {
+        for (Series* series : {&with_, &without_, &oracle_}) {
           series->x.push_back(frame - 0.5);
           series->y.push_back(std::nan(""));
         }
@@ -88,7 +95,7 @@ class RemovalPanel final : public NamedPanel {
       };
       add(with_, one.with_removal_m);
       add(without_, one.without_removal_m);
-      add(told_, one.oracle_m);
+      add(oracle_, one.oracle_m);
       if (one.hurt) add(hurt_, one.with_removal_m);
     }
     summary_ = summarise(errors);
@@ -119,7 +126,7 @@ class RemovalPanel final : public NamedPanel {
 
   void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, ImVec2 size) {
     const ThemeName theme = frame.theme.name;
-    Plot plot{.x_label = "frame", .y_label = "step error", .y_unit = "mm"};
+    Plot plot{.x_label = "frame", .y_label = "step error", .y_unit = "mm", .x_step = 1.0};
     for (const RemovalError& one : *session.debug.removal) {
       if (!one.hurt && !one.helped) continue;
       plot.bands.push_back({{one.frame - 0.5, one.frame + 0.5},
@@ -128,9 +135,9 @@ class RemovalPanel final : public NamedPanel {
     }
     plot.series.push_back({"without removal", without_.x, without_.y, role_colour(Role::kBaseline, theme),
                            SeriesStyle::kDashed});
-    if (summary_.told > 0)
+    if (summary_.oracle > 0)
       plot.series.push_back(
-          {"told", told_.x, told_.y, role_colour(Role::kGroundTruth, theme), SeriesStyle::kDotted});
+          {"oracle", oracle_.x, oracle_.y, role_colour(Role::kGroundTruth, theme), SeriesStyle::kDotted});
     plot.series.push_back(
         {"with removal", with_.x, with_.y, role_colour(Role::kEstimate, theme), SeriesStyle::kLine, 2.0F});
     if (!hurt_.x.empty())
@@ -148,9 +155,9 @@ class RemovalPanel final : public NamedPanel {
   [[nodiscard]] std::string caption() const {
     std::string text = fmt::format("Median step error {:.3g} mm with removal, {:.3g} mm without",
                                    1000.0 * summary_.median_with_m, 1000.0 * summary_.median_without_m);
-    if (summary_.told > 0)
-      text += fmt::format(", {:.3g} mm told what is dynamic; removal did better than being told in {} of {}",
-                          1000.0 * summary_.median_oracle_m, summary_.beat_oracle, summary_.told);
+    if (summary_.oracle > 0)
+      text += fmt::format(", {:.3g} mm by the ground-truth mask (oracle), which is worse in {} of {} frames",
+                          1000.0 * summary_.median_oracle_m, summary_.beat_oracle, summary_.oracle);
     if (summary_.median_widened > 0)
       text +=
           fmt::format("; what was removed takes the position's σ to {:.2f} times", summary_.median_widened);
@@ -161,7 +168,7 @@ class RemovalPanel final : public NamedPanel {
   }
 
   std::vector<int> index_;
-  Series with_, without_, told_, hurt_;
+  Series with_, without_, oracle_, hurt_;
   RemovalSummary summary_;
   PlotView view_;
   bool log_ = false;

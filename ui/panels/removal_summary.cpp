@@ -21,7 +21,7 @@ double median(std::vector<double> values) {
 
 RemovalSummary summarise(const std::vector<RemovalError>& errors) {
   RemovalSummary summary;
-  std::vector<double> with, without, told, widened;
+  std::vector<double> with, without, oracle, widened;
   for (const RemovalError& one : errors) {
     if (!std::isfinite(one.with_removal_m) || !std::isfinite(one.without_removal_m)) continue;
     ++summary.compared;
@@ -40,20 +40,20 @@ RemovalSummary summarise(const std::vector<RemovalError>& errors) {
       summary.worst_frame = one.frame;
     }
     if (!std::isfinite(one.oracle_m)) continue;
-    ++summary.told;
+    ++summary.oracle;
     summary.beat_oracle += one.with_removal_m < one.oracle_m ? 1 : 0;
-    told.push_back(one.oracle_m);
+    oracle.push_back(one.oracle_m);
   }
   summary.median_widened = median(widened);
   summary.median_with_m = median(std::move(with));
   summary.median_without_m = median(std::move(without));
-  summary.median_oracle_m = median(std::move(told));
+  summary.median_oracle_m = median(std::move(oracle));
   return summary;
 }
 
 std::string sentence_of(const RemovalSummary& summary) {
   if (summary.compared == 0) return "No frame has been solved both with and without removal yet.";
-  return fmt::format("Removal helped in {} of {} frame{}, hurt in {}, and made no odds in {}.",
+  return fmt::format("Removal helped in {} of {} frame{}, hurt in {}, and changed nothing in {}.",
                      summary.helped, summary.compared, summary.compared == 1 ? "" : "s", summary.hurt,
                      summary.compared - summary.helped - summary.hurt);
 }

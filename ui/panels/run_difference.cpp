@@ -8,6 +8,7 @@
 #include "core/motion/figure_info.hpp"
 #include "core/odometry/frame_record.hpp"
 #include "core/run/frame_figures.hpp"
+#include "ui/session/session_view.hpp"
 
 namespace stillpoint {
 namespace {
@@ -46,10 +47,14 @@ FrameDifference difference_of(const MeasuredFrames& run, std::size_t row, const 
   return difference;
 }
 
-std::string pose_text(const FrameDifference& difference, const std::string& ghost, bool outside) {
-  if (outside)
+bool in_worlds_of_their_own(const SessionView& session, const GhostView& ghost) {
+  return ghost.outside || !session.outside.empty();
+}
+
+std::string pose_text(const FrameDifference& difference, const std::string& other, bool apart) {
+  if (apart)
     return fmt::format("{}'s poses are of a world of its own: errors and the trajectory compare them.",
-                       ghost);
+                       other);
   if (difference.translation_m == 0.0 && difference.rotation_deg == 0.0) return "Both poses are the same.";
   return fmt::format("Poses differ by {:.2f} mm and {:.3f} °.", 1000.0 * difference.translation_m,
                      difference.rotation_deg);

@@ -8,7 +8,9 @@
 
 namespace stillpoint {
 
+struct GhostView;
 struct MeasuredFrames;
+struct SessionView;
 
 // How two runs differ in one frame. No ImGui.
 
@@ -28,10 +30,12 @@ struct FrameDifference {
 [[nodiscard]] FrameDifference difference_of(const MeasuredFrames& run, std::size_t row,
                                             const MeasuredFrames& ghost, std::size_t ghost_row);
 
+/// Whether run and ghost have no world in common: one of them is another program's.
+[[nodiscard]] bool in_worlds_of_their_own(const SessionView& session, const GhostView& ghost);
+
 /// How far apart both poses are, in a sentence.
-/// @param outside the ghost is another program's: its world is another, and no pose of it is told from here
-[[nodiscard]] std::string pose_text(const FrameDifference& difference, const std::string& ghost,
-                                    bool outside);
+/// @param other the run of another program, if `apart`: its world is another, and no pose is told from here
+[[nodiscard]] std::string pose_text(const FrameDifference& difference, const std::string& other, bool apart);
 
 /// How two masks of one size share the image. A mask that is empty removes nothing.
 struct MaskOverlap {

@@ -14,6 +14,7 @@
 #include "core/odometry/frame_record.hpp"
 #include "core/run/saved_map.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/run_series.hpp"
 
@@ -78,13 +79,15 @@ Pose world_of_outside(const SessionView& session, const RunView& run, const Pose
   return world_from_estimate * absolute_error(matched).alignment.truth_from_estimate;
 }
 
-/// Ghosts lie in the run's own world, by its alignment: up to where one parts both ways are the same.
+/// Ghosts lie in the run's own world, by its alignment: up to where one parts both ways are the same. Where
+/// either is another program's, each has its own.
 void add_ghosts(const SessionView& session, const Pose& world_from_estimate, SessionScene& scene) {
   for (std::size_t i = 0; i < session.debug.ghosts.size(); ++i) {
     const GhostView& ghost = session.debug.ghosts[i];
     // In either theme the looks differ in colour alone, and dashes are all that is wanted here.
-    const Pose world =
-        ghost.outside ? world_of_outside(session, *ghost.run, world_from_estimate) : world_from_estimate;
+    const Pose world = in_worlds_of_their_own(session, ghost)
+                           ? world_of_outside(session, *ghost.run, world_from_estimate)
+                           : world_from_estimate;
     add_run(session, *ghost.run, world,
             {.name = "ghost: " + shortened(ghost.name),
              .width_px = 2.2F,

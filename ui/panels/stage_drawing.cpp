@@ -15,26 +15,41 @@ namespace stillpoint {
 namespace {
 
 constexpr Rgb kGainedColour = okabe_ito::kSkyBlue, kLostColour = okabe_ito::kVermillion,
-              kStaysColour = okabe_ito::kPurple, kWhite = {255, 255, 255};
+              kStaysColour = okabe_ito::kGreen, kWhite = {255, 255, 255};
+constexpr double kClassesTold = 8.0;  // as many as there are colours
 
-LegendEntry look_of(MarkKind kind, ThemeName theme) {
+struct MarkLook {
+  Rgb colour;
+  Sign sign = Sign::kCircle;
+};
+
+MarkLook look_of(MarkKind kind, ThemeName theme) {
   switch (kind) {
     case MarkKind::kInlier:
-      return {"inlier", role_colour(Role::kInlier, theme), Sign::kCircle};
+      return {role_colour(Role::kInlier, theme), Sign::kCircle};
     case MarkKind::kOutlier:
-      return {"outlier", role_colour(Role::kOutlier, theme), Sign::kTriangle};
+      return {role_colour(Role::kOutlier, theme), Sign::kTriangle};
     case MarkKind::kRemoved:
-      return {"taken out", role_colour(Role::kRemoved, theme), Sign::kCross};
+      return {role_colour(Role::kRemoved, theme), Sign::kCross};
     case MarkKind::kKept:
-      return {"kept", role_colour(Role::kKept, theme), Sign::kCircle};
+      return {role_colour(Role::kKept, theme), Sign::kCircle};
     case MarkKind::kUnmatched:
-      return {"unmatched", okabe_ito::kSkyBlue, Sign::kRing};
+      return {okabe_ito::kSkyBlue, Sign::kRing};
     case MarkKind::kGained:
-      return {"gained", kGainedColour, Sign::kCircle};
+      return {kGainedColour, Sign::kCircle};
     case MarkKind::kLost:
-      return {"lost", kLostColour, Sign::kCross};
+      return {kLostColour, Sign::kCross};
   }
   return {};
+}
+
+/// The colour of a class; of more than there are colours, by its number alone.
+Rgb class_colour(int number, double count) {
+  constexpr std::array kColours{
+      okabe_ito::kSkyBlue, okabe_ito::kOrange,     okabe_ito::kGreen, okabe_ito::kYellow,
+      okabe_ito::kPurple,  okabe_ito::kVermillion, okabe_ito::kBlue,  kWhite};
+  if (count > kClassesTold) return map_colour(Colormap::kViridis, static_cast<float>(number / count));
+  return kColours[static_cast<std::size_t>(number - 1) % kColours.size()];
 }
 
 ColourScale scale_of(const UiFrame& frame, const Layer& picture) {
@@ -48,6 +63,11 @@ ColourScale scale_of(const UiFrame& frame, const Layer& picture) {
   } else if (picture.kind == LayerKind::kLength) {
     scale.colour = [range](double v) {
       return map_colour(Colormap::kViridis, static_cast<float>(1.0 - v / range));
+    };
+  } else if (picture.kind == LayerKind::kClasses) {
+    scale.colour = [range, none = scale.none_colour](double v) {
+      const auto number = static_cast<int>(std::lround(v));
+      return number < 1 ? none : class_colour(number, range);
     };
   } else {
     scale.colour = [range](double v) {
@@ -92,7 +112,7 @@ void draw_dots(const UiFrame& frame, const ImageResponse& response, const std::v
   // Small pictures get smaller signs.
   const float size = std::clamp(static_cast<float>(response.map.scale()) * 3.6F, 1.3F, 3.0F) * frame.scale;
   for (const Mark& dot : dots) {
-    const LegendEntry look = look_of(dot.kind, frame.theme.name);
+    const MarkLook look = look_of(dot.kind, frame.theme.name);
     const ImVec2 at = response.to_screen(to_raster(dot.at));
     if (dot.from)
       list.AddLine(response.to_screen(to_raster(dot.at + 2.0F * (*dot.from - dot.at))), at,
@@ -113,7 +133,7 @@ void StagePainter::draw(const UiFrame& frame, const char* id, const Layer& pictu
   const bool over = picture.kind == LayerKind::kMask || picture.kind == LayerKind::kMaskChange;
   if (!picture.image.empty()) {
     content.texture = &ground_.get(frame, view, variant, [&] {
-      if (over) return picture.ground;
+      if (over) return as_picture(frame, picture.ground);
       return picture.kind == LayerKind::kPhoto
                  ? as_picture(frame, picture.image)
                  : coloured(picture.image, scale_of(frame, picture), picture.kind == LayerKind::kLength);
@@ -149,15 +169,22 @@ std::vector<LegendEntry> legend_of(const UiFrame& frame, const Layer& picture) {
   if (picture.kind == LayerKind::kMaskChange) {
     legend.push_back({"gained", kGainedColour, Sign::kSquare});
     legend.push_back({"lost", kLostColour, Sign::kSquare});
-    legend.push_back({"stays", kStaysColour, Sign::kSquare});
+    legend.push_back({"in both", kStaysColour, Sign::kSquare});
   }
   if (picture.kind == LayerKind::kSigned) {
     legend.push_back({"above 0", diverging_colour(frame.theme, 1.0), Sign::kSquare});
     legend.push_back({"below 0", diverging_colour(frame.theme, -1.0), Sign::kSquare});
   }
+  if (picture.kind == LayerKind::kClasses && picture.range <= kClassesTold)
+    for (int number = 1; number <= static_cast<int>(picture.range); ++number)
+      if (cv::countNonZero(picture.image == number) > 0)
+        legend.push_back({std::to_string(number), class_colour(number, picture.range), Sign::kSquare});
   std::set<MarkKind> kinds;
   for (const Mark& dot : picture.marks) kinds.insert(dot.kind);
-  for (const MarkKind kind : kinds) legend.push_back(look_of(kind, frame.theme.name));
+  for (const MarkKind kind : kinds) {
+    const MarkLook look = look_of(kind, frame.theme.name);
+    legend.push_back({picture.word_of(kind), look.colour, look.sign});
+  }
   return legend;
 }
 

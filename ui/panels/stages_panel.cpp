@@ -160,7 +160,7 @@ class StagesPanel final : public FramePanel {
       controls.choice("direction", names, direction_);
     }
     controls.choice("against", {kAgainst.begin(), kAgainst.end()}, against_,
-                    "What the stage is held against to show what changed");
+                    "What the stage is compared with to show what changed");
   }
 
   void draw_list(const UiFrame& frame, std::size_t current) {
@@ -220,7 +220,7 @@ class StagesPanel final : public FramePanel {
           footer.legend.push_back(std::move(entry));
       footer.caption = fmt::format("Against {}: {}.", lower(change_->against), change_->text);
     } else {
-      footer.caption = std::string("There is nothing to hold it against.");
+      footer.caption = std::string("Nothing before it to compare with.");
     }
     const float below = footer.height(frame) + ImGui::GetStyle().ItemSpacing.y;
     draw_pictures(
@@ -296,11 +296,15 @@ class StagesPanel final : public FramePanel {
                                     [](const StageFigure& f) { return f.frame_before.has_value(); });
     const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::BeginTable("figures", 2 + (rounds ? 1 : 0) + (frames ? 1 : 0),
-                          ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchProp)) {
-      ImGui::TableSetupColumn("Figure");
-      ImGui::TableSetupColumn("Now");
-      if (rounds) ImGui::TableSetupColumn("Since the round before");
-      if (frames) ImGui::TableSetupColumn("Since the frame before");
+                          ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_SizingStretchSame)) {
+      // By fixed weights: ImGui's own, of what columns hold, leave one that comes later no room.
+      const auto column = [](const char* name, float weight) {
+        ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, weight);
+      };
+      column("Figure", 1.3F);
+      column("Now", 1.0F);
+      if (rounds) column("Since last round", 1.0F);
+      if (frames) column("Since last frame", 1.0F);
       ImGui::TableHeadersRow();
       for (const StageFigure& figure : stage.figures) {
         ImGui::TableNextColumn();
@@ -317,7 +321,7 @@ class StagesPanel final : public FramePanel {
       ImGui::EndTable();
     }
     offer_table(frame, "stage_figures", low, [&] {
-      Table table{{"stage", "figure", "now", "since the round before", "since the frame before"}, {}};
+      Table table{{"stage", "figure", "now", "since last round", "since last frame"}, {}};
       for (const StageFigure& figure : stage.figures)
         table.rows.push_back(
             {stage.name, figure.name, figure_text(figure),

@@ -1,5 +1,7 @@
 #include "ui/panels/timeline_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,6 +48,11 @@ double highest_of(const std::vector<double>& values, double so_far) {
 }
 
 }  // namespace
+
+std::string TimelineLane::range_text() const {
+  const std::string_view unit = shown_unit(frame_figure_infos()[static_cast<std::size_t>(figure)].unit).unit;
+  return greatest > 0.0 ? fmt::format("0–{}", format_value(greatest, unit)) : format_value(0.0, unit);
+}
 
 std::vector<ColumnValues> aggregate(std::span<const int> frames, std::span<const double> values,
                                     const AxisRange& range, int columns) {
@@ -126,17 +133,17 @@ void TimelineModel::update(const SessionView& session, const std::vector<int>& w
 
   lanes.clear();
   for (const int figure : wanted) {
-    TimelineLane lane{.figure = figure, .values = lane_values(run, figure), .ghosts = {}, .highest = 0.0};
+    TimelineLane lane{.figure = figure, .values = lane_values(run, figure), .ghosts = {}};
     bool known = any_known(lane.values);
-    lane.highest = highest_of(lane.values, 0.0);
+    lane.greatest = highest_of(lane.values, 0.0);
     for (const GhostView& ghost : ghosts) {
       lane.ghosts.push_back(lane_values(*ghost.run, figure));
-      lane.highest = highest_of(lane.ghosts.back(), lane.highest);
+      lane.greatest = highest_of(lane.ghosts.back(), lane.greatest);
       known = known || any_known(lane.ghosts.back());
     }
     // Without a truth there are no errors, without a clock no times, and a trajectory alone has no masks.
     if (!known) continue;
-    lane.highest = lane.highest > 0.0 ? 1.05 * lane.highest : 1.0;
+    lane.highest = lane.greatest > 0.0 ? 1.05 * lane.greatest : 1.0;
     lanes.push_back(std::move(lane));
   }
 }

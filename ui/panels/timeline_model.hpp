@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,7 +45,11 @@ struct TimelineLane {
   int figure = 0;              ///< index into frame_figure_infos()
   std::vector<double> values;  ///< one a record of the run, in the unit people are shown (shown_unit)
   std::vector<std::vector<double>> ghosts;  ///< one a record of each ghost
+  double greatest = 0.0;                    ///< of all values, those of ghosts too; 0 where none is above
   double highest = 1.0;                     ///< upper end of the lane, above 0
+
+  /// "0–72.65 mm": between which its values lie; "0 mm" where none is above.
+  [[nodiscard]] std::string range_text() const;
 };
 
 /// The run as the timeline shows it, made anew only when the run or the choice of lanes changes.

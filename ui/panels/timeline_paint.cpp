@@ -65,8 +65,7 @@ void TimelinePaint::value(float top, const std::string& words, Rgb colour) const
 void TimelinePaint::ruler(float top, float bottom) const {
   list_.AddRectFilled({left, top}, {right, bottom}, to_u32(frame_.theme.raised), 2.0F * frame_.scale);
   const int most = std::max(2, static_cast<int>((right - left) / (70.0F * frame_.scale)));
-  for (const AxisTick& tick : linear_ticks(map_.range, most)) {
-    if (!tick.major || tick.value != std::round(tick.value)) continue;
+  for (const AxisTick& tick : linear_ticks(map_.range, most, 1.0)) {
     const float x = std::round(x_of(tick.value));
     list_.AddLine({x, bottom - 4.0F * frame_.scale}, {x, bottom}, to_u32(frame_.theme.text_dim));
     const float wide = text_width(tick.label);

@@ -329,10 +329,7 @@ class TimelinePanel final : public NamedPanel {
                                                 {low.x - 2.0F * frame.scale, bottom},
                                                 to_u32(frame.theme.accent));
     paint.name(top, shown_name(info), frame.theme.text);
-    if (bottom - top > 2.0F * line)
-      paint.name(top + line + 1.0F,
-                 fmt::format("0–{}", format_value(lane.highest / 1.05, shown_unit(info.unit).unit)),
-                 frame.theme.text_dim);
+    if (bottom - top > 2.0F * line) paint.name(top + line + 1.0F, lane.range_text(), frame.theme.text_dim);
     paint.lane(model_.frames, lane.values, lane.highest, colour, top, bottom);
     for (std::size_t g = 0; g < lane.ghosts.size() && g < model_.ghost_frames.size(); ++g)
       paint.ghost_lane(model_.ghost_frames[g], lane.ghosts[g], lane.highest,

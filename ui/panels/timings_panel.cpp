@@ -182,7 +182,7 @@ class TimingsPanel final : public NamedPanel {
 
   void draw_plot_of(const UiFrame& frame, const SessionView& session, PanelActions& actions, bool named,
                     ImVec2 size) {
-    Plot plot{.x_label = "frame", .y_label = "time a frame", .y_unit = "ms"};
+    Plot plot{.x_label = "frame", .y_label = "time a frame", .y_unit = "ms", .x_step = 1.0};
     // The highest stack first: each lower one is painted over it.
     for (std::size_t i = kStages.size(); i-- > 0;)
       plot.series.push_back(

@@ -9,6 +9,7 @@
 #include "core/inspect/run_view.hpp"
 #include "ui/panels/all_panels.hpp"
 #include "ui/panels/frame_pictures.hpp"
+#include "ui/panels/run_difference.hpp"
 #include "ui/panels/run_look.hpp"
 #include "ui/panels/scene_of_session.hpp"
 #include "ui/plot/path_plot.hpp"
@@ -258,9 +259,12 @@ class TrajectoryPanel final : public NamedPanel {
       text += fmt::format(", {} {}", baseline_name(session), ate_text(session.baseline->evaluation));
     if (session.alignment.degenerate) text += "; too few poses to fix the rotation by positions alone";
     const auto& ghosts = session.debug.ghosts;
-    const auto outside = std::count_if(ghosts.begin(), ghosts.end(), [](const auto& g) { return g.outside; });
-    if (outside < static_cast<std::ptrdiff_t>(ghosts.size())) text += "; ghosts are laid by the same motion";
-    if (outside > 0) text += "; other programs' runs are laid each by its own";
+    const auto apart = std::count_if(ghosts.begin(), ghosts.end(),
+                                     [&](const auto& g) { return in_worlds_of_their_own(session, g); });
+    if (apart < static_cast<std::ptrdiff_t>(ghosts.size())) text += "; ghosts are laid by the same motion";
+    if (apart > 0)
+      text += session.outside.empty() ? "; other programs' runs are laid each by its own"
+                                      : "; ghosts are laid each by its own";
     return text + ".";
   }
 

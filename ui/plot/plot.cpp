@@ -100,7 +100,7 @@ void lay_out(const UiFrame& frame, const Plot& plot, ImVec2 low, ImVec2 high, Pl
   paint.x.pixel_low = static_cast<double>(paint.low.x);
   paint.x.pixel_high = static_cast<double>(paint.high.x);
   const int most_x = std::max(2, static_cast<int>((paint.high.x - paint.low.x) / (kPixelsATickX * scale)));
-  paint.x_ticks = linear_ticks(paint.x.range, most_x);
+  paint.x_ticks = linear_ticks(paint.x.range, most_x, plot.x_step);
 }
 
 }  // namespace

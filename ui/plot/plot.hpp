@@ -58,6 +58,7 @@ struct Plot {
   std::vector<PlotBand> bands{};
   std::optional<double> cursor_x{};     ///< the current frame
   std::optional<AxisRange> x_limits{};  ///< what "everything" means in x; else the series' extent
+  double x_step = 0.0;                  ///< labels of x are no closer: 1 where x is a frame
   bool y_from_zero = true;              ///< the y axis begins at zero when nothing is negative
   bool legend = true;
   bool equal_scale = false;  ///< in files: a unit of x is as long as one of y, and x may go back: paths

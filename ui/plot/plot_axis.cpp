@@ -33,7 +33,7 @@ bool is_usable(const AxisRange& range) {
 
 }  // namespace
 
-std::vector<AxisTick> linear_ticks(const AxisRange& range, int most) {
+std::vector<AxisTick> linear_ticks(const AxisRange& range, int most, double least) {
   std::vector<AxisTick> ticks;
   if (!is_usable(range) || most < 1) return ticks;
   double step = round_step(range.span() / most);
@@ -51,6 +51,7 @@ std::vector<AxisTick> linear_ticks(const AxisRange& range, int most) {
         break;
       }
   }
+  step = std::max(step, least);
   const double first = std::ceil(range.low / step - 1e-9);
   for (int i = 0; i < static_cast<int>(count(step)); ++i) {
     // Whole multiples, not sums: a sum would miss zero by rounding.

@@ -25,7 +25,8 @@ struct AxisTick {
 
 /// Ticks at 1, 2 or 5 times powers of ten, at most `most` of them, labelled with as many digits as tell them
 /// apart. An empty or non-finite range has none.
-[[nodiscard]] std::vector<AxisTick> linear_ticks(const AxisRange& range, int most);
+/// @param least how far apart they are at least: 1 where values between whole numbers are none, as of frames
+[[nodiscard]] std::vector<AxisTick> linear_ticks(const AxisRange& range, int most, double least = 0.0);
 
 /// Ticks at powers of ten, with unlabelled minor ones between when the range is under four decades; at 2 and
 /// 5 labelled too when it is under one and a half. The range must be positive.

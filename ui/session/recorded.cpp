@@ -25,13 +25,11 @@ void Session::open_recorded() {
   message_ = options_.no_images;
 }
 
-void Session::open_beside() {
-  for (const auto& recorded : options_.beside) {
-    Ghost ghost{.name = run_name(*recorded),
-                .run = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, recorded))};
-    compare(ghost);
-    add(std::move(ghost));
-  }
+void Session::open_beside(const std::shared_ptr<const RecordedRun>& recorded) {
+  Ghost ghost{.name = run_name(*recorded),
+              .run = std::make_unique<ShownRun>(*source_, frames_, ReplayableRun(*source_, recorded))};
+  compare(ghost);
+  add(std::move(ghost));
 }
 
 bool Session::stages_are_missing() const {

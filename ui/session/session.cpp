@@ -24,7 +24,7 @@ Session::Session(std::shared_ptr<const FrameSource> source, const Config& config
     : source_(std::move(source)), options_(options), frames_(*source_) {
   restart(config);
   if (options_.recorded) open_recorded();
-  open_beside();
+  for (const auto& recorded : options_.beside) open_beside(recorded);
   show(0);
   sidecar_due_ = options_.sidecar.has_value();
 }

@@ -168,7 +168,7 @@ class Session {
   void compare(Ghost& ghost);
   void add(Ghost ghost);
   void begin_waiting_ghosts();
-  void open_beside();
+  void open_beside(const std::shared_ptr<const RecordedRun>& recorded);
   void update_breakpoints();
   void open_sidecar();
   [[nodiscard]] Marks marks() const;

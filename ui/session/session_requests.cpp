@@ -182,7 +182,10 @@ void Session::carry_out(const request::RunAll& wanted) {
   refuse_without_images(kNoOthers);
   refuse_out_of_range(wanted.config);
   wanted_ = std::max(wanted_, run_->track().processed());
+  // What another program made cannot be run anew: it stands beside the run that takes its place.
+  const bool was_outside = !run_->track().outside().empty();
   restart(wanted.config);
+  if (was_outside) open_beside(options_.recorded);
   target_ = current_->index;
   show(target_);
 }

@@ -107,6 +107,7 @@ void AppController::request(SessionRequest wanted) {
   if (const auto* all = std::get_if<request::RunAll>(&wanted)) {
     options_.config = all->config;
     ++configured_;
+    refit_ = true;
   }
   if (session_) session_->request(std::move(wanted));
 }
@@ -268,7 +269,7 @@ void AppController::take_opened() {
     remember(options_.settings.recent, open_);
     tell_recent();
     const FrameSource& source = *opened.place->source;
-    fit_layout(source.camera().is_stereo());
+    fit_layout(opened.place->config.run.method, source.camera().is_stereo());
     workbench_.say(fmt::format("{}: {}", source.name(), counted(source.size(), "frame")));
     for (const std::string& warning : source.warnings()) workbench_.say(warning);
     for (const std::string& run : opened.place->runs_missing) workbench_.say(run, true);
@@ -286,14 +287,15 @@ void AppController::take_opened() {
                    [last = std::shared_ptr<Session>(std::move(opened.session))]() mutable { last.reset(); }));
 }
 
-void AppController::fit_layout(bool stereo) {
-  const std::string& method = options_.config.run.method;
-  if (panels_of(workbench_.layout()) == panels_of(default_layout(method, !stereo)))
-    workbench_.set_layout(default_layout(method, stereo));
+void AppController::fit_layout(const std::string& method, bool stereo) {
+  LayoutNode layout = fitted(workbench_.layout(), method, stereo);
+  if (panels_of(layout) != panels_of(workbench_.layout())) workbench_.set_layout(std::move(layout));
 }
 
 void AppController::draw(UiFrame& frame) {
   take_opened();
+  if (std::exchange(refit_, false) && session_)
+    fit_layout(options_.config.run.method, session_->source().camera().is_stereo());
   for (const std::string& path : frame.dropped_files) open(path);
   const auto view = this->view();
   // The masks that were drawn are the sequence's from now on.

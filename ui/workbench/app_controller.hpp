@@ -97,8 +97,8 @@ class AppController {
   /// Has runs beside the session's made again.
   void bring_back(const std::vector<KeptGhost>& ghosts);
   void take_opened();
-  /// Gives the tiles that nobody has moved those of a sequence of this kind.
-  void fit_layout(bool stereo);
+  /// Makes the tiles anew by method and kind of sequence, where nobody has chosen them (fitted()).
+  void fit_layout(const std::string& method, bool stereo);
   void tell_recent();
   /// The sequence shown, with its constants and frame as they are now.
   [[nodiscard]] RecentSequence as_left() const;
@@ -112,6 +112,7 @@ class AppController {
   RecentSequence open_;                       // the sequence shown
   const Session* renewed_ = nullptr;          // the last one opened again because its masks were written
   int configured_ = 0;                        // how often the config was changed
+  bool refit_ = false;                        // the method may be another since the last frame
   std::future<Opened> opening_;
   std::optional<std::string> next_;          // to be opened after that
   std::vector<std::future<void>> retiring_;  // sessions that end

@@ -140,8 +140,12 @@ LayoutNode motion_layout(std::string_view method) {
     rows.insert(
         rows.begin(),
         divide(0.5, kColumns, {tile(0.33, stages[i]), tile(0.33, stages[i + 1]), tile(0.34, stages[i + 2])}));
-  if (rows.empty())
-    rows = {tile(0.58, stages.front()), divide(0.42, kColumns, {tile(0.4, "mask"), tile(0.6, "stages")})};
+  if (rows.empty()) {
+    LayoutNode mask_and_stages = divide(0.42, kColumns, {tile(0.4, "mask"), tile(0.6, "stages")});
+    rows = stages.front() == "mask"
+               ? std::vector<LayoutNode>{std::move(mask_and_stages)}
+               : std::vector<LayoutNode>{tile(0.58, stages.front()), std::move(mask_and_stages)};
+  }
   return divide(1.0, kRows,
                 {divide(0.78, kColumns, {divide(0.74, kRows, rows), tile(0.26, "parameters")}),
                  tile(0.22, "timeline")});
@@ -196,6 +200,19 @@ std::vector<NamedLayout> named_layouts() {
           {"failures", "Failures", failures_layout},
           {"stages", "Stages", stages_layout},
           {"stereo", "Stereo", stereo_layout}};
+}
+
+LayoutNode fitted(const LayoutNode& layout, std::string_view method, bool stereo) {
+  const std::vector<std::string> panels = panels_of(layout);
+  const auto remade = [&](const LayoutNode& wanted) { return panels_of(wanted) == panels ? layout : wanted; };
+  for (const MethodInfo& other : methods()) {
+    for (const bool pairs : {false, true})
+      if (panels == panels_of(default_layout(other.name, pairs)))
+        return remade(default_layout(method, stereo));
+    for (const NamedLayout& named : named_layouts())
+      if (panels == panels_of(named.make(other.name))) return remade(named.make(method));
+  }
+  return layout;
 }
 
 }  // namespace stillpoint

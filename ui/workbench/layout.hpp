@@ -97,6 +97,10 @@ void add_panel(LayoutNode& root, const std::string& panel, const LayoutRect& are
 /// @param stereo of a sequence of stereo pairs: disparity has a tile, too
 [[nodiscard]] LayoutNode default_layout(std::string_view method = kDefaultMethod, bool stereo = false);
 
+/// A layout as it is for another method, or for stereo pairs: one of the program's own, whose tiles go by
+/// these, is made anew; one whose panels somebody chose stays.
+[[nodiscard]] LayoutNode fitted(const LayoutNode& layout, std::string_view method, bool stereo);
+
 /// A layout for one kind of work.
 struct NamedLayout {
   std::string_view name, title;  ///< "failures", "Failures"

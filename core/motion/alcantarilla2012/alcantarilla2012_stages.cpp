@@ -57,6 +57,7 @@ class Stages {
     Layer lengths = length_layer("Length of the flow", length, "px", FrameSpace::kSmall);
     lengths.id = "flow_length";
     Layer tracks = marked("Flow: where pixels were", frame_, std::move(marks));
+    tracks.words = {{MarkKind::kInlier, "valid"}, {MarkKind::kUnmatched, "not judged"}};
     tracks.id = "flow_tracks";
     Stage& stage =
         log_.add("flow", kFlow, "Dense flow",

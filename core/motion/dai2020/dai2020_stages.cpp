@@ -60,6 +60,7 @@ class Stages {
     }
     for (const cv::Point2f& at : trace_.lost) marks.push_back({at, std::nullopt, MarkKind::kLost});
     Layer tracks = marked("Points, and where they were", frame_, std::move(marks));
+    tracks.words = {{MarkKind::kInlier, "with depth"}, {MarkKind::kUnmatched, "without depth"}};
     tracks.id = "flow_tracks";
     Stage& stage =
         log_.add("points", kGraph, "Points",
@@ -131,14 +132,15 @@ class Stages {
       marks.push_back({trace_.judged.seen[i].pixel, std::nullopt, mark_of(trace_.judged.points[i].verdict)});
     }
     Layer layer;
-    layer.name = "Groups, from 1 by size";
-    layer.kind = LayerKind::kLevels;
+    layer.name = "Groups by size";
+    layer.kind = LayerKind::kClasses;
     layer.range = kMostGroups;
     cv::Mat image = point_image(size_, trace_.judged.seen, values);
     cv::patchNaNs(image, 0.0);
     image.convertTo(layer.image, CV_8U);
     layer.id = "groups";
-    Layer points = marked(fmt::format("Points: {}", kVerdictLegend), frame_, std::move(marks));
+    Layer points = marked("Points", frame_, std::move(marks));
+    points.words = verdict_words();
     points.id = "points";
     Stage& stage = log_.add("groups", kGraph, "Groups",
                             "Joins points by settled edges that hold; the largest group is static.");
@@ -185,7 +187,8 @@ class Stages {
         marks.push_back({trace_.next.seen[static_cast<std::size_t>(edge.points[0])].pixel,
                          trace_.next.seen[static_cast<std::size_t>(edge.points[1])].pixel,
                          MarkKind::kGained});
-    Layer layer = marked("Points, those that came in, and new edges", frame_, std::move(marks));
+    Layer layer = marked("Points and new edges", frame_, std::move(marks));
+    layer.words = {{MarkKind::kInlier, "point"}, {MarkKind::kGained, "new point or edge"}};
     layer.id = "new_edges";
     Stage& stage = log_.add("keyframe", "Keyframe", "Triangulation",
                             "At a keyframe features become points; edges of a new triangulation are added.");
@@ -238,7 +241,7 @@ class Stages {
   }
 
   // Groups with a colour of their own: more are hard to tell apart.
-  static constexpr std::size_t kMostGroups = 12;
+  static constexpr std::size_t kMostGroups = 8;
 
   const Dai2020Trace& trace_;
   const Dai2020Config& config_;

@@ -56,12 +56,20 @@ MarkKind mark_of(PointVerdict verdict) {
   return MarkKind::kUnmatched;
 }
 
+std::map<MarkKind, std::string> verdict_words() {
+  return {{MarkKind::kInlier, "static"},
+          {MarkKind::kRemoved, "dynamic"},
+          {MarkKind::kOutlier, "undecided"},
+          {MarkKind::kUnmatched, "not judged"}};
+}
+
 Layer feature_verdicts(const Layer& frame, std::span<const MotionFeature> features,
                        std::span<const PointVerdict> verdicts) {
   std::vector<Mark> marks;
   for (std::size_t i = 0; i < features.size(); ++i)
     marks.push_back({features[i].pixel, std::nullopt, mark_of(verdicts[i])});
-  Layer layer = marked(std::string("Features: ") + kVerdictLegend, frame, std::move(marks));
+  Layer layer = marked("Features", frame, std::move(marks));
+  layer.words = verdict_words();
   layer.id = "classes";
   return layer;
 }

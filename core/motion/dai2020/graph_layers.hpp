@@ -24,8 +24,8 @@ namespace stillpoint {
 /// How a verdict is marked: static as inlier, dynamic as removed, undecided as outlier, unjudged as
 /// unmatched.
 [[nodiscard]] MarkKind mark_of(PointVerdict verdict);
-inline constexpr const char* kVerdictLegend =
-    "static, dynamic (removed), undecided (outlier), not judged (unmatched)";
+/// What these marks stand for: Layer::words.
+[[nodiscard]] std::map<MarkKind, std::string> verdict_words();
 
 /// The features over the frame, each by its verdict.
 [[nodiscard]] Layer feature_verdicts(const Layer& frame, std::span<const MotionFeature> features,

@@ -51,7 +51,9 @@ class EpipolarStages {
     std::vector<Mark> marks;
     for (const ColourPoint& point : trace_.points)
       marks.push_back({point.at, std::nullopt, has_say(point) ? MarkKind::kKept : MarkKind::kUnmatched});
-    return marked("Points", frame_, std::move(marks));
+    Layer points = marked("Points", frame_, std::move(marks));
+    points.words = {{MarkKind::kKept, "followed long enough"}, {MarkKind::kUnmatched, "too new"}};
+    return points;
   }
 
   [[nodiscard]] Layer judged_layer(const char* name, float ColourPoint::*evidence) const {
@@ -60,7 +62,9 @@ class EpipolarStages {
       if (has_say(point))
         marks.push_back(
             {point.at, std::nullopt, is_dynamic(point, evidence) ? MarkKind::kRemoved : MarkKind::kKept});
-    return marked(name, frame_, std::move(marks));
+    Layer judged = marked(name, frame_, std::move(marks));
+    judged.words = {{MarkKind::kKept, "static"}, {MarkKind::kRemoved, "dynamic"}};
+    return judged;
   }
 
   /// Each point's way against one reference, several times as long. @param ways px of the downsampled image

@@ -29,7 +29,7 @@ MarkKind mark_of(FeatureClass kind) {
     case FeatureClass::kStray:
       return MarkKind::kOutlier;
     case FeatureClass::kVirtual:
-      return MarkKind::kLost;
+      return MarkKind::kGained;
     case FeatureClass::kUnjudged:
       break;
   }
@@ -125,6 +125,7 @@ class Stages {
         marks.push_back({at, std::nullopt, MarkKind::kUnmatched});
     }
     Layer matches = marked("Virtual points, and the features that match", frame_, std::move(marks));
+    matches.words = {{MarkKind::kRemoved, "feature that matches"}, {MarkKind::kUnmatched, "virtual point"}};
     matches.id = "virtual_matches";
     stage.add_side({age_layer("Frames since they moved, from 1", trace_.virtual_pixels, trace_.virtual_before,
                               "virtual_age")},
@@ -144,6 +145,7 @@ class Stages {
                          flow.measured ? MarkKind::kInlier : MarkKind::kUnmatched});
     }
     Layer tracks = marked("Features, and where they were", frame_, std::move(marks));
+    tracks.words = {{MarkKind::kInlier, "with depth"}, {MarkKind::kUnmatched, "without depth"}};
     tracks.id = "flow_tracks";
     Stage& stage = log_.add("tracks", kTracks, "Tracks",
                             "Follows features to the last frame and back, and takes depth at both ends.");
@@ -183,8 +185,8 @@ class Stages {
     flow.add_side({frame_}, length);
 
     Layer bins;
-    bins.name = fmt::format("Class of direction: elevation x {} + azimuth, from 1", config_.azimuth_bins);
-    bins.kind = LayerKind::kLevels;
+    bins.name = fmt::format("Class of direction: elevation x {} + azimuth", config_.azimuth_bins);
+    bins.kind = LayerKind::kClasses;
     bins.range = config_.azimuth_bins * config_.elevation_bins;
     dots(at, [&](std::size_t i) {
       return static_cast<float>(round.flows[i].bin + 1);
@@ -193,9 +195,12 @@ class Stages {
     std::vector<Mark> marks;
     for (std::size_t i = 0; i < at.size(); ++i)
       marks.push_back({at[i], std::nullopt, mark_of(round.flows[i].kind)});
-    Layer classes =
-        marked("Classes: static, moving (removed), stray (outlier), virtual (lost), not judged (unmatched)",
-               frame_, std::move(marks));
+    Layer classes = marked("Classes", frame_, std::move(marks));
+    classes.words = {{MarkKind::kInlier, "static"},
+                     {MarkKind::kRemoved, "moving"},
+                     {MarkKind::kOutlier, "stray"},
+                     {MarkKind::kGained, "virtual"},
+                     {MarkKind::kUnmatched, "not judged"}};
     classes.id = "classes";
     Stage& stage = log_.add(
         "classes", group, "Classes",

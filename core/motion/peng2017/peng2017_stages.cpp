@@ -54,6 +54,7 @@ StageLog describe_peng2017(const Frame& frame, const Peng2017Trace& trace, const
     marks.push_back({trace.here[i].pixel, trace.last[i].pixel, MarkKind::kInlier});
   for (const cv::Point2f& at : trace.unmeasured) marks.push_back({at, std::nullopt, MarkKind::kUnmatched});
   Layer tracks = marked("Points, and where they were", photo, std::move(marks));
+  tracks.words = {{MarkKind::kInlier, "with depth"}, {MarkKind::kUnmatched, "without depth"}};
   tracks.id = "flow_tracks";
   Stage& points = log.add("points", kGraph, "Points",
                           "Follows features to the last frame and back, and measures depth at both ends.");
@@ -84,7 +85,8 @@ StageLog describe_peng2017(const Frame& frame, const Peng2017Trace& trace, const
   std::vector<Mark> judged;
   for (std::size_t i = 0; i < trace.here.size(); ++i)
     judged.push_back({trace.here[i].pixel, std::nullopt, mark_of(trace.of_point[i])});
-  Layer verdicts = marked(fmt::format("Points: {}", kVerdictLegend), photo, std::move(judged));
+  Layer verdicts = marked("Points", photo, std::move(judged));
+  verdicts.words = verdict_words();
   verdicts.id = "points";
   Stage& shares =
       log.add("shares", kGraph, "Edges that hold", "A point is static when most of its edges hold.");

@@ -138,6 +138,7 @@ class StillpointStages {
                                                    return odds != 0.0F ? odds : kNoValue;
                                                  }),
                                4.0, "log-odds", kSmall, 0.0);
+    layer.words = {{MarkKind::kInlier, "speaks for static"}, {MarkKind::kOutlier, "speaks for motion"}};
     for (std::size_t i = 0; i < evidence.motions.size() && i < trace_.superpixels.size(); ++i) {
       const SuperpixelMotion& superpixel = evidence.motions[i];
       if (superpixel.log_odds == 0.0F) continue;

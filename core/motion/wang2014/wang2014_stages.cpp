@@ -65,7 +65,7 @@ class Stages {
     for (const int value : values) one_up.push_back(static_cast<float>(value + 1));
     Layer layer;
     layer.name = std::move(name);
-    layer.kind = LayerKind::kLevels;
+    layer.kind = LayerKind::kClasses;
     cv::Mat image = dots(one_up);
     cv::patchNaNs(image, 0.0);
     image.convertTo(layer.image, CV_8U);
@@ -87,6 +87,8 @@ class Stages {
                          fit && one.back().measured() ? MarkKind::kInlier : MarkKind::kUnmatched});
     }
     Layer tracks = marked("Trajectories, and where they were", frame_, std::move(marks));
+    tracks.words = {{MarkKind::kInlier, "long enough, with depth"},
+                    {MarkKind::kUnmatched, "too short, or without depth"}};
     tracks.id = "flow_tracks";
     Stage& stage = log_.add("trajectories", kTracks, "Trajectories",
                             "Follows a grid of points by dense flow, there and back, from frame to frame.");
@@ -177,7 +179,7 @@ class Stages {
       stage.figure(fmt::format("Cluster {}", c + 1),
                    static_cast<double>(
                        std::count(trace_.segments->cluster.begin(), trace_.segments->cluster.end(), c)));
-    stage.add_side({small_}, numbers("Clusters, from 1", trace_.segments->cluster, "clusters"));
+    stage.add_side({small_}, numbers("Clusters", trace_.segments->cluster, "clusters"));
   }
 
   void add_merging() {
@@ -189,14 +191,14 @@ class Stages {
     for (std::size_t c = 0; c < segments.explained.size(); ++c)
       stage.figure(fmt::format("Cluster {} explained by the background", c + 1),
                    100.0 * segments.explained[c], "%", 0);
-    stage.add_side({numbers("Clusters, from 1", segments.cluster, "")},
+    stage.add_side({numbers("Clusters", segments.cluster, "")},
                    numbers("After merging", segments.label, "merged"));
   }
 
   void add_mask() {
     Layer labels;
-    labels.name = "Labels, from 1";
-    labels.kind = LayerKind::kLevels;
+    labels.name = "Labels";
+    labels.kind = LayerKind::kClasses;
     labels.image = trace_.labels;
     labels.range = config_.most_clusters;
     labels.space = FrameSpace::kSmall;

@@ -96,10 +96,10 @@ class Stages {
 
   void add_matches() {
     Layer matches;
-    matches.name = "Which matched: 0 apparent, 1 candidate, 2 neither";
-    matches.kind = LayerKind::kLevels;
-    matches.image = trace_.matches;
-    matches.range = kMatchNeither;
+    matches.name = "Which matched: 1 apparent, 2 candidate, 3 neither";
+    matches.kind = LayerKind::kClasses;
+    cv::add(trace_.matches, cv::Scalar(1.0), matches.image);
+    matches.range = kMatchNeither + 1;
     matches.space = FrameSpace::kSmall;
     matches.id = "matches";
     Stage& stage = log_.add("match", kModel, "Match",

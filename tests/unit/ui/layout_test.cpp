@@ -175,6 +175,30 @@ TEST(Layout, ComesBackFromItsFile) {
   EXPECT_EQ(parse_layout(to_json(standard), "file.json", panels_of(standard)), standard);
 }
 
+TEST(Layout, OfTheProgramsOwnFollowsTheMethodAndOneChosenStays) {
+  for (const char* from : {"paper", "stillpoint", "none", "dai2020"})
+    for (const char* to : {"paper", "stillpoint", "none", "dai2020"}) {
+      EXPECT_EQ(panels_of(fitted(default_layout(from), to, false)), panels_of(default_layout(to)))
+          << from << " to " << to;
+      EXPECT_EQ(panels_of(fitted(default_layout(from), to, true)), panels_of(default_layout(to, true)));
+      for (const NamedLayout& named : named_layouts())
+        EXPECT_EQ(panels_of(fitted(named.make(from), to, false)), panels_of(named.make(to))) << named.name;
+    }
+  // Dragged edges stay where the tiles do.
+  LayoutNode wider = default_layout("stillpoint");
+  wider.children[0].share = 0.5, wider.children[1].share = 0.26;
+  EXPECT_EQ(fitted(wider, "dai2020", false), wider);
+  LayoutNode chosen = default_layout("paper");
+  remove_panel(chosen, "trajectory");
+  EXPECT_EQ(fitted(chosen, "stillpoint", false), chosen);
+}
+
+TEST(Layout, OfAMethodWithoutStagesHasNoTileForThem) {
+  for (const NamedLayout& named : named_layouts())
+    EXPECT_FALSE(contains(named.make("none"), "motion")) << named.name;
+  EXPECT_TRUE(contains(default_layout("none"), "mask"));
+}
+
 TEST(Layout, SharesAreScaledAndEqualWithoutAny) {
   const LayoutNode root = from(R"({"rows": [{"panel": "a", "share": 3}, {"panel": "b", "share": 1}]})");
   EXPECT_DOUBLE_EQ(root.children[0].share, 0.75);

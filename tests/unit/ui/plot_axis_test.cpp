@@ -46,6 +46,13 @@ TEST(LinearTicksTest, NeverMoreThanAskedAndAlwaysInside) {
   }
 }
 
+TEST(LinearTicksTest, OfWholeNumbersAreWhole) {
+  std::vector<std::string> labels;
+  for (const AxisTick& tick : linear_ticks({-0.5, 2.5}, 20, 1.0)) labels.push_back(tick.label);
+  EXPECT_EQ(labels, (std::vector<std::string>{"0", "1", "2"}));
+  EXPECT_EQ(linear_ticks({-0.5, 299.5}, 8, 1.0).size(), linear_ticks({-0.5, 299.5}, 8).size());
+}
+
 TEST(LinearTicksTest, AScaleTakesTwo) {
   EXPECT_THAT(labels(linear_ticks({0.0, 495.0}, 2)), ElementsAre("0", "400"));
   EXPECT_THAT(labels(linear_ticks({0.0, 0.49}, 2)), ElementsAre("0", "0.4"));

@@ -55,6 +55,14 @@ TEST(PointReadings, ReadEveryLayerAtAPointOfTheScene) {
   EXPECT_EQ(reading(groups, "Result", "Feature near it").value, "3.0 px off, removed");
 }
 
+TEST(PointReadings, AMaskThatNobodyLeftSaysNothing) {
+  InspectScene scene;
+  scene.view.mask.release();
+  EXPECT_EQ(reading(read(scene, 110, 84), "Result", "Removed").value, "no");
+  scene.change([](FrameRecord& record) { record.measured.mask = false; });
+  EXPECT_EQ(reading(read(scene, 110, 84), "Result", "Removed").value, "–");
+}
+
 TEST(PointReadings, ReadWhatFollowedPointsSayWithoutDepth) {
   InspectScene scene;
   without_depth(scene);

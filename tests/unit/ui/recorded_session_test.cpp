@@ -1,9 +1,11 @@
 // A finished run in a session: what its records hold at once, and the rest bit for bit as the run had it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "core/run/open_run.hpp"
+#include "core/run/outside_run.hpp"
 #include "core/run/run_report.hpp"
 #include "tests/cli/small_sequence.hpp"
 #include "tests/support/same_stages.hpp"
@@ -149,6 +151,38 @@ TEST_P(RecordedSession, WithoutImagesNothingIsLostOrTried) {
   EXPECT_FALSE(view->current->frame.readable());
   EXPECT_FALSE(view->current->record->features.empty());
   EXPECT_GT(view->run->evaluation.ate.translation_m.count, 0);
+}
+
+/// Another program's trajectory in the place of the session's run.
+TEST(OutsideSession, IsNotThrownAwayByARunOfOurs) {
+  const SmallSequence sequence{kFrames};
+  const TemporaryFolder out{"out"};
+  std::string poses;
+  for (int i = 0; i < kFrames; ++i)
+    poses += fmt::format("{:.4f} {:.3f} 0 0 0 0 0 1\n", SmallSequence::stamp(i), 0.01 * i);
+  out.write("orb3.txt", poses);
+  const std::shared_ptr<const FrameSource> source = open_sequence(sequence.path());
+  std::vector<std::string> warnings;
+  SessionOptions options;
+  options.recorded = std::make_shared<const RecordedRun>(
+      read_outside_run(*source, {}, outside_run_argument("orb3=" + out.path("orb3.txt")), warnings));
+  Config config;
+  config.run.method = "none";
+  config.features.count = 400;
+  Session session(source, config, options);
+  ASSERT_EQ(session.view()->outside, "orb3");
+  EXPECT_TRUE(session.view()->debug.ghosts.empty());
+  config.run.method = "stillpoint";
+  for (int times = 0; times < 2; ++times) {  // of which only the first finds it in its place
+    session.request(request::RunAll{config});
+    const auto view = session.view();
+    EXPECT_EQ(view->outside, "");
+    ASSERT_EQ(view->debug.ghosts.size(), 1U);
+    const GhostView& ghost = view->debug.ghosts.front();
+    EXPECT_EQ(ghost.name, "orb3");
+    EXPECT_TRUE(ghost.outside);
+    EXPECT_EQ(ghost.run->records.size(), static_cast<std::size_t>(kFrames));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RecordedSession, ::testing::Values("none", "paper", "stillpoint"),

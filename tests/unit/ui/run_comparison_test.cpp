@@ -42,9 +42,9 @@ TEST(RemovalSummary, CountsAndFindsTheExtremes) {
   EXPECT_NEAR(summary.greatest_gain_m, 0.028, 1e-12);
   EXPECT_NEAR(summary.median_with_m, 0.003, 1e-12);
   EXPECT_NEAR(summary.median_without_m, 0.004, 1e-12);
-  EXPECT_EQ(summary.told, 5);
+  EXPECT_EQ(summary.oracle, 5);
   EXPECT_EQ(summary.beat_oracle, 1);
-  EXPECT_EQ(sentence_of(summary), "Removal helped in 2 of 5 frames, hurt in 2, and made no odds in 1.");
+  EXPECT_EQ(sentence_of(summary), "Removal helped in 2 of 5 frames, hurt in 2, and changed nothing in 1.");
   EXPECT_THAT(by_harm(errors), ElementsAre(6, 7));
 }
 

@@ -139,6 +139,17 @@ std::shared_ptr<const RunView> five_frames(const RecordParts& measured) {
   return run;
 }
 
+TEST(TimelineLanes, TellBetweenWhichTheirValuesLie) {
+  SessionView session;
+  session.run = five_frames({});
+  TimelineModel model;
+  model.update(session, {frame_figure("inliers"), frame_figure("mask")});
+  ASSERT_EQ(model.lanes.size(), 2U);
+  EXPECT_EQ(model.lanes[0].range_text(), "0–104");
+  // The end of a lane of zeros is no value of it.
+  EXPECT_EQ(model.lanes[1].range_text(), "0 %");
+}
+
 TEST(TimelineLanes, WhatARunDoesNotKnowIsAGap) {
   SessionView session;
   session.run = five_frames({});
