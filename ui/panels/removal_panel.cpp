@@ -136,8 +136,8 @@ class RemovalPanel final : public NamedPanel {
     plot.series.push_back({"without removal", without_.x, without_.y, role_colour(Role::kBaseline, theme),
                            SeriesStyle::kDashed});
     if (summary_.oracle > 0)
-      plot.series.push_back(
-          {"oracle", oracle_.x, oracle_.y, role_colour(Role::kGroundTruth, theme), SeriesStyle::kDotted});
+      plot.series.push_back({"ground-truth mask", oracle_.x, oracle_.y,
+                             role_colour(Role::kGroundTruth, theme), SeriesStyle::kDotted});
     plot.series.push_back(
         {"with removal", with_.x, with_.y, role_colour(Role::kEstimate, theme), SeriesStyle::kLine, 2.0F});
     if (!hurt_.x.empty())

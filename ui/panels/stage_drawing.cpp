@@ -169,7 +169,7 @@ std::vector<LegendEntry> legend_of(const UiFrame& frame, const Layer& picture) {
   if (picture.kind == LayerKind::kMaskChange) {
     legend.push_back({"gained", kGainedColour, Sign::kSquare});
     legend.push_back({"lost", kLostColour, Sign::kSquare});
-    legend.push_back({"in both", kStaysColour, Sign::kSquare});
+    legend.push_back({"stays", kStaysColour, Sign::kSquare});
   }
   if (picture.kind == LayerKind::kSigned) {
     legend.push_back({"above 0", diverging_colour(frame.theme, 1.0), Sign::kSquare});
