@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # FFmpeg's fps=1 shows at 0 s what was seen at 0.47 s, and -r 1 at 3 s what was seen at 1.87 or 2.37 s
 #
-# One would swear: ffmpeg -i film.mp4 -vf fps=10 out%04d.png, out of 30 pictures a second, takes every third:
-#   0, 3, 6, whose times are 0, 0.1, 0.2 s, and -r 10 before the output is a short form of it.
-# What happens: fps=10 takes 1, 4, 7: each output is the last picture whose time rounds to the output's, and
-#   so half an output's period later than it says, less a picture: 33 ms at 10 Hz, 467 ms at 1 Hz. -r 10 as an
-#   option for the output takes 0, 1, 2, 5, 8, 11 when it writes PNG (from the third on it is 133 ms behind), and 0,
-#   1, 4, 7, 10 into a film, whose times say so: 67 ms behind. At 1 Hz the PNG are 1.13 s behind and the film
-#   0.63. In the films the stamps are 0, 0.1, 0.2, exactly, in all cases. Two that are right: fps=10:round=up,
-#   and select='not(mod(n,3))' with -vsync 0.
-# What follows: pictures that were taken out of a film by fps= or -r do not fit an IMU, ground truth or another
-#   camera's by their numbers: a camera that walks at 1 m/s is a palm's width off at 10 Hz and a metre at
-#   1 Hz, with a calibrated time offset that changes with the rate. Frames should be taken out all, or by select.
+# One would swear: ffmpeg -i film.mp4 -vf fps=10 out%04d.png, out of 30 pictures a second, takes
+#   every third: 0, 3, 6, whose times are 0, 0.1, 0.2 s, and -r 10 before the output is a short form
+#   of it.
+# What happens: fps=10 takes 1, 4, 7: each output is the last picture whose time rounds to the
+#   output's, and so half an output's period later than it says, less a picture: 33 ms at 10 Hz, 467
+#   ms at 1 Hz. -r 10 as an option for the output takes 0, 1, 2, 5, 8, 11 when it writes PNG (from
+#   the third on it is 133 ms behind), and 0, 1, 4, 7, 10 into a film, whose times say so: 67 ms
+#   behind. At 1 Hz the PNG are 1.13 s behind and the film 0.63. In the films the stamps are 0, 0.1,
+#   0.2, exactly, in all cases. Two that are right: fps=10:round=up, and select='not(mod(n,3))' with
+#   -vsync 0.
+# What follows: pictures that were taken out of a film by fps= or -r do not fit an IMU, ground truth
+#   or another camera's by their numbers: a camera that walks at 1 m/s is a palm's width off at 10
+#   Hz and a metre at 1 Hz, with a calibrated time offset that changes with the rate. Frames should
+#   be taken out all, or by select.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

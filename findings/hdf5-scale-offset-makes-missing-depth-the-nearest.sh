@@ -5,10 +5,11 @@
 #   floats as whole numbers, so what a NaN becomes may depend, but infinity and NaN fare alike, and
 #   depth beside a hole is safe.
 # What happens: infinity comes back as infinity. A NaN comes back as the smallest depth of its tile
-#   (chunk), a good reading like any other: the holes of a depth camera become patches at the distance
-#   of what is nearest. And where a tile's first pixel is NaN, a tile of doubles comes back with all its
-#   NaN, but one of floats as zeros altogether: of a picture with ten rows missing, which touch eight
-#   tiles, 32000 good readings are gone besides 6400 missing ones. No word is said on writing or reading.
+#   (chunk), a good reading like any other: the holes of a depth camera become patches at the
+#   distance of what is nearest. And where a tile's first pixel is NaN, a tile of doubles comes back
+#   with all its NaN, but one of floats as zeros altogether: of a picture with ten rows missing,
+#   which touch eight tiles, 32000 good readings are gone besides 6400 missing ones. No word is said
+#   on writing or reading.
 # What follows: 16-bit millimetres, or 0 for missing, go through the filter as they should; zeros
 #   come back below a millimetre. A file of floats that has been through it holds no NaN where there
 #   ought to be some: that is the sign.

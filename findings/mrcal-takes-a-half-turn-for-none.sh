@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # mrcal's rotation vector of a half turn is zero: OpenCV's axes to OpenGL's is no rotation at all
 #
-# One would swear: r_from_R and rt_from_Rt are Rodrigues' formula backwards, and half turns, where the
-#   formula is 0 / 0, are looked after, as in every such function; R_from_r(r_from_R(R)) is R.
-# What happens: small rotations are told by a small sine, and a half turn has one too: from 0.0008 degrees
-#   below 180 on the vector has the length of what is missing to 180. diag(1, -1, -1), by which
-#   cameras are brought from OpenCV's axes to OpenGL's, gives (0, 0, 0), as do half turns about y and z
-#   and about (0.6, 0.64, 0.48), and the pose (R, t) keeps its t. 179.999 degrees are right to
-#   1e-9, and so are compose_r of two quarter turns, R_from_r and quat_from_R for the half turn itself.
-# What follows: poses that are made of exact turns by 180 degrees (another convention of axes, a camera
-#   mounted upside down, the one that looks back in a rig) lose them on their way into rt form, which
-#   is what a .cameramodel file holds. Such a matrix should be turned by compose_r from two halves.
+# One would swear: r_from_R and rt_from_Rt are Rodrigues' formula backwards, and half turns, where
+#   the formula is 0 / 0, are looked after, as in every such function; R_from_r(r_from_R(R)) is R.
+# What happens: small rotations are told by a small sine, and a half turn has one too: from 0.0008
+#   degrees below 180 on the vector has the length of what is missing to 180. diag(1, -1, -1), by
+#   which cameras are brought from OpenCV's axes to OpenGL's, gives (0, 0, 0), as do half turns
+#   about y and z and about (0.6, 0.64, 0.48), and the pose (R, t) keeps its t. 179.999 degrees are
+#   right to 1e-9, and so are compose_r of two quarter turns, R_from_r and quat_from_R for the half
+#   turn itself.
+# What follows: poses that are made of exact turns by 180 degrees (another convention of axes, a
+#   camera mounted upside down, the one that looks back in a rig) lose them on their way into rt
+#   form, which is what a .cameramodel file holds. Such a matrix should be turned by compose_r from
+#   two halves.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

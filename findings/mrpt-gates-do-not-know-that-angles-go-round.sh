@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # MRPT's Mahalanobis distance of two 3-D poses 1.1 degrees apart is 1.41, or 443 where the yaw passes 180 degrees
 #
-# One would swear: a difference of poses with angles is taken round the circle; the 2-D class beside it does it,
-#   and the 3-D one subtracts poses in all else that it does.
-# What happens: CPose3DPDFGaussian::mahalanobisDistanceTo, and that of CPose3DPDFGaussianInf, subtracts the six
-#   numbers as they are. With a sigma of 0.01 each, yaw 3.10 against 3.12 is 1.41, 3.13 against 3.15 is 442.9, as
-#   3.15 is kept as -3.13; so it is for roll. CPosePDFGaussian gives 1.41 for both.
-# What follows: a gate for loop closures or matches of 3-D poses that is made of this distance never opens for those that
-#   look one way, against the first camera's direction, where yaw is 180 degrees, and a test that never turns that
-#   far is content. The mean of the second should be brought within pi of the first by hand, or the distance taken from
-#   the logarithm of the difference.
+# One would swear: a difference of poses with angles is taken round the circle; the 2-D class beside
+#   it does it, and the 3-D one subtracts poses in all else that it does.
+# What happens: CPose3DPDFGaussian::mahalanobisDistanceTo, and that of CPose3DPDFGaussianInf,
+#   subtracts the six numbers as they are. With a sigma of 0.01 each, yaw 3.10 against 3.12 is 1.41,
+#   3.13 against 3.15 is 442.9, as 3.15 is kept as -3.13; so it is for roll. CPosePDFGaussian gives
+#   1.41 for both.
+# What follows: a gate for loop closures or matches of 3-D poses that is made of this distance never
+#   opens for those that look one way, against the first camera's direction, where yaw is 180
+#   degrees, and a test that never turns that far is content. The mean of the second should be
+#   brought within pi of the first by hand, or the distance taken from the logarithm of the
+#   difference.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # MRPT's Horn alignment tells a scale of 0.5 where 2 is right, with a translation that fits neither
 #
-# One would swear: se3_l2 is Horn's closed form, "p_this = q (+) p_other", and out_scale its scale: of exact matches
-#   this = 2 R other + t it gives 2, R and t, or, if it is meant the other way round, a half and what belongs to that.
-# What happens: R is right. out_scale is 1/2, the scale from this to other, and the translation is the mean of this less
-#   that half of the turned mean of other: it belongs to the inverted scale in the uninverted direction. Points that
-#   are some metres wide have residuals of up to 4.6 m with the scale that is told, and of 1.8 m with its inverse; at 1.1
-#   it is 59 and 23 cm. For a scale of 1 all is right to the sixth digit, and with forceScaleToUnity it is the rigid alignment.
-# What follows: a monocular trajectory that is aligned by it to ground truth in Sim(3) is scaled the wrong way, twice,
-#   and its error is more than that without any scale. R of it can be used; s = 1 / out_scale and t = mean(this) - s R mean(other)
-#   are to be worked out by the caller.
+# One would swear: se3_l2 is Horn's closed form, "p_this = q (+) p_other", and out_scale its scale:
+#   of exact matches this = 2 R other + t it gives 2, R and t, or, if it is meant the other way
+#   round, a half and what belongs to that.
+# What happens: R is right. out_scale is 1/2, the scale from this to other, and the translation is
+#   the mean of this less that half of the turned mean of other: it belongs to the inverted scale in
+#   the uninverted direction. Points that are some metres wide have residuals of up to 4.6 m with
+#   the scale that is told, and of 1.8 m with its inverse; at 1.1 it is 59 and 23 cm. For a scale of
+#   1 all is right to the sixth digit, and with forceScaleToUnity it is the rigid alignment.
+# What follows: a monocular trajectory that is aligned by it to ground truth in Sim(3) is scaled the
+#   wrong way, twice, and its error is more than that without any scale. R of it can be used; s = 1
+#   / out_scale and t = mean(this) - s R mean(other) are to be worked out by the caller.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

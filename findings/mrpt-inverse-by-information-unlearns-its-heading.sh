@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # MRPT's inverse of a pose in information form knows its heading to 6.1 degrees instead of 1.7, and is NaN in 3-D
 #
-# One would swear: inverse() of CPosePDFGaussianInf gives the information matrix of the inverse pose, which is the inverse of
-#   the covariance that CPosePDFGaussian's inverse() gives; at the least it is right twice over.
-# What happens: the mean is right. The matrix is turned by the Jacobian as a covariance would be, H L H', where
-#   information needs the inverse of H: for a pose at (1, 2) with sigmas of 5 cm, 2 cm and 1.7 degrees the inverse has 6.1
-#   degrees in heading, which no change of origin can do, and 3.6 cm in y where 7.1 are right. inverse() of
-#   inverse() gives the first matrix back, as H is its own inverse, so that the usual test is content. +=, -= and inverseComposition of
-#   the same class are right. CPose3DPDFGaussianInf::inverse() gives NaN throughout; CPose3DPDFGaussian's is right.
-# What follows: pose graphs are kept in information form, and an edge that is walked from its other end is inverted. That
-#   must go by the covariance: copyFrom into CPosePDFGaussian, inverse there, and back.
+# One would swear: inverse() of CPosePDFGaussianInf gives the information matrix of the inverse
+#   pose, which is the inverse of the covariance that CPosePDFGaussian's inverse() gives; at the
+#   least it is right twice over.
+# What happens: the mean is right. The matrix is turned by the Jacobian as a covariance would be, H
+#   L H', where information needs the inverse of H: for a pose at (1, 2) with sigmas of 5 cm, 2 cm
+#   and 1.7 degrees the inverse has 6.1 degrees in heading, which no change of origin can do, and
+#   3.6 cm in y where 7.1 are right. inverse() of inverse() gives the first matrix back, as H is its
+#   own inverse, so that the usual test is content. +=, -= and inverseComposition of the same class
+#   are right. CPose3DPDFGaussianInf::inverse() gives NaN throughout; CPose3DPDFGaussian's is right.
+# What follows: pose graphs are kept in information form, and an edge that is walked from its other
+#   end is inverted. That must go by the covariance: copyFrom into CPosePDFGaussian, inverse there,
+#   and back.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # MRPT's covariance of particles has no correlation of place and heading, or that of the other sign
 #
-# One would swear: getCovarianceAndMean of CPosePDFParticles and CPose3DPDFParticles is the mean of the products of
-#   the deviations, those of angles taken round the circle. It is what a robot that drives a curve is judged by: where
-#   it may be goes with where it may be heading.
-# What happens: the deviations of angles are made positive before they are multiplied. Variances are right, and so are
-#   covariances of positions. x and heading drawn with a correlation of -0.8 or of 0.8 have 0.00 if the mean heading is
-#   positive, and 0.80 or -0.80, the wrong sign, if it is negative, in 2-D and in 3-D. Independent yaw and pitch of positive
-#   means have 0.64, which is 2 / pi, the mean of |a b| of two Gaussian numbers, and ones drawn with -0.8 or 0.8 have 0.86; if
-#   one of the means is negative they have none. What copyFrom makes of particles has the same.
-# What follows: the ellipse of a localisation by particles loses or mirrors its slant as the robot turns past 0.
-#   Gates and fusions by it are wrong in the one term that matters on curves; the covariance should be worked out from the
-#   particles themselves.
+# One would swear: getCovarianceAndMean of CPosePDFParticles and CPose3DPDFParticles is the mean of
+#   the products of the deviations, those of angles taken round the circle. It is what a robot that
+#   drives a curve is judged by: where it may be goes with where it may be heading.
+# What happens: the deviations of angles are made positive before they are multiplied. Variances are
+#   right, and so are covariances of positions. x and heading drawn with a correlation of -0.8 or of
+#   0.8 have 0.00 if the mean heading is positive, and 0.80 or -0.80, the wrong sign, if it is
+#   negative, in 2-D and in 3-D. Independent yaw and pitch of positive means have 0.64, which is 2 /
+#   pi, the mean of |a b| of two Gaussian numbers, and ones drawn with -0.8 or 0.8 have 0.86; if one
+#   of the means is negative they have none. What copyFrom makes of particles has the same.
+# What follows: the ellipse of a localisation by particles loses or mirrors its slant as the robot
+#   turns past 0. Gates and fusions by it are wrong in the one term that matters on curves; the
+#   covariance should be worked out from the particles themselves.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # nanoflann's nearest heading to 3 degrees is -170: its metric of angles counts with a sign
 #
-# One would swear: SO2_Adaptor is the distance of angles on a circle and SO3_Adaptor that of rotations;
-#   both come with the library as metrics, and its trees find the nearest by them.
-# What happens: SO2's distance is the difference itself, from -pi to pi, and the smallest number is the
-#   most negative one. Among headings every 10 degrees, the nearest to 3 is -170, to 95 it is -80, and
-#   its distance is -173 degrees; near each query the answer is what lies behind. A search within 15
-#   degrees gives 19 of the 36: all up to 15 degrees more, and half a circle of those that are less.
-#   SO3 takes the plain distance of four numbers, for which q and -q, one rotation, are as far as
-#   can be: of 1000 random rotations among 2000, 518 get their nearest, the others one up to 22 degrees
-#   farther off. With both q and -q in the tree all 1000 are right, and half of what is found is double.
+# One would swear: SO2_Adaptor is the distance of angles on a circle and SO3_Adaptor that of
+#   rotations; both come with the library as metrics, and its trees find the nearest by them.
+# What happens: SO2's distance is the difference itself, from -pi to pi, and the smallest number is
+#   the most negative one. Among headings every 10 degrees, the nearest to 3 is -170, to 95 it is
+#   -80, and its distance is -173 degrees; near each query the answer is what lies behind. A search
+#   within 15 degrees gives 19 of the 36: all up to 15 degrees more, and half a circle of those that
+#   are less. SO3 takes the plain distance of four numbers, for which q and -q, one rotation, are as
+#   far as can be: of 1000 random rotations among 2000, 518 get their nearest, the others one up to
+#   22 degrees farther off. With both q and -q in the tree all 1000 are right, and half of what is
+#   found is double.
 # What follows: headings go into a tree as cos and sin under L2, rotations with both signs. A loop
 #   closure that is looked for by heading and never found, or a gate that lets half of the map pass,
 #   is this.

@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # OpenCV's BRISK draws its coarse points together: five pixels at the edge of KITTI's pictures, none at 768 x 480
 #
-# One would swear: a detector of blobs in a pyramid gives the place of a blob in the full picture; what is
-#   off by rounding is off by a fraction of a pixel of the level, the same everywhere, and is as much to
-#   the left as to the right.
-# What happens: levels are halves and two thirds of the picture, cut to whole pixels (106 columns where
-#   106.67 were right), the picture is squeezed into them, and points are brought back by 1.5, 2, 3, 4 and 6 all
-#   the same. They lie too near to the upper left corner, in proportion to where they are: of 640 x 480
-#   pictures, octave 5, by 0 on the left and 4 pixels on the right, and not at all in y, since 480 can be
-#   divided; octave 1 by half a pixel. Of KITTI's 1241 x 376 by 5 pixels at the right and 5 at the bottom, 1.2
-#   per cent of y; octaves 0 to 4, which are interpolated between levels, by up to 1.5. At 768 x 480, which
-#   divides by all of them, nothing is off by more than 0.3.
-# What follows: that is no offset which differences take out: the picture has another focal length in each
-#   octave, and in x another one than in y. Pictures are to be cut or padded to multiples of 24 before
-#   BRISK sees them, or its coarse points are not to be used for poses.
+# One would swear: a detector of blobs in a pyramid gives the place of a blob in the full picture;
+#   what is off by rounding is off by a fraction of a pixel of the level, the same everywhere, and
+#   is as much to the left as to the right.
+# What happens: levels are halves and two thirds of the picture, cut to whole pixels (106 columns
+#   where 106.67 were right), the picture is squeezed into them, and points are brought back by 1.5,
+#   2, 3, 4 and 6 all the same. They lie too near to the upper left corner, in proportion to where
+#   they are: of 640 x 480 pictures, octave 5, by 0 on the left and 4 pixels on the right, and not
+#   at all in y, since 480 can be divided; octave 1 by half a pixel. Of KITTI's 1241 x 376 by 5
+#   pixels at the right and 5 at the bottom, 1.2 per cent of y; octaves 0 to 4, which are
+#   interpolated between levels, by up to 1.5. At 768 x 480, which divides by all of them, nothing
+#   is off by more than 0.3.
+# What follows: that is no offset which differences take out: the picture has another focal length
+#   in each octave, and in x another one than in y. Pictures are to be cut or padded to multiples of
+#   24 before BRISK sees them, or its coarse points are not to be used for poses.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -6,14 +6,15 @@
 #   kind the least squares are made for, to a few per cent.
 # What happens: all nine are too large by the square root of two and more. The sum of squared
 #   residuals is divided by the number of corners less the number of parameters, and there are two
-#   residuals to a corner. 200 calibrations of one set of twelve boards of 9 x 6 with fresh noise of 0.2
-#   pixels: fx scatters by 1.28 pixels and is told as 1.82. Against J^T J and residuals worked out by
-#   hand the factor is the same for all, also for the boards' poses: 1.464, which is the root of 1215
-#   over 567; with boards of 4 x 2 corners it is 2.72, the root of 111 over 15.
-# What follows: covariances of a camera that an optimiser takes as a prior, or that are carried on into
-#   depth, are to be multiplied by (n - p) / (2 n - p), about a half. A test of a calibration's
-#   consistency by these numbers accepts what it should reject: what looks like 2 sigmas is 2.9. (Why
-#   the RMS of this function is not solvePnPGeneric's is a matter of names; these have one meaning.)
+#   residuals to a corner. 200 calibrations of one set of twelve boards of 9 x 6 with fresh noise of
+#   0.2 pixels: fx scatters by 1.28 pixels and is told as 1.82. Against J^T J and residuals worked
+#   out by hand the factor is the same for all, also for the boards' poses: 1.464, which is the root
+#   of 1215 over 567; with boards of 4 x 2 corners it is 2.72, the root of 111 over 15.
+# What follows: covariances of a camera that an optimiser takes as a prior, or that are carried on
+#   into depth, are to be multiplied by (n - p) / (2 n - p), about a half. A test of a calibration's
+#   consistency by these numbers accepts what it should reject: what looks like 2 sigmas is 2.9.
+#   (Why the RMS of this function is not solvePnPGeneric's is a matter of names; these have one
+#   meaning.)
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

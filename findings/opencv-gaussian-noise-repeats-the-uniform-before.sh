@@ -1,18 +1,21 @@
 #!/usr/bin/env bash
 # OpenCV's Gaussian noise is positive for points in the upper half of the picture: it is the number drawn before
 #
-# One would swear: RNG::gaussian after RNG::uniform gives two independent numbers; whatever one thinks of the
-#   generator, a simulation of points with noise, drawn in turn, has noise that does not know the points.
+# One would swear: RNG::gaussian after RNG::uniform gives two independent numbers; whatever one
+#   thinks of the generator, a simulation of points with noise, drawn in turn, has noise that does
+#   not know the points.
 # What happens: uniform(float, float) steps the generator and makes a float of its state; gaussian
-#   makes its number of the state as it finds it and steps afterwards. Both are of the same 32 bits: in 1000000
-#   pairs, with any seed, they correlate by -0.46, and the sign of the noise is that of (a half less the uniform number)
-#   nearly always. For p = (uniform(0.f, 640.f), uniform(0.f, 480.f)) and noise drawn after it, it is y and
-#   the noise in x. A motion by zero, fitted to 100000 such points with noise of half a pixel, is a shear of 0.0017 (0.8
-#   pixels across the picture) and a rotation of 0.034 degrees; it should be a hundredth of that. uniform of double or
-#   int before gaussian, one more gaussian between, whole matrices by fill, and std::mt19937 are right.
-# What follows: tests and Monte Carlo trials of pose, calibration and flow that draw both from one RNG see
-#   biases and covariances that no estimator has. Points and noise are to come from two generators, or from
-#   fill. Residuals of a fit that are smaller than the noise put in are the sign.
+#   makes its number of the state as it finds it and steps afterwards. Both are of the same 32 bits:
+#   in 1000000 pairs, with any seed, they correlate by -0.46, and the sign of the noise is that of
+#   (a half less the uniform number) nearly always. For p = (uniform(0.f, 640.f), uniform(0.f,
+#   480.f)) and noise drawn after it, it is y and the noise in x. A motion by zero, fitted to 100000
+#   such points with noise of half a pixel, is a shear of 0.0017 (0.8 pixels across the picture) and
+#   a rotation of 0.034 degrees; it should be a hundredth of that. uniform of double or int before
+#   gaussian, one more gaussian between, whole matrices by fill, and std::mt19937 are right.
+# What follows: tests and Monte Carlo trials of pose, calibration and flow that draw both from one
+#   RNG see biases and covariances that no estimator has. Points and noise are to come from two
+#   generators, or from fill. Residuals of a fit that are smaller than the noise put in are the
+#   sign.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # OpenCV's LSD finds lines to a thousandth of a pixel, an eighth of a pixel beside where they are
 #
-# One would swear: a line segment detector that works on a picture at 0.8 of its size brings its lines back
-#   to the full one; what is off then is off across the line, as often to one side as to the other.
-# What happens: a place in the small picture is divided by the scale, and that is all: pixel centres lie on another
-#   grid there, and every line ends up (1 / scale - 1) / 2 pixels to the left and as much further up: 0.125 with the
-#   default of 0.8, 0.33 with 0.6, 0.5 with a half. Blurred edges in twelve directions agree on these
-#   two numbers to 0.003 pixels with 0.8 and 0.6; at scale 1 all is right to 0.001. So the bias is forty times and more what
-#   the detector leaves otherwise, and it does not go away by turning the edge round or by averaging. Lines
-#   of EdgeDrawing in the same pictures are right to 0.02.
+# One would swear: a line segment detector that works on a picture at 0.8 of its size brings its
+#   lines back to the full one; what is off then is off across the line, as often to one side as to
+#   the other.
+# What happens: a place in the small picture is divided by the scale, and that is all: pixel centres
+#   lie on another grid there, and every line ends up (1 / scale - 1) / 2 pixels to the left and as
+#   much further up: 0.125 with the default of 0.8, 0.33 with 0.6, 0.5 with a half. Blurred edges in
+#   twelve directions agree on these two numbers to 0.003 pixels with 0.8 and 0.6; at scale 1 all is
+#   right to 0.001. So the bias is forty times and more what the detector leaves otherwise, and it
+#   does not go away by turning the edge round or by averaging. Lines of EdgeDrawing in the same
+#   pictures are right to 0.02.
 # What follows: lines of LSD are not to be mixed with points of a corner detector in one pose before
-#   (1 / scale - 1) / 2 has been added to all coordinates, and a scale of 1 costs only time. At f = 525 it is 0.24
-#   mm a metre, on both axes; a stereo pair of which one side is resized does not cancel it.
+#   (1 / scale - 1) / 2 has been added to all coordinates, and a scale of 1 costs only time. At f =
+#   525 it is 0.24 mm a metre, on both axes; a stereo pair of which one side is resized does not
+#   cancel it.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # OpenCV's motion history sees a ball that rolls at 45 degrees roll at 17, out of directions that are right
 #
-# One would swear: calcGlobalOrientation is a mean of the local directions of motion, weighted by how
-#   recent they are; if those are right on average, so is it, to a degree or two.
-# What happens: it looks for the fullest of twelve bins of the local directions and averages what lies
-#   within 45 degrees of that one. Local directions come from pixels: a front of a few pixels a frame has most of its
-#   gradients along the axes and the diagonals, whatever the front does, and so the wrong bin wins. Of a ball of 60
-#   pixels that moves by 2 a frame in 24 directions the plain mean of the local directions is right to a degree
-#   in all; the global one is off by 18 degrees r.m.s. and 30 at worst, right along the axes only. For
-#   silhouettes instead of differences it is 19 and 33. A ramp of times as smooth as no picture has it is right to
-#   0.1, which is how one would test it.
-# What follows: directions of moving objects should be taken from the local ones and their mask (a mean
-#   of sines and cosines), or from flow. A histogram of global orientations that shows 0, 90, 180 and 270
-#   tells about pixels, not about people.
+# One would swear: calcGlobalOrientation is a mean of the local directions of motion, weighted by
+#   how recent they are; if those are right on average, so is it, to a degree or two.
+# What happens: it looks for the fullest of twelve bins of the local directions and averages what
+#   lies within 45 degrees of that one. Local directions come from pixels: a front of a few pixels a
+#   frame has most of its gradients along the axes and the diagonals, whatever the front does, and
+#   so the wrong bin wins. Of a ball of 60 pixels that moves by 2 a frame in 24 directions the plain
+#   mean of the local directions is right to a degree in all; the global one is off by 18 degrees
+#   r.m.s. and 30 at worst, right along the axes only. For silhouettes instead of differences it is
+#   19 and 33. A ramp of times as smooth as no picture has it is right to 0.1, which is how one
+#   would test it.
+# What follows: directions of moving objects should be taken from the local ones and their mask (a
+#   mean of sines and cosines), or from flow. A histogram of global orientations that shows 0, 90,
+#   180 and 270 tells about pixels, not about people.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

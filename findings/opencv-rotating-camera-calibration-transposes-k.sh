@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # OpenCV calibrates a rotating camera of f = 525 as 615 by 564 with a skew of 125, from exact homographies
 #
-# One would swear: calibrateRotatingCamera takes homographies K R K^-1 between views of a camera that only
-#   turns and returns K, with principal point and skew, as its algebra allows; four exact ones give K to
-#   rounding.
-# What happens: it finds W = K K^T right, and takes Cholesky's factor of it, W = L L^T, transposed for K. L^T has the
-#   shape of a camera matrix and is none: L^T L is not W. For f = 525 and (320, 240) it is (614.8, 124.9, 0.52; 0,
-#   563.6, 0.31; 0, 0, 0.795), for f = 300 (438.6, 175.1, ..; 0, 342.0, ..), and it returns true. The right factor of the same
-#   W, the upper one, is K to a millionth. If pixels are counted from the principal point, as the stitcher
-#   counts them from the middle of the picture, both factors are diagonal and all is well; a principal point 20
-#   pixels beside the middle comes out as 0.04.
-# What follows: self-calibration from pure rotation (a turning RGB-D camera, a panorama at a run's start)
-#   can use it with centred pixels and a known centre only. Of K it says nothing but f; W = K'^T K' of what it returns
-#   and a factorization from the lower right corner give the rest.
+# One would swear: calibrateRotatingCamera takes homographies K R K^-1 between views of a camera
+#   that only turns and returns K, with principal point and skew, as its algebra allows; four exact
+#   ones give K to rounding.
+# What happens: it finds W = K K^T right, and takes Cholesky's factor of it, W = L L^T, transposed
+#   for K. L^T has the shape of a camera matrix and is none: L^T L is not W. For f = 525 and (320,
+#   240) it is (614.8, 124.9, 0.52; 0, 563.6, 0.31; 0, 0, 0.795), for f = 300 (438.6, 175.1, ..; 0,
+#   342.0, ..), and it returns true. The right factor of the same W, the upper one, is K to a
+#   millionth. If pixels are counted from the principal point, as the stitcher counts them from the
+#   middle of the picture, both factors are diagonal and all is well; a principal point 20 pixels
+#   beside the middle comes out as 0.04.
+# What follows: self-calibration from pure rotation (a turning RGB-D camera, a panorama at a run's
+#   start) can use it with centred pixels and a known centre only. Of K it says nothing but f; W =
+#   K'^T K' of what it returns and a factorization from the lower right corner give the rest.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -3,15 +3,15 @@
 #
 # One would swear: what fills a hole is a weighted mean of what is around it; in a wall of constant
 #   depth that is the depth of the wall, and metres or millimetres are the same picture times 1000.
-# What happens: INPAINT_TELEA takes pictures of floats and has the sums of the bytes it was made for.
-#   To each mean it adds a half, for rounding, though nothing is cut off afterwards, and a gradient of
-#   length one, whatever the unit: never more than some grey levels, but here they are metres. One
-#   missing pixel at 2 m becomes 2.5, at -3 it becomes -2.5, at 0 it is 0.5. In a slanted wall at 1.8
-#   to 3.9 m single pixels come out 1.8 m too far, and holes of 10 x 10 between 0.8 m too near and more
-#   than a metre too far. The same picture in millimetres, as floats or 16 bits, is right to 14 mm, and
-#   INPAINT_NS is right in metres too.
-# What follows: depth is to be inpainted in millimetres, disparity and flow in sixteenths or less, or by
-#   INPAINT_NS. Points that hang half a metre behind the edges of all holes come from this.
+# What happens: INPAINT_TELEA takes pictures of floats and has the sums of the bytes it was made
+#   for. To each mean it adds a half, for rounding, though nothing is cut off afterwards, and a
+#   gradient of length one, whatever the unit: never more than some grey levels, but here they are
+#   metres. One missing pixel at 2 m becomes 2.5, at -3 it becomes -2.5, at 0 it is 0.5. In a
+#   slanted wall at 1.8 to 3.9 m single pixels come out 1.8 m too far, and holes of 10 x 10 between
+#   0.8 m too near and more than a metre too far. The same picture in millimetres, as floats or 16
+#   bits, is right to 14 mm, and INPAINT_NS is right in metres too.
+# What follows: depth is to be inpainted in millimetres, disparity and flow in sixteenths or less,
+#   or by INPAINT_NS. Points that hang half a metre behind the edges of all holes come from this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

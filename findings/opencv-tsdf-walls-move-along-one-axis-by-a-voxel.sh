@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # OpenCV's TSDF volume puts all that it maps a voxel off along its z axis, and its points half of one
 #
-# One would swear: a wall that is integrated from a known pose and cast from that pose again is where it
-#   was measured, to a tenth of a voxel, and the points that are fetched lie on what is cast.
-# What happens: cast, it is a whole voxel nearer to the volume's side of small z: a wall at 1.8 m comes
-#   back at 1.788 with 11.7 mm voxels, at 1.754 with 47 mm. Seen from behind, the same wall is a voxel
-#   too far, so it is no matter of truncation or of the view; and a wall that the camera sees along the
-#   volume's x or y is right to 0.03 voxels. fetchPointsNormals, meanwhile, adds half a voxel in x, y and
-#   z: its points lie half a voxel off there, and from the cast ones by half a voxel in z too.
-# What follows: of a map by kinfu volumes, 1 cm at common settings, the shift hides in the poses as long
-#   as all is seen along z, and opens where the camera turns by 90 degrees or walks around: walls double.
-#   Casts are to be moved by a voxel along z and points by half of one, back, before they are
-#   compared with depth or with ground truth.
+# One would swear: a wall that is integrated from a known pose and cast from that pose again is
+#   where it was measured, to a tenth of a voxel, and the points that are fetched lie on what is
+#   cast.
+# What happens: cast, it is a whole voxel nearer to the volume's side of small z: a wall at 1.8 m
+#   comes back at 1.788 with 11.7 mm voxels, at 1.754 with 47 mm. Seen from behind, the same wall is
+#   a voxel too far, so it is no matter of truncation or of the view; and a wall that the camera
+#   sees along the volume's x or y is right to 0.03 voxels. fetchPointsNormals, meanwhile, adds half
+#   a voxel in x, y and z: its points lie half a voxel off there, and from the cast ones by half a
+#   voxel in z too.
+# What follows: of a map by kinfu volumes, 1 cm at common settings, the shift hides in the poses as
+#   long as all is seen along z, and opens where the camera turns by 90 degrees or walks around:
+#   walls double. Casts are to be moved by a voxel along z and points by half of one, back, before
+#   they are compared with depth or with ground truth.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # OpenCV's videostab tells a similarity's error as 0.005 where a rigid motion's is 0.7: the unit is another
 #
-# One would swear: estimateGlobalMotionLeastSquares fits the model that it is asked for and tells the
-#   root of the mean squared residual in the unit of the points; a model that contains another has a smaller
-#   error, by the few per cent that its parameters explain.
-# What happens: for MM_TRANSLATION, MM_ROTATION and MM_RIGID it is in pixels. For MM_TRANSLATION_AND_SCALE,
-#   MM_SIMILARITY and MM_AFFINE the points are moved and shrunk first, in place, and the error is that of the shrunk
-#   ones: for points all over 640 x 480 with half a pixel of noise 0.72 by the first three and 0.0047
-#   by the others, a 150th; of the motions themselves all six are right, to 0.1 pixels. What is
-#   left in the two vectors of points differs by model in the same way: the caller's pixels, or numbers about 1 around 0.
-#   estimateGlobalMotionRansac hands the same error on, and keeps the points.
-# What follows: the model is not to be chosen by this error, and no threshold fits all six. Residuals should be
-#   worked out from the motion and a copy of the points.
+# One would swear: estimateGlobalMotionLeastSquares fits the model that it is asked for and tells
+#   the root of the mean squared residual in the unit of the points; a model that contains another
+#   has a smaller error, by the few per cent that its parameters explain.
+# What happens: for MM_TRANSLATION, MM_ROTATION and MM_RIGID it is in pixels. For
+#   MM_TRANSLATION_AND_SCALE, MM_SIMILARITY and MM_AFFINE the points are moved and shrunk first, in
+#   place, and the error is that of the shrunk ones: for points all over 640 x 480 with half a pixel
+#   of noise 0.72 by the first three and 0.0047 by the others, a 150th; of the motions themselves
+#   all six are right, to 0.1 pixels. What is left in the two vectors of points differs by model in
+#   the same way: the caller's pixels, or numbers about 1 around 0. estimateGlobalMotionRansac hands
+#   the same error on, and keeps the points.
+# What follows: the model is not to be chosen by this error, and no threshold fits all six.
+#   Residuals should be worked out from the motion and a copy of the points.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

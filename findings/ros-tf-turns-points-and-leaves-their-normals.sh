@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # tf2 turns the points of a cloud and leaves their normals as they were, in C++ and in Python
 #
-# One would swear: to transform a PointCloud2 into another frame is to transform what is in it that has a
-#   direction: x y z, and normal_x normal_y normal_z, which are the names that PCL and ROS give to
-#   normals; the shape of the cloud stays.
-# What happens: doTransform and do_transform_cloud of tf2_sensor_msgs take x, y and z and copy the rest.
-#   A wall that is looked at along z has the normal (0, 0, -1) in the camera's frame; in a map in which the
-#   camera looks along x its points are right and the normal is still (0, 0, -1): 90 degrees off, along
-#   the wall instead of out of it. viewpoints (vp_x, vp_y, vp_z) stay in the camera's frame too. The frame_id says map.
-#   And Python makes one row of an organized cloud, 12 x 1 of 4 x 3, where C++ keeps 4 x 3.
-# What follows: normals are to be estimated after the transform or turned by hand; point-to-plane ICP
-#   and surfels that are fed by tf drift as soon as the camera has turned, and not before. It is seen by
-#   looking at one point's normal, and by no test of a camera that only moves.
+# One would swear: to transform a PointCloud2 into another frame is to transform what is in it that
+#   has a direction: x y z, and normal_x normal_y normal_z, which are the names that PCL and ROS
+#   give to normals; the shape of the cloud stays.
+# What happens: doTransform and do_transform_cloud of tf2_sensor_msgs take x, y and z and copy the
+#   rest. A wall that is looked at along z has the normal (0, 0, -1) in the camera's frame; in a map
+#   in which the camera looks along x its points are right and the normal is still (0, 0, -1): 90
+#   degrees off, along the wall instead of out of it. viewpoints (vp_x, vp_y, vp_z) stay in the
+#   camera's frame too. The frame_id says map. And Python makes one row of an organized cloud, 12 x
+#   1 of 4 x 3, where C++ keeps 4 x 3.
+# What follows: normals are to be estimated after the transform or turned by hand; point-to-plane
+#   ICP and surfels that are fed by tf drift as soon as the camera has turned, and not before. It is
+#   seen by looking at one point's normal, and by no test of a camera that only moves.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # ViSP interpolates a depth picture of floats to whole metres
 #
-# One would swear: vpImage<float>::getValue(i, j) is bilinear interpolation "at sub-pixel position" of a
-#   picture of floats; at the pixels themselves it gives the pixels; what it does for double it does for
-#   float.
+# One would swear: vpImage<float>::getValue(i, j) is bilinear interpolation "at sub-pixel position"
+#   of a picture of floats; at the pixels themselves it gives the pixels; what it does for double it
+#   does for float.
 # What happens: there is one text for all kinds of pixels, which rounds its result to a whole number
-#   before it is cast to the kind, and a second one for double, which does not. A wall at 1.4 m is at 1,
-#   one at 1.6 at 2, asked for at whole pixels or between them, by two numbers or by a vpImagePoint; 0.3
-#   m are none. double is right, [i][j] is right for float. Bytes, for which there is a third text, are cut
-#   instead of rounded: on average half a grey level is missing between pixels.
-# What follows: float is the kind in which ViSP's own vpKinect hands out depth, in metres. Depth that is
-#   to be looked up between pixels is to be kept in vpImage<double>, or in 16-bit millimetres, where it is
-#   rounded to one; a cloud in sheets a metre apart comes from this.
+#   before it is cast to the kind, and a second one for double, which does not. A wall at 1.4 m is
+#   at 1, one at 1.6 at 2, asked for at whole pixels or between them, by two numbers or by a
+#   vpImagePoint; 0.3 m are none. double is right, [i][j] is right for float. Bytes, for which there
+#   is a third text, are cut instead of rounded: on average half a grey level is missing between
+#   pixels.
+# What follows: float is the kind in which ViSP's own vpKinect hands out depth, in metres. Depth
+#   that is to be looked up between pixels is to be kept in vpImage<double>, or in 16-bit
+#   millimetres, where it is rounded to one; a cloud in sheets a metre apart comes from this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }
