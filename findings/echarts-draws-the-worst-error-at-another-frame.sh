@@ -5,11 +5,10 @@
 #   that pointing at a peak tells its frame.
 # What happens: of each piece the largest value is kept and put at the time of the piece's middle: one
 #   point that never was, of one frame's stamp and another's error. 10000 frames of 30 Hz on 600
-#   pixels make pieces of 17, so that peaks are up to 0.3 s off; the tooltip shows such a pair. Pieces are of equal
-#   numbers of points, not of equal time: where the camera paused for 200 s in the midst of one,
-#   an error just before the pause is drawn just behind it, 200 s late. "min", "average" and "sum" do
-#   the same. "minmax" keeps times, and so does "lttb", which however drops one of two peaks 0.1 s
-#   apart. The data one gives is not changed; what the chart's own data says after drawing is.
+#   pixels make pieces of 17, so that peaks are up to 0.3 s off. Pieces are of equal numbers of points,
+#   not of equal time: where the camera paused for 200 s in the midst of one, an error just before the
+#   pause is drawn just behind it, 200 s late. "minmax" keeps times, and so does "lttb", which however
+#   drops one of two peaks 0.1 s apart.
 # What follows: sampling "minmax", or a peak's time from one's own array by its value; and a null
 #   between two rows where there is a pause does not help, as pieces go on across it.
 set -u

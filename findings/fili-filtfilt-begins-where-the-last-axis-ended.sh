@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # fili's filtfilt begins each axis where the last one ended, and the first at nothing
 #
-# One would swear: filtfilt, forwards and back, has no delay and, of a camera that stands still, gives that
-#   place; the same input has the same output, whatever the filter has seen before.
+# One would swear: filtfilt, forwards and back, has no delay and, of a camera that stands still, gives
+#   that place; the same input has the same output, whatever the filter has seen before.
 # What happens: the filter is not set to the input's first value, nor set back between calls. Of 100 m
-#   throughout the first sample comes out as 60, 11 of 300 are off by more than one in a hundred (all at the
+#   throughout the first sample comes out as 60, 11 of 300 are off by more than 1 m (all at the
 #   beginning: the way back begins in the state in which the way there has ended, so that the end
 #   is right). The next axis filtered with the same object, 0 m throughout, begins at -3.4; an axis
 #   of 100 m after one of 5000 at -109. The same input twice gives two outputs. singleStep

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Miller and gnuplot's stats find 9 ppm of drift between two clocks that drift by 20
 #
-# One would swear: a line through the stamps of a camera and the offsets of an IMU's, ten minutes at 30 Hz
-#   and no noise, has the slope that is there; mlr stats2 -a linreg-ols and gnuplot's stats reckon in
+# One would swear: a line through the stamps of a camera and the offsets of an IMU's, ten minutes at
+#   30 Hz and no noise, has the slope that is there; mlr stats2 -a linreg-ols and gnuplot's stats reckon in
 #   doubles, which know Unix seconds to a quarter of a microsecond.
 # What happens: both subtract sums of squares that are alike in all but their last digits. Of 20 ppm they
 #   find 9.3 each, a number that looks like a drift. Of one clock over the other, whose slope is

@@ -7,7 +7,7 @@
 #   filling as values. The count, 16 bits, of every frame becomes [100, -32767], the state, 8 bits,
 #   [0, 129, 129, 129], and a row of three 16-bit numbers has a fourth. Doubles and floats beside
 #   them are right, as is any such variable that is alone in its file (the format knows no padding
-#   there) or has no record dimension. BYTE is signed in the format; here -1 is 255. What comes out
+#   there). BYTE is signed in the format; here -1 is 255. What comes out
 #   differs in its nesting too: numbers for t, arrays for the count; count - 50 is NaN.
 # What follows: take as many values of each record as the variable's own dimensions say, and give
 #   bytes their sign; or write counts and states as 32-bit integers. A plot that has -32767 at every

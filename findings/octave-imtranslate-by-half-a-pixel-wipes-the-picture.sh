@@ -10,8 +10,8 @@
 #   the last digit; at 0.25 it has 0.71 of its contrast and its waves, of 21 pixels, lie 2.7 pixels
 #   from where they belong. It says nothing. With the frequencies counted on both sides of 0 the
 #   same lines are exact to 1e-13.
-# What follows: flow and correlation are not to be tried on pictures from imtranslate; interp2 or
-#   circshift with own phases are right. An accuracy that is best for whole pixels and nothing at
+# What follows: flow and correlation are not to be tried on pictures from imtranslate; interp2, or
+#   phases counted on both sides of 0, will do. An accuracy that is best for whole pixels and nothing at
 #   half of one may come from the pictures.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT

@@ -5,8 +5,8 @@
 #   constant, a height of 100 m, stays what it is.
 # What happens: the filter that comes with it is a Chebyshev one of order 8 with a ripple of 0.05 dB,
 #   and of even order such a filter has its lowest gain at 0 Hz. It is run forwards and back: 100
-#   becomes 98.855, by SciPy and by Octave's signal package to the last digit, for every factor from 2
-#   to 13. A circle of 3 m keeps its shape, is 0.98862 of its size and lies 26 cm nearer to the origin; an
+#   becomes 98.855, by SciPy and by Octave's signal package to the last digit, for factors of 2 to
+#   13. A circle of 3 m keeps its shape, is 0.98862 of its size and lies 26 cm nearer to the origin; an
 #   alignment takes both out, so that a run is said to have a scale of 1.0115, and no plot after it
 #   shows anything. Forwards only (zero_phase=False) it is 99.426. With an odd order (7), or
 #   ftype "fir", 100 stays 100.

@@ -3,13 +3,13 @@
 #
 # One would swear: CatmullRomCurve3 goes through all points given, so its getLength is at least the sum
 #   of the distances between them, and getPointAt(0.5) is where half of the way is done.
-# What happens: getLength, getPointAt and getSpacedPoints measure it at 201 places, spread evenly over
-#   the poses, with straight lines between; of 5100 poses, 170 s at 30 Hz, that is one in 25. A camera
+# What happens: getLength and getPointAt measure it at 201 places, spread evenly over the poses,
+#   with straight lines between; of 5100 poses, 170 s at 30 Hz, that is one in 25. A camera
 #   that swings before a desk comes out with 105 m of its 133, a walk with steps of 3 cm with 170 of
 #   176, which looks like smoothing and hangs on the number of poses: 20 s of the same are right. Half
 #   of the way, getPointAt(0.5), shifts by as much as the parts are missed unevenly. With
 #   arcLengthDivisions set to four times the number of poses all are right, as a CurvePath of straight
-#   pieces is without. SplineCurve and the other single curves do the same.
+#   pieces is without. SplineCurve does the same.
 # What follows: set arcLengthDivisions, or sum the distances oneself; a path length in a viewer that
 #   is shorter than evo's and gets worse as the recording gets longer has this.
 set -u

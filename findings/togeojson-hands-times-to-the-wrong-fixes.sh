@@ -6,8 +6,8 @@
 # What happens: times (coordinateProperties.times) has an entry only for fixes that have a time: of four
 #   fixes of which the second has none, three times come, and the third fix has the time of the
 #   fourth. Each such fix moves all that follow by one more: in a log at 1 Hz with 5 of 100 times
-#   missing the last places have stamps 5 s too late, 7 m for a walker. Heart rates (and cadence, and
-#   power) of the same fixes have null in the gap, and stay in step; heights that are missing
+#   missing the last places have stamps 5 s too late, 7 m for a walker. Heart rates of the same
+#   fixes have null in the gap, and stay in step; heights that are missing
 #   shorten their own coordinate only. A segment of one fix is dropped with its time.
 #   togpx, which writes GPX from GeoJSON, does not look into coordinateProperties at all: through both
 #   a track loses every time.
