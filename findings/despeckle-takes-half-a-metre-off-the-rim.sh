@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # ImageMagick's and GraphicsMagick's despeckle takes half a metre off the rim of 16-bit depth
 #
-# One would swear: -despeckle takes single odd pixels away; a flat picture has none and comes back as it
-#   was, and what it puts in place of a speck is like the pixels around.
+# One would swear: -despeckle takes single odd pixels away; a flat picture has none and comes back as
+#   it was, and what it puts in place of a speck is like the pixels around.
 # What happens: it moves every pixel towards its neighbours by fixed steps of 257 (one grey level of
-#   8-bit pictures), and takes what lies beyond the rim for black: a wall at
-#   2003 mm has 1489 all along its rim and 461 in its corners. A single 0 (no reading) in 2400 mm becomes
-#   2056, and of a hole of 3 x 10 the middle becomes 514: readings that nobody made, half a metre
-#   from the camera. The edge between 2.5 and 4 m has 2747 and 3486 in it. A mask of 0 and 255 comes out
-#   with nine values. A ramp of 10 mm a pixel, away from all that, is as it was. Both programs give
-#   the same numbers.
-# What follows: never on depth or labels; a median (-statistic median 3x3, -median 1) leaves the rim and
-#   invents no values. A frame of nearer points around every cloud is this.
+#   8-bit pictures), and takes what lies beyond the rim for black: a wall at 2003 mm has 1489 all
+#   along its rim and 461 in its corners. A single 0 (no reading) in 2400 mm becomes 2056, and of a
+#   hole of 3 x 10 the middle becomes 514: readings that nobody made, half a metre from the camera.
+#   The edge between 2.5 and 4 m has 2747 and 3486 in it. A mask of 0 and 255 comes out with nine
+#   values. A ramp of 10 mm a pixel, away from all that, is as it was. Both programs give the same
+#   numbers.
+# What follows: never on depth or labels; a median (-statistic median 3x3, -median 1) leaves the rim
+#   and invents no values. A frame of nearer points around every cloud is this.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

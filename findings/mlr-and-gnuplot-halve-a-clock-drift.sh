@@ -2,16 +2,16 @@
 # Miller and gnuplot's stats find 9 ppm of drift between two clocks that drift by 20
 #
 # One would swear: a line through the stamps of a camera and the offsets of an IMU's, ten minutes at
-#   30 Hz and no noise, has the slope that is there; mlr stats2 -a linreg-ols and gnuplot's stats reckon in
-#   doubles, which know Unix seconds to a quarter of a microsecond.
-# What happens: both subtract sums of squares that are alike in all but their last digits. Of 20 ppm they
-#   find 9.3 each, a number that looks like a drift. Of one clock over the other, whose slope is
+#   30 Hz and no noise, has the slope that is there; mlr stats2 -a linreg-ols and gnuplot's stats
+#   reckon in doubles, which know Unix seconds to a quarter of a microsecond.
+# What happens: both subtract sums of squares that are alike in all but their last digits. Of 20 ppm
+#   they find 9.3 each, a number that looks like a drift. Of one clock over the other, whose slope is
 #   1.00002, both make 0.72, mlr with an r2 of 1.15 and a correlation of 1.07. mlr's stddev of ten
-#   minutes of stamps is 254 s for 173, of 20 s of them 0. Nothing is said. Seconds from the first
-#   row are right in both, and so are, over Unix seconds, gnuplot's STATS_stddev_x and datamash's
-#   sstdev and pcov.
-# What follows: take the first stamp off before any statistic (mlr put '$cam -= 1403636579' in the same
-#   call). A correlation of more than 1 is this; a drift of half its size shows nothing.
+#   minutes of stamps is 254 s for 173, of 20 s of them 0. Nothing is said. Seconds from the first row
+#   are right in both, and so are, over Unix seconds, gnuplot's STATS_stddev_x and datamash's sstdev
+#   and pcov.
+# What follows: take the first stamp off before any statistic (mlr put '$cam -= 1403636579' in the
+#   same call). A correlation of more than 1 is this; a drift of half its size shows nothing.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

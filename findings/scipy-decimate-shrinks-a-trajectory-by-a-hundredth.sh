@@ -5,13 +5,14 @@
 #   constant, a height of 100 m, stays what it is.
 # What happens: the filter that comes with it is a Chebyshev one of order 8 with a ripple of 0.05 dB,
 #   and of even order such a filter has its lowest gain at 0 Hz. It is run forwards and back: 100
-#   becomes 98.855, by SciPy and by Octave's signal package to the last digit, for factors of 2 to
-#   13. A circle of 3 m keeps its shape, is 0.98862 of its size and lies 26 cm nearer to the origin; an
+#   becomes 98.855, by SciPy and by Octave's signal package to the last digit, for factors of 2 to 13.
+#   A circle of 3 m keeps its shape, is 0.98862 of its size and lies 26 cm nearer to the origin; an
 #   alignment takes both out, so that a run is said to have a scale of 1.0115, and no plot after it
-#   shows anything. Forwards only (zero_phase=False) it is 99.426. With an odd order (7), or
-#   ftype "fir", 100 stays 100.
-# What follows: decimate poses and IMU readings with ftype="fir" or n=7, or take the mean of q samples; a
-#   scale error of 1.15 per cent in a benchmark that thins its truth is to be looked for there.
+#   shows anything. Forwards only (zero_phase=False) it is 99.426. With an odd order (7), or ftype
+#   "fir", 100 stays 100.
+# What follows: decimate poses and IMU readings with ftype="fir" or n=7, or take the mean of q
+#   samples; a scale error of 1.15 per cent in a benchmark that thins its truth is to be looked for
+#   there.
 set -u
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT
 have() { dpkg-query -W -f '${Version}' "$1" 2>/dev/null; }

@@ -3,14 +3,14 @@
 #
 # One would swear: an EXR with 32-bit floats comes out as 32-bit floats, row by row from the top as in
 #   the file, and what a loader changes is in the texture it returns (flipY).
-# What happens: data is a Uint16Array of halves whatever the file holds: of a wall that leans away from 2
-#   to 4.4 m, a millimetre a pixel, 17 steps of 64 are left in a row (4.350 and 4.351 are both
+# What happens: data is a Uint16Array of halves whatever the file holds: of a wall that leans away
+#   from 2 to 4.4 m, a millimetre a pixel, 17 steps of 64 are left in a row (4.350 and 4.351 are both
 #   4.34765625; beyond 4 m a half knows 4 mm, beyond 8 m 8 mm). Its first row is the picture's last,
 #   with flipY false, so that depth taken row by row is off by up to 2.35 m here. The one channel Y
 #   comes four numbers a pixel. setDataType(FloatType) gives the floats as they are; the rows stay
 #   from below.
-# What follows: setDataType(FloatType) before parse, and row h - 1 - y for y, wherever numbers are taken
-#   from the data (unprojecting, comparing); only a GPU that draws it needs neither.
+# What follows: setDataType(FloatType) before parse, and row h - 1 - y for y, wherever numbers are
+#   taken from the data (unprojecting, comparing); only a GPU that draws it needs neither.
 set -u
 three=0.187.0
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT

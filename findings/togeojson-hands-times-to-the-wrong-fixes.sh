@@ -3,16 +3,15 @@
 #
 # One would swear: a GPX track's times in the GeoJSON stand beside its coordinates, one for one, with
 #   null where a fix had none; other values are kept so.
-# What happens: times (coordinateProperties.times) has an entry only for fixes that have a time: of four
-#   fixes of which the second has none, three times come, and the third fix has the time of the
+# What happens: times (coordinateProperties.times) has an entry only for fixes that have a time: of
+#   four fixes of which the second has none, three times come, and the third fix has the time of the
 #   fourth. Each such fix moves all that follow by one more: in a log at 1 Hz with 5 of 100 times
-#   missing the last places have stamps 5 s too late, 7 m for a walker. Heart rates of the same
-#   fixes have null in the gap, and stay in step; heights that are missing
-#   shorten their own coordinate only. A segment of one fix is dropped with its time.
-#   togpx, which writes GPX from GeoJSON, does not look into coordinateProperties at all: through both
-#   a track loses every time.
-# What follows: compare the lengths of times and coordinates before the first use, or read GPX oneself; a
-#   truth that lags behind the estimate by whole seconds, more towards its end, has this.
+#   missing the last places have stamps 5 s too late, 7 m for a walker. Heart rates of the same fixes
+#   have null in the gap, and stay in step; heights that are missing shorten their own coordinate
+#   only. A segment of one fix is dropped with its time. togpx, which writes GPX from GeoJSON, does
+#   not look into coordinateProperties at all: through both a track loses every time.
+# What follows: compare the lengths of times and coordinates before the first use, or read GPX
+#   oneself; a truth that lags behind the estimate by whole seconds, more towards its end, has this.
 set -u
 version=7.1.3 xmldom=0.9.8 togpx=0.5.4
 tmp=$(mktemp -d) && trap 'rm -rf "$tmp"' EXIT

@@ -4,12 +4,12 @@
 # One would swear: a straight line through points that lie on one is that line, over stamps as over
 #   seconds from the start, and r squared is 1.
 # What happens: regressionLinear, which Vega's and Vega-Lite's regression takes unasked, subtracts the
-#   squares of means that are alike in all their digits. An error that rises by 60 cm in 10 minutes, Unix
-#   seconds, 30 Hz, no noise at all, has a line that falls by 16 cm and starts at 40; with dates
-#   (milliseconds, as a time axis has them) it falls by 1 cm. Over 2 seconds it is level. Only
-#   hours of dates are right. r squared, where one looks, is -0.6. "log" and a polynomial of order 1
-#   do the same; "quad" and a polynomial of order 3, in the same file, take the mean off first and
-#   rise by 60.0 cm. Seconds from the first frame, and of the GPS week, are right.
+#   squares of means that are alike in all their digits. An error that rises by 60 cm in 10 minutes,
+#   Unix seconds, 30 Hz, no noise at all, has a line that falls by 16 cm and starts at 40; with dates
+#   (milliseconds, as a time axis has them) it falls by 1 cm. Over 2 seconds it is level. Only hours
+#   of dates are right. r squared, where one looks, is -0.6. "log" and a polynomial of order 1 do the
+#   same; "quad" and a polynomial of order 3, in the same file, take the mean off first and rise by
+#   60.0 cm. Seconds from the first frame, and of the GPS week, are right.
 # What follows: give regression a field with seconds from the start (and the axis the stamps), or
 #   method "quad"; a trend in a dashboard that contradicts its own points has this.
 set -u
