@@ -57,18 +57,16 @@ struct SequenceNeeds {
 inline constexpr const char* kSequenceHelp =
     "A folder (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
     "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/), an archive of one (.tgz, .tar, .zip, "
-    "…), a bag "
-    "(.bag, .mcap, .db3), generated:KIND, or generated:KIND:stereo";
+    "…), a bag (.bag, .mcap, .db3), generated:KIND, or generated:KIND:stereo";
 inline constexpr const char* kSequencesHelp =
     "Folders (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
     "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/), archives of them (.tgz, .tar, .zip, "
-    "…), bags "
-    "(.bag, .mcap, .db3), generated:KIND, generated:KIND:stereo, or generated:all";
+    "…), bags (.bag, .mcap, .db3), generated:KIND, generated:KIND:stereo, or generated:all";
 inline constexpr const char* kSequenceOrRunHelp =
     "A folder (TUM RGB-D, Bonn, ICL-NUIM, 7-Scenes, Replica, ScanNet, OpenLORIS, ETH3D, Redwood, Open3D; "
     "stereo as KITTI odometry, EuRoC, TartanAir or left/ and right/; colour frames), an archive of one "
-    "(.tgz, .tar, "
-    ".zip, …), a bag (.bag, .mcap, .db3), a video (.mp4, .mkv, .avi), generated:KIND, generated:KIND:stereo, "
+    "(.tgz, .tar, .zip, …), a bag (.bag, .mcap, .db3), a video (.mp4, .mkv, .avi), generated:KIND, "
+    "generated:KIND:stereo, "
     "or a finished run's folder";
 
 /// The options that say which frames, and how they are to be read.

@@ -225,15 +225,13 @@ Table details_table(const BenchmarkResults& results) {
 
 std::string details_legend() {
   return "- pairs: poses 1 s apart, of which RPE 1 s is the RMSE; mask precision, recall and IoU: of all "
-         "frames' "
-         "pixels together, 0 to 1; forward recall: of the forward mask alone, of methods that have one\n"
+         "frames' pixels together, 0 to 1; forward recall: of the forward mask alone, of methods that have "
+         "one\n"
          "- removed rightly, wrongly: features of all frames together, by whether the true mask holds them; "
          "median, p99: tracking time a frame; ORB units: that median, in times of one cv::ORB of 1000 "
-         "features on "
-         "the same frame\n"
+         "features on the same frame\n"
          "- a dash: there is no such figure, for want of truth, because the method removes nothing, or "
-         "because "
-         "it judges features and makes no mask\n";
+         "because it judges features and makes no mask\n";
 }
 
 std::vector<RunNote> notes_on(const BenchmarkResults& results) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/counted.hpp"
 #include "core/motion/masks/outside_masks.hpp"
 #include "core/motion/methods.hpp"
 #include "core/sequence/source.hpp"
@@ -30,24 +31,29 @@ std::string why_no_true_masks(const FrameSource& source, const std::string& wher
 }
 
 std::string why_no_mask_fits(const Config& config, const FrameSource& source) {
-  constexpr int kMostFrames = 60;  // evenly chosen: masks of a sixtieth of the frames, in one piece, are met
   const OutsideMasks outside(config);
   if (!outside.any() || !outside.problem().empty()) return "";
-  const int count = std::min(kMostFrames, source.size());
   std::string first;
-  for (int i = 0; i < count; ++i) {
-    const Frame frame = source.read(count == 1 ? 0 : i * (source.size() - 1) / (count - 1));
-    if (!frame.readable()) continue;
+  const auto fits = [&](int index) {
+    const Frame frame = source.read(index);
+    if (!frame.readable()) return false;
     const auto found = outside.read(frame);
-    if (!found->mask.empty()) return "";
-    if (first.empty())
+    if (found->mask.empty() && first.empty())
       first = fmt::format("frame {}, {}{:.3f} s: {}", frame.index,
                           frame.name.empty() ? "" : fmt::format("named '{}', ", frame.name), frame.timestamp,
                           found->problem);
-  }
+    return !found->mask.empty();
+  };
+  // Usually one of few frames has one; that none has is said when all were asked.
+  constexpr int kFew = 60;
+  const int step = std::max(1, source.size() / kFew);
+  for (int i = 0; i < source.size(); i += step)
+    if (fits(i)) return "";
+  for (int i = 0; i < source.size(); ++i)
+    if (i % step != 0 && fits(i)) return "";
   if (first.empty()) return "";  // no frame can be read: that is told elsewhere
-  return fmt::format("{}: none of {} frames looked at has a mask that can be used ({}). {}", source.name(),
-                     count, first, fmt::join(outside.namings(), "; "));
+  return fmt::format("{}: none of {} has a mask that can be used ({}). {}", source.name(),
+                     counted(source.size(), "frame"), first, fmt::join(outside.namings(), "; "));
 }
 
 }  // namespace stillpoint

@@ -17,8 +17,8 @@ class FrameSource;
 [[nodiscard]] std::string why_no_true_masks(const FrameSource& source, const std::string& where);
 
 /// Why none of the masks that a config names is of use to a sequence: none belongs to one of its frames, is
-/// of their size and holds what can be taken out. Frames are read until one has a mask, at most 60, evenly
-/// chosen. "" where one has, or none are named.
+/// of their size and holds what can be taken out. Frames are read until one has a mask, all where none has.
+/// "" where one has, or none are named.
 [[nodiscard]] std::string why_no_mask_fits(const Config& config, const FrameSource& source);
 
 }  // namespace stillpoint

@@ -132,7 +132,7 @@ TEST_F(OutsideMasksCli, WhatCannotBeMeantIsRefused) {
   fs::create_directories(folder_->path("other"));
   cv::imwrite(folder_->path("other/hall.png"), mask);
   expect_one_sentence(run_cli({"run", folder_->path("film"), "--masks", folder_->path("other")}),
-                      "none of 8 frames looked at has a mask that can be used");
+                      "none of 8 frames has a mask that can be used");
   expect_one_sentence(run_cli({"run", folder_->path("film"), "--method", "masks"}),
                       "method masks removes by masks made elsewhere: name them by --masks DIR|LIST");
   expect_one_sentence(run_cli({"run", folder_->path("film"), "--masks", folder_->path("nowhere")}),

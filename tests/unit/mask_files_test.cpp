@@ -232,9 +232,10 @@ TEST(MaskFiles, ThatTakeOutNothingAreTold) {
 /// Frames of no picture to speak of, as a sequence.
 class PlainFrames final : public FrameSource {
  public:
+  explicit PlainFrames(int frames) : frames_(frames) {}
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const Camera& camera() const override { return camera_; }
-  [[nodiscard]] int size() const override { return 4; }
+  [[nodiscard]] int size() const override { return frames_; }
   [[nodiscard]] double timestamp(int index) const override { return 1000.0 + 0.1 * index; }
   [[nodiscard]] Frame read(int index) const override {
     return frame(index, fmt::format("{:.6f}", timestamp(index)), timestamp(index));
@@ -246,6 +247,7 @@ class PlainFrames final : public FrameSource {
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return told_; }
 
  private:
+  int frames_;
   std::string name_ = "kitchen";
   Camera camera_;
   Trajectory none_;
@@ -253,27 +255,31 @@ class PlainFrames final : public FrameSource {
 };
 
 TEST(MaskFiles, ThatBelongToNoFrameAreRefusedWithTheirNames) {
-  const PlainFrames source;
-  const auto why = [&source](const TemporaryFolder& folder) {
+  const PlainFrames source(4), long_source(200);
+  const auto why = [&](const TemporaryFolder& folder, bool is_long = false) {
     Config config;
     config.of<MasksConfig>().sources = folder.path();
-    return why_no_mask_fits(config, source);
+    return why_no_mask_fits(config, is_long ? long_source : source);
   };
   EXPECT_EQ(why_no_mask_fits(Config{}, source), "");
   const TemporaryFolder other_day, other_names, other_size, one;
   other_day.write("5000000.000000.png", column(1));
   other_day.write("5000000.100000.png", column(1));
-  EXPECT_THAT(why(other_day),
-              AllOf(HasSubstr("kitchen: none of 4 frames looked at has a mask that can be used (frame "
-                              "0, named '1000.000000', 1000.000 s: "),
-                    HasSubstr("has no mask for this frame"),
-                    HasSubstr("its 2 files are of 5000000.000 s to 5000000.100 s")));
+  EXPECT_THAT(why(other_day), AllOf(HasSubstr("kitchen: none of 4 frames has a mask that can be used (frame "
+                                              "0, named '1000.000000', 1000.000 s: "),
+                                    HasSubstr("has no mask for this frame"),
+                                    HasSubstr("its 2 files are of 5000000.000 s to 5000000.100 s")));
   other_names.write("hall.png", column(1));
   EXPECT_THAT(why(other_names), HasSubstr("its one file is named by no numbers, 'hall' first"));
   other_size.write("1000.100000.png", cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)));
   EXPECT_THAT(why(other_size), HasSubstr("none of 4 frames"));
   one.write("1000.300000.png", column(1));  // the last frame's
   EXPECT_EQ(why(one), "");
+  // A few frames that somebody outlined are enough, wherever they are.
+  const TemporaryFolder outlined;
+  outlined.write("1010.100000.png", column(1));  // frame 101
+  EXPECT_EQ(why(outlined, true), "");
+  EXPECT_THAT(why(other_day, true), HasSubstr("kitchen: none of 200 frames has a mask"));
 }
 
 TEST(MaskFiles, WhatIsNearlyAllWhiteIsToldWithTheSwitch) {

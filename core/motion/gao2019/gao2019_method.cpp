@@ -237,8 +237,7 @@ MethodInfo gao2019_method() {
   info.title = "Gao et al. 2019";
   info.summary =
       "A background of blocks, a Gaussian and a candidate each, warped by a first pose and depth; moving is "
-      "where "
-      "variance grows.";
+      "where variance grows.";
   info.citation =
       "Gao C., Zhang Y., Wang X., Deng Y., Jiang H.: Semi-direct RGB-D SLAM algorithm for dynamic indoor "
       "environments, "
