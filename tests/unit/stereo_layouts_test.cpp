@@ -6,7 +6,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "core/evaluation/trajectory_metrics.hpp"
@@ -15,9 +14,8 @@
 #include "core/sequence/generated/generated_sequence.hpp"
 #include "core/sequence/image_file.hpp"
 #include "core/sequence/stereo/stereo_matcher.hpp"
-#include "core/sequence/stereo/stereo_rectification.hpp"
 #include "core/sequence/write_sequence.hpp"
-#include "tests/unit/temporary_folder.hpp"
+#include "tests/unit/stereo_miniature.hpp"
 
 namespace stillpoint {
 namespace {
@@ -27,48 +25,9 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kFrames = 5;
-
 bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
-
-/// One miniature for all tests of a layout: they copy what they change.
-const fs::path& miniature(SequenceLayout layout) {
-  static std::map<SequenceLayout, std::unique_ptr<TemporaryFolder>> made;
-  static std::map<SequenceLayout, fs::path> paths;
-  if (!made.contains(layout)) {
-    made[layout] = std::make_unique<TemporaryFolder>("miniature");
-    paths[layout] = made[layout]->path();
-    write_sequence(*make_generated_sequence("walking_xyz:stereo", kFrames, 1), paths[layout],
-                   {.force = true, .layout = layout});
-  }
-  return paths[layout];
-}
-
-/// A copy of a miniature that a test may spoil.
-struct Spoilt {
-  explicit Spoilt(SequenceLayout layout) {
-    fs::copy(miniature(layout), folder.path(), fs::copy_options::recursive);
-  }
-  [[nodiscard]] std::string error() const {
-    return input_error_of([this] { (void)open_sequence(folder.path()); });
-  }
-  [[nodiscard]] std::unique_ptr<FrameSource> open(const OpenOptions& options = {}) const {
-    return open_sequence(folder.path(), options);
-  }
-  void remove(const std::string& name) const { fs::remove_all(folder.path(name)); }
-  void rename(const std::string& from, const std::string& to) const {
-    fs::rename(folder.path(from), folder.path(to));
-  }
-  void replace(const std::string& file, const std::string& what, const std::string& by) const {
-    std::string text = folder.read(file);
-    const auto at = text.find(what);
-    ASSERT_NE(at, std::string::npos) << file << " has no " << what;
-    folder.write(file, text.replace(at, what.size(), by));
-  }
-  TemporaryFolder folder{"spoilt"};
-};
 
 std::string all_of(const std::vector<std::string>& sentences) {
   std::string text;
@@ -86,15 +45,15 @@ RunResult run_none(const FrameSource& source) {
 class EveryStereoLayout : public ::testing::TestWithParam<SequenceLayout> {};
 
 TEST_P(EveryStereoLayout, ReadsBackTheSame) {
-  const auto memory = make_generated_sequence("walking_xyz:stereo", kFrames, 1);
+  const auto memory = make_generated_sequence("walking_xyz:stereo", kStereoFrames, 1);
   const auto read = open_sequence(miniature(GetParam()).string());
-  ASSERT_EQ(read->size(), kFrames);
+  ASSERT_EQ(read->size(), kStereoFrames);
   EXPECT_TRUE(read->camera().is_stereo());
   EXPECT_NEAR(read->camera().baseline_m, memory->camera().baseline_m, 1e-12);
   EXPECT_NEAR(read->camera().fx, memory->camera().fx, 1e-9);
   EXPECT_TRUE(read->has_depth() && read->has_masks());
   EXPECT_THAT(all_of(read->warnings()), Not(HasSubstr("rectified")));
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kStereoFrames; ++i) {
     const Frame made = memory->read(i), found = read->read(i);
     EXPECT_TRUE(same(made.gray, found.gray)) << i;
     EXPECT_LT(cv::norm(made.depth, found.depth, cv::NORM_INF), 1e-5) << i;
@@ -110,10 +69,10 @@ TEST_P(EveryStereoLayout, ReadsBackTheSame) {
 }
 
 TEST_P(EveryStereoLayout, GivesTheSameTrajectory) {
-  const RunResult memory = run_none(*make_generated_sequence("walking_xyz:stereo", kFrames, 1)),
+  const RunResult memory = run_none(*make_generated_sequence("walking_xyz:stereo", kStereoFrames, 1)),
                   read = run_none(*open_sequence(miniature(GetParam()).string()));
   ASSERT_EQ(read.trajectory.size(), memory.trajectory.size());
-  ASSERT_EQ(read.trajectory.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(read.trajectory.size(), static_cast<std::size_t>(kStereoFrames));
   for (std::size_t i = 0; i < memory.trajectory.size(); ++i) {
     const Pose off = memory.trajectory[i].world_from_camera.inverse() * read.trajectory[i].world_from_camera;
     EXPECT_LT(off.translation().norm(), 1e-7) << i;  // m: what a focal length in decimals leaves
@@ -126,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Stereo, EveryStereoLayout,
 
 TEST(StereoLayouts, LeftAndRightGiveTheSameRunToTheLastBit) {
   EXPECT_EQ(run_hash(run_none(*open_sequence(miniature(SequenceLayout::left_right).string())).records),
-            run_hash(run_none(*make_generated_sequence("walking_xyz:stereo", kFrames, 1)).records));
+            run_hash(run_none(*make_generated_sequence("walking_xyz:stereo", kStereoFrames, 1)).records));
 }
 
 TEST(StereoLayouts, HalfSizeIsAnOption) {
@@ -256,7 +215,7 @@ TEST(StereoLayouts, APartOfAKittiSequenceIsStampedByItsNumbers) {
   for (const char* gone : {"000000", "000001"})
     for (const char* side : {"image_2/", "image_3/"}) spoilt.remove(std::string(side) + gone + ".png");
   const auto whole = open_sequence(miniature(SequenceLayout::kitti).string()), part = spoilt.open();
-  ASSERT_EQ(part->size(), kFrames - 2);
+  ASSERT_EQ(part->size(), kStereoFrames - 2);
   for (int i = 0; i < part->size(); ++i) {
     EXPECT_EQ(part->timestamp(i), whole->timestamp(i + 2));
     EXPECT_TRUE(same(part->read(i).gray, whole->read(i + 2).gray));
@@ -272,7 +231,7 @@ TEST(StereoLayouts, PosesLieWhereTheBenchmarkHasThem) {
   fs::create_directories(folder.path("poses"));
   fs::rename(folder.path("sequences/07/poses.txt"), folder.path("poses/07.txt"));
   EXPECT_EQ(open_sequence(folder.path("sequences/07"))->ground_truth().size(),
-            static_cast<std::size_t>(kFrames));
+            static_cast<std::size_t>(kStereoFrames));
   fs::remove(folder.path("poses/07.txt"));
   EXPECT_TRUE(open_sequence(folder.path("sequences/07"))->ground_truth().empty());
 }
@@ -307,7 +266,7 @@ struct TartanAir : Spoilt {
   TartanAir() : Spoilt(SequenceLayout::left_right) {
     const auto source = open_sequence(miniature(SequenceLayout::left_right).string());
     std::string poses;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < kStereoFrames; ++i) {
       for (const std::string side : {"left", "right"}) {
         fs::create_directories(folder.path("image_" + side));
         fs::rename(folder.path(fmt::format("{}/{:.6f}.png", side, source->timestamp(i))),
@@ -330,8 +289,8 @@ struct TartanAir : Spoilt {
 TEST(StereoLayouts, TartanAirIsReadWithItsPoses) {
   const TartanAir sequence;
   const auto usual = open_sequence(miniature(SequenceLayout::left_right).string()), source = sequence.open();
-  ASSERT_EQ(source->size(), kFrames);
-  for (int i = 0; i < kFrames; ++i) {
+  ASSERT_EQ(source->size(), kStereoFrames);
+  for (int i = 0; i < kStereoFrames; ++i) {
     EXPECT_TRUE(same(source->read(i).depth, usual->read(i).depth)) << i;
     EXPECT_NEAR(source->timestamp(i), i / 30.0, 1e-9);
     ASSERT_TRUE(source->truth(i).world_from_camera) << i;
@@ -364,7 +323,7 @@ TEST(StereoLayouts, RightImagesOfAnotherMomentAreTold) {
   const Spoilt spoilt(SequenceLayout::left_right);
   const auto usual = spoilt.open();
   EXPECT_THAT(all_of(usual->warnings()), Not(HasSubstr("were taken")));
-  for (int i = 0; i < kFrames; ++i)
+  for (int i = 0; i < kStereoFrames; ++i)
     spoilt.rename(fmt::format("right/{:.6f}.png", usual->timestamp(i)),
                   fmt::format("right/{:.6f}.png", usual->timestamp(i) - 0.0065));
   EXPECT_THAT(all_of(spoilt.open()->warnings()),
@@ -420,109 +379,6 @@ TEST(StereoLayouts, ADamagedRightImageCostsItsFramesDepth) {
   EXPECT_TRUE(frame.readable());
   EXPECT_FALSE(frame.has_depth());
   EXPECT_THAT(frame.problem, HasSubstr("1000.033333.png"));
-}
-
-// ---- rectification
-
-/// What a camera that is turned and has a lens sees where an ideal one sees `ideal`.
-cv::Mat seen_by(const Camera& camera, const Eigen::Matrix3d& ideal_from_camera, const cv::Mat& ideal,
-                const Camera& ideal_camera) {
-  cv::Mat from(camera.height, camera.width, CV_32FC2), image;
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const Eigen::Vector3d ray = ideal_from_camera * camera.back_project(camera.undistorted({x, y}), 1.0);
-      const Eigen::Vector2d at = ideal_camera.project(ray);
-      from.at<cv::Vec2f>(y, x) = {static_cast<float>(at.x()), static_cast<float>(at.y())};
-    }
-  cv::remap(ideal, image, from, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-  return image;
-}
-
-std::string yaml_of(const Camera& c, const Pose& body_from_camera) {
-  std::string rows;
-  for (int i = 0; i < 16; ++i)
-    rows += fmt::format("{}{:.15g}", i == 0 ? "" : ", ", body_from_camera.matrix()(i / 4, i % 4));
-  return fmt::format(
-      "sensor_type: camera\nT_BS:\n  cols: 4\n  rows: 4\n  data: [{}]\nresolution: [{}, {}]\ncamera_model: "
-      "pinhole\nintrinsics: [{}, {}, {}, {}]\ndistortion_model: radial-tangential\n"
-      "distortion_coefficients: [{}, {}, {}, {}]\n",
-      rows, c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2);
-}
-
-/// A pair with lenses, turned against each other, whose truth is the body's.
-TEST(StereoRectification, APairAsItCameIsRectifiedOnOpening) {
-  TemporaryFolder folder("raw");
-  const auto ideal = make_generated_sequence("room:stereo", 4, 1);
-  Camera left = ideal->camera(), right = left;
-  left.k1 = -0.12, left.k2 = 0.03, left.p1 = 2e-4, right.k1 = -0.10, right.k2 = 0.02, right.p2 = -3e-4;
-  right.fx = 530, right.cy = 240;
-  const Eigen::Matrix3d turn_left = so3_exp({0.01, -0.012, 0.008}),
-                        turn_right = so3_exp({-0.006, 0.01, -0.01});
-  Pose body_from_ideal = Pose::Identity();
-  body_from_ideal.linear() = so3_exp({0.3, -0.2, 1.2});
-  body_from_ideal.translation() << 0.05, -0.02, 0.1;
-  Pose left_pose = body_from_ideal, right_pose = body_from_ideal;
-  left_pose.linear() = left_pose.linear() * turn_left;
-  right_pose.translate(Eigen::Vector3d(0.12, 0, 0));
-  right_pose.linear() = right_pose.linear() * turn_right;
-  folder.write("mav0/cam0/sensor.yaml", yaml_of(left, left_pose));
-  folder.write("mav0/cam1/sensor.yaml", yaml_of(right, right_pose));
-  std::string truth = "#timestamp, p_RS_R_x [m], p_y, p_z, q_RS_w [], q_x, q_y, q_z\n";
-  for (int i = 0; i < ideal->size(); ++i) {
-    const Frame frame = ideal->read(i);
-    const long long stamp = std::llround(ideal->timestamp(i) * 1e6) * 1000;
-    folder.write(fmt::format("mav0/cam0/data/{}.png", stamp),
-                 seen_by(left, turn_left, frame.gray, ideal->camera()));
-    folder.write(fmt::format("mav0/cam1/data/{}.png", stamp),
-                 seen_by(right, turn_right, to_gray(frame.stereo->right), ideal->camera()));
-    const Pose body = *ideal->truth(i).world_from_camera * body_from_ideal.inverse();
-    const Eigen::Quaterniond q(body.linear());
-    truth +=
-        fmt::format("{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", stamp, body.translation().x(),
-                    body.translation().y(), body.translation().z(), q.w(), q.x(), q.y(), q.z());
-  }
-  folder.write("mav0/state_groundtruth_estimate0/data.csv", truth);
-
-  const auto read = open_sequence(folder.path());
-  EXPECT_NEAR(read->camera().baseline_m, 0.12, 1e-9);
-  EXPECT_FALSE(read->camera().has_distortion());
-  EXPECT_THAT(all_of(read->warnings()), Not(HasSubstr("not rectified")));
-  const Frame frame = read->read(2);
-  ASSERT_TRUE(frame.has_depth());
-  // Both say where the same points lie: through the poses, in the world.
-  const Pose ideal_from_read =
-      ideal->truth(2).world_from_camera->inverse() * *read->truth(2).world_from_camera;
-  EXPECT_LT(ideal_from_read.translation().norm(), 1e-5);  // m: rectifying turns the camera where it stands
-  const cv::Mat exact = ideal->truth(2).depth;
-  std::vector<double> errors;  // px, of disparity
-  for (int y = 10; y < frame.depth.rows - 10; y += 4)
-    for (int x = 10; x < frame.depth.cols - 10; x += 4) {
-      const double z = frame.depth.at<float>(y, x);
-      if (z <= 0) continue;
-      const Eigen::Vector3d p = ideal_from_read * read->camera().back_project({x, y}, z);
-      const Eigen::Vector2d at = ideal->camera().project(p);
-      const cv::Point pixel(cvRound(at.x()), cvRound(at.y()));
-      if (!cv::Rect(0, 0, exact.cols, exact.rows).contains(pixel)) continue;
-      errors.push_back(std::abs(1.0 / p.z() - 1.0 / exact.at<float>(pixel)) * read->camera().fx * 0.12);
-    }
-  ASSERT_GT(errors.size(), 5000U);
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
-                   errors.end());
-  EXPECT_LT(errors[errors.size() / 2], 0.5);
-}
-
-TEST(StereoRectification, ARectifiedPairIsLeftAsItIs) {
-  Camera camera = camera_by_name("generated");
-  Pose right_from_left = Pose::Identity();
-  right_from_left.translation().x() = -0.2;
-  const StereoRectification plain(camera, camera, right_from_left, "here");
-  EXPECT_FALSE(plain.resamples());
-  EXPECT_EQ(plain.camera().baseline_m, 0.2);
-  EXPECT_EQ(plain.camera().fx, camera.fx);
-  const cv::Mat image(480, 640, CV_8UC1, cv::Scalar(3));
-  EXPECT_EQ(plain.rectified(image, StereoRectification::kLeft).data, image.data);
-  right_from_left.linear() = so3_exp({0, 0, 0.01});
-  EXPECT_TRUE(StereoRectification(camera, camera, right_from_left, "here").resamples());
 }
 
 }  // namespace
