@@ -4,9 +4,9 @@
 # One would swear: a data set whose compression the reader does not have (h5py's own "lzf" is not in
 #   the HDF5 library) ends in an error, or in nothing.
 # What happens: value and slice() give an array of the right kind and length, without any exception;
-#   the HDF5 library's report goes to standard error only (in a browser, the console). The array is
-#   memory as it was, and once another data set of that size has been read that is its picture, but
-#   for a dozen of 307200 pixels. With depth 0 as gzip and depth 1 to 3 as LZF, all of them are depth 0;
+#   the HDF5 library's report goes to standard error only (in a browser, the console). Once
+#   another data set of that size has been read, the array is that one's picture, but for a dozen of
+#   307200 pixels. With depth 0 as gzip and depth 1 to 3 as LZF, all of them are depth 0;
 #   with gzip and LZF in turn every second one is the one before it. h5py reads all of them;
 #   activate_throwing_error_handler(), called beforehand, makes an error of it.
 # What follows: call activate_throwing_error_handler() before the first file, or look at filters of a
