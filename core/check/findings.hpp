@@ -32,6 +32,7 @@ void to_json(nlohmann::json& json, const Finding& finding);
 /// between two bodies, a scale, a shift in time, each by how much better the alternative fits; of another
 /// program's estimate all that `evaluate` doubts (doubts_about).
 /// @param estimate_may_err false where the estimate is our own, whose convention is known
+/// @param baseline_m m, of the stereo pair whose depth our estimate went by; 0: a depth sensor's
 [[nodiscard]] std::vector<Finding> check_truth(const Trajectory& truth, const Trajectory& estimate,
                                                bool estimate_may_err, double baseline_m = 0.0);
 
